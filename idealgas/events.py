@@ -1,0 +1,60 @@
+"""What an event is: the columns of the event log and the batches in which they travel from an engine to a log."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+BLOCK = 65_536
+"""Rows of a full batch, and of a chunk in the file."""
+
+
+class Kind(IntEnum):
+    """What a disc met. Stored in the log as `events/kind`."""
+
+    DISC = 0
+    WALL = 1
+
+
+class EventBatch(NamedTuple):
+    """Rows of the event log, in order of time; a pair collision is two rows, the smaller id first.
+
+    time: (n,) f8, time. disc: (n,) u4, id. partner: (n,) i4, the other disc's id, or -1 - k for wall k.
+    kind: (n,) u1, a `Kind`. position, velocity: (n, 2) f8, length and length/time, after the event.
+    """
+
+    time: np.ndarray
+    disc: np.ndarray
+    partner: np.ndarray
+    kind: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+
+    def rows(self, start: int, stop: int) -> "EventBatch":
+        """View of some of the rows."""
+        return EventBatch(*(column[start:stop] for column in self))
+
+
+def empty_batch(rows: int = BLOCK) -> EventBatch:
+    """A batch for an engine to fill."""
+    return EventBatch(
+        time=np.empty(rows),
+        disc=np.empty(rows, np.uint32),
+        partner=np.empty(rows, np.int32),
+        kind=np.empty(rows, np.uint8),
+        position=np.empty((rows, 2)),
+        velocity=np.empty((rows, 2)),
+    )
+
+
+COLUMN_UNITS = {
+    "time": "time",
+    "disc": "",
+    "partner": "",
+    "kind": "",
+    "position": "length",
+    "velocity": "length/time",
+}
+
+BOX_SIDES = ("left", "right", "bottom", "top")
+"""Walls 0 to 3; further walls follow in the order of the scene."""
