@@ -1,0 +1,34 @@
+"""A progress bar on a terminal, nothing elsewhere."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from idealgas.simulate import Progress
+
+
+@contextmanager
+def progress_bar() -> Iterator[Callable[["Progress"], None]]:
+    """Yield the function that shows a run's progress: share done, simulated time, events per second, remaining time."""
+    import time
+
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = (
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[rate]:,.0f} events/s, simulated time {task.fields[time]:.6g}, remaining"),
+        TimeRemainingColumn(),
+    )
+    console = Console(stderr=True)
+    started = time.perf_counter()
+    with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
+        task = bar.add_task("run", total=1.0, rate=0.0, time=0.0)
+
+        def show(progress: "Progress") -> None:
+            rate = progress.events / (time.perf_counter() - started)
+            bar.update(task, completed=progress.share, rate=rate, time=progress.time)
+
+        yield show

@@ -1,0 +1,79 @@
+"""The arrays the engines work on: one 64-byte record a disc, in an order of memory that is not the order of ids."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import njit
+from idealgas.gas import Gas
+from idealgas.physics.motion import advance
+
+DISC = np.dtype(
+    [
+        ("x", "f8"), ("y", "f8"), ("vx", "f8"), ("vy", "f8"),
+        ("t", "f8"),  # local time of the record, from the start of the epoch
+        ("r", "f8"), ("m", "f8"),
+        ("column", "i2"), ("row", "i2"),  # cell
+        ("count", "u4"),  # events of this disc in this epoch
+    ],
+    align=True,
+)  # fmt: skip
+
+COUNTERS = np.dtype(
+    [
+        ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),
+        ("crossings", "i8"), ("stale", "i8"), ("time", "f8"),  # local time of the last event
+    ]
+)  # fmt: skip
+
+
+def aligned(n: int, dtype: np.dtype, boundary: int = 64) -> np.ndarray:
+    """Zeroed array on a cache-line boundary; a structured one as a record array."""
+    raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
+    start = -raw.ctypes.data % boundary
+    array = raw[start : start + n * dtype.itemsize].view(dtype)
+    return array.view(np.recarray) if dtype.names else array
+
+
+class Limits(NamedTuple):
+    """until: local time. events, collisions: how many more of them."""
+
+    until: float
+    events: int
+    collisions: int
+
+
+class Discs(NamedTuple):
+    """record: (N,) DISC. id: (N,) u4, the id of the disc at each place. box: (Lx, Ly)."""
+
+    record: np.ndarray
+    id: np.ndarray
+    box: tuple[float, float]
+
+
+def make_discs(gas: Gas, order: np.ndarray) -> Discs:
+    """Records at local time 0; `order` (N,) lists the ids in their order of memory."""
+    record = aligned(len(gas), DISC)
+    record.x, record.y = gas.position[order].T
+    record.vx, record.vy = gas.velocity[order].T
+    record.r, record.m = gas.radius[order], gas.mass[order]
+    ids = aligned(len(gas), np.dtype("u4"))
+    ids[:] = order
+    return Discs(record, ids, gas.box)
+
+
+@njit
+def synchronise(record, time):
+    """Bring every disc to one local time."""
+    for i in range(record.shape[0]):
+        advance(record[i], time)
+
+
+def positions_and_velocities(discs: Discs, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 2) arrays in order of id at a local time not before any record; the records stay as they are."""
+    record = discs.record.copy()
+    synchronise(record, time)
+    position, velocity = np.empty((2, len(record), 2))
+    position[discs.id] = np.column_stack((record.x, record.y))
+    velocity[discs.id] = np.column_stack((record.vx, record.vy))
+    return position, velocity

@@ -1,0 +1,134 @@
+"""A gas on its way through the epochs of its run."""
+
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from idealgas.engine.audit import Audit, audit
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.epoch import epoch_length
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.records import COUNTERS, Discs, Limits, positions_and_velocities
+from idealgas.events import EventBatch
+from idealgas.gas import Gas
+from idealgas.physics.constants import NEVER
+
+UNLIMITED = 1 << 62
+LATEST = 0.25 * NEVER
+
+
+class Method(Protocol):
+    """What the epochs ask of an event-by-event method."""
+
+    discs: Discs
+
+    def start(self, gas: Gas) -> None: ...
+
+    def advance(self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray) -> int: ...
+
+    def deepest_overlap(self) -> float: ...
+
+
+METHODS: dict[str, type[Method]] = {"event_driven": EventDriven, "brute_force": BruteForce}
+
+
+class Stop(NamedTuple):
+    """Where a run ends, whichever comes first. time: time. events, disc_collisions: numbers since time 0."""
+
+    time: float = LATEST
+    events: int = UNLIMITED
+    disc_collisions: int = UNLIMITED
+
+
+@dataclass
+class Totals:
+    """What happened since time 0, up to the start of the epoch."""
+
+    events: int = 0
+    disc_collisions: int = 0
+    wall_hits: int = 0
+
+
+@dataclass
+class Simulation:
+    """Advances a gas by events; everything about it follows from the gas, time and totals at the start of an epoch.
+
+    gas: at the start of the epoch. time: of that start. method: a fresh method.
+    """
+
+    gas: Gas
+    method: Method
+    time: float = 0.0
+    epoch: int = 0
+    totals: Totals = field(default_factory=Totals)
+
+    def __post_init__(self) -> None:
+        self._begin()
+
+    def _begin(self) -> None:
+        self.length = epoch_length(self.gas)
+        self.method.start(self.gas)
+        self.overlap = self.method.deepest_overlap()
+        self._counters = np.zeros(1, COUNTERS).view(np.recarray)
+        self.epoch_over = False
+
+    def advance(self, stop: Stop, batch: EventBatch | None, events: int = UNLIMITED) -> int:
+        """Process events until the epoch is over, the stop is reached or the batch is full; return the rows filled.
+
+        events: a further limit for this call.
+        """
+        done = self.so_far
+        limits = Limits(
+            min(self.length, stop.time - self.time, LATEST),
+            min(stop.events - done.events, events),
+            stop.disc_collisions - done.disc_collisions,
+        )
+        rows, self.epoch_over = self.method.advance(limits, self.time, batch, self._counters)
+        return rows
+
+    def finished(self, stop: Stop) -> bool:
+        """Whether the stop is reached."""
+        done = self.so_far
+        if done.events >= stop.events or done.disc_collisions >= stop.disc_collisions:
+            return True
+        return self.epoch_over and self.length >= stop.time - self.time
+
+    @property
+    def so_far(self) -> Totals:
+        """What happened since time 0, up to now."""
+        counter = self._counters[0]
+        return Totals(
+            self.totals.events + int(counter.events),
+            self.totals.disc_collisions + int(counter.disc_collisions),
+            self.totals.wall_hits + int(counter.wall_hits),
+        )
+
+    @property
+    def last_event_time(self) -> float:
+        """Time of the last event, or the epoch's start if there was none in it."""
+        return self.time + float(self._counters[0].time)
+
+    def at(self, time: float) -> Gas:
+        """The gas at a time from the last event to the next; the simulation is not touched."""
+        position, velocity = positions_and_velocities(self.method.discs, time - self.time)
+        return replace(self.gas, position=position, velocity=velocity)
+
+    def next_epoch(self) -> None:
+        """Bring all discs to the end of the epoch and begin the next one there."""
+        end = self.time + self.length
+        self.gas, self.totals = self.at(end), self.so_far
+        self.time = end
+        self.epoch += 1
+        self._begin()
+
+    def audit(self) -> Audit:
+        """What must hold, at the start of the epoch."""
+        return audit(self.gas, self.overlap)
+
+    def audit_at(self, time: float) -> Audit:
+        """What must hold, at a time from the last event to the next."""
+        gas = self.at(time)
+        method = type(self.method)()
+        method.start(gas)
+        return audit(gas, method.deepest_overlap())
