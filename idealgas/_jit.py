@@ -13,8 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 from numba import types
 from numba.extending import intrinsic, overload
+
+if numba.config.DISABLE_JIT:
+    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as silent as compiled code
 
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 

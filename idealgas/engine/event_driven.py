@@ -147,15 +147,15 @@ def predict_exit(record, agenda, i):
     column = np.int64(disc.column) if right else np.int64(disc.column) - 1
     row = np.int64(disc.row) if up else np.int64(disc.row) - 1
     low, high = centre_range(cells.Lx, disc.r)
-    dx = arrival_delay(disc.x, disc.vx, min(max(column * cells.width, low), high))
+    x_time = disc.t + arrival_delay(disc.x, disc.vx, min(max(column * cells.width, low), high))
     low, high = centre_range(cells.Ly, disc.r)
-    dy = arrival_delay(disc.y, disc.vy, min(max(row * cells.height, low), high))
-    along_y = dy < dx
+    y_time = disc.t + arrival_delay(disc.y, disc.vy, min(max(row * cells.height, low), high))
+    along_y = y_time < x_time
     edge = row if along_y else column
     last = cells.rows - 2 if along_y else cells.columns - 2
     forward = up if along_y else right
     prediction = agenda.prediction[U(i)]
-    prediction.exit = disc.t + (dy if along_y else dx)
+    prediction.exit = y_time if along_y else x_time
     side = (2 if along_y else 0) + (1 if forward else 0)
     prediction.exit_code = side + (SIDE_OF_BOX if (edge == 0) | (edge == last) else 0)
 

@@ -1,0 +1,58 @@
+"""`idealgas bench`: how fast is the engine on this machine?"""
+
+import click
+
+from ._options import json_option
+
+
+def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) -> list[float]:
+    try:
+        return [float(word) for word in text.split(",")]
+    except ValueError:
+        raise click.BadParameter(f"numbers with commas between them (got {text!r})") from None
+
+
+@click.command()
+@click.option(
+    "--number", "numbers", default="1e3,1e4,1e5", show_default=True, callback=_numbers, help="Numbers of discs N."
+)
+@click.option(
+    "--phi", "fractions", default="0.01,0.1,0.5", show_default=True, callback=_numbers, help="Packing fractions φ."
+)
+@click.option("--collisions", default=1_000_000, show_default=True, help="Fewest collisions of a run.")
+@click.option("--repeats", default=3, show_default=True, help="Runs of each kind; the median counts.")
+@json_option
+def bench(numbers: list[float], fractions: list[float], collisions: int, repeats: int, as_json: bool) -> None:
+    """Time the event-driven engine over a grid of N and φ, without the event log and with it."""
+    if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
+        raise click.UsageError("N, collisions and repeats are 1 or more, φ is above 0 and 0.9 at most")
+    import json
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from idealgas.study.bench import bench as measure
+
+    console = Console(stderr=True)
+    with console.status("compiling") as status:
+        found = measure(
+            [int(n) for n in numbers],
+            fractions,
+            collisions,
+            repeats,
+            lambda row: status.update(f"N = {row.N}, φ = {row.phi:g}: {row.collisions_per_s:,.0f} collisions/s"),
+        )
+    if as_json:
+        rows = [row._asdict() for row in found.rows]
+        click.echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
+        return
+    table = Table("N", "φ", "log", "M collisions/s", "slowest – fastest", "log / no log")
+    without = {}
+    for row in found.rows:
+        without.setdefault((row.N, row.phi), row.collisions_per_s)
+        share = f"{row.collisions_per_s / without[row.N, row.phi]:.2f}" if row.log else ""
+        spread = f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"
+        rate = f"{row.collisions_per_s / 1e6:.3f}"
+        table.add_row(f"{row.N:,}", f"{row.phi:g}", "on" if row.log else "off", rate, spread, share)
+    Console().print(table)
+    click.echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")

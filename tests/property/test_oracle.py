@@ -1,0 +1,128 @@
+"""The event-driven method writes the log of the brute-force method, float for float, whatever its cells and batches."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import empty_batch
+from idealgas.gas import Gas
+
+
+class Case(NamedTuple):
+    number: int
+    phi: float
+    aspect: float
+    masses: tuple[float, ...]
+    radii: tuple[float, ...]
+    gridded: bool  # on a lattice, with velocities of a few values: many simultaneous events
+    seed: int
+
+
+cases = st.builds(
+    Case,
+    number=st.integers(1, 200),
+    phi=st.floats(0.001, 0.6),
+    aspect=st.sampled_from([1.0, 0.3, 4.0]),
+    masses=st.sampled_from([(1.0,), (1.0, 7.0), (1e-3, 1.0, 1e3)]),
+    radii=st.sampled_from([(1.0,), (1.0, 0.4), (1.0, 0.1, 0.7)]),
+    gridded=st.booleans(),
+    seed=st.integers(0, 2**32),
+)
+
+
+def make(case: Case) -> Gas:
+    """Discs on a lattice, moved a little unless gridded; phi is what the largest would fill."""
+    draw = np.random.default_rng(case.seed)
+    columns = max(round(math.sqrt(case.number * case.aspect)), 1)
+    rows = -(-case.number // columns)
+    pitch = max(math.sqrt(math.pi / (4 * case.phi)), 1.02) * 2 * max(case.radii)
+    site = np.arange(case.number)
+    position = (np.column_stack((site % columns, site // columns)) + 0.5) * pitch
+    radius = draw.choice(case.radii, case.number)
+    slack = pitch / 2 - radius
+    if case.gridded:
+        velocity = draw.choice([-1.0, 0.0, 1.0], (case.number, 2))
+    else:
+        position += draw.uniform(-0.99, 0.99, position.shape) * slack[:, None] * 0.7
+        velocity = draw.normal(size=(case.number, 2))
+    return Gas(
+        box=(columns * pitch, rows * pitch),
+        position=position,
+        velocity=velocity,
+        radius=radius,
+        mass=draw.choice(case.masses, case.number),
+        species=np.zeros(case.number, np.uint16),
+        species_names=("gas",),
+    )
+
+
+def log_of(gas: Gas, method, stop: Stop, batch_rows: int) -> list[np.ndarray]:
+    """All columns of the event log."""
+    simulation = Simulation(gas, method)
+    parts = []
+    while not simulation.finished(stop):
+        batch = empty_batch(batch_rows)
+        parts.append(batch.rows(0, simulation.advance(stop, batch)))
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+    return [np.concatenate(columns) for columns in zip(*parts, strict=True)]
+
+
+def assert_same_log(case: Case, events: int) -> None:
+    gas = make(case)
+    stop = Stop(events=events)
+    oracle = log_of(gas, BruteForce(), stop, 65_536)
+    for filling, rows in ((None, 65_536), (0.1, 65_536), (3.0, 1_000), (1e9, 257)):
+        columns = log_of(gas, EventDriven(filling), stop, rows)
+        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True)), (filling, rows)
+
+
+@settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@given(cases)
+@example(Case(1, 0.5, 1.0, (1.0,), (1.0, 0.1, 0.7), True, 34527))  # delays differ, times are equal
+def test_same_log_as_the_oracle(case):
+    assert_same_log(case, 3_000)
+
+
+@pytest.mark.interpreted
+@settings(max_examples=4, deadline=None, derandomize=True)
+@given(cases.filter(lambda case: case.number < 12))
+def test_same_log_as_the_oracle_in_a_few_discs(case):
+    assert_same_log(case, 40)
+
+
+@pytest.mark.long
+@settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@given(cases)
+def test_same_log_as_the_oracle_for_long(case):
+    assert_same_log(case, 20_000)
+
+
+def test_many_simultaneous_events():
+    """A lattice whose discs all start touching a neighbour or a wall at once: ties decide, and all methods agree."""
+    side = 10
+    x, y = np.meshgrid(np.arange(side) * 2.0 + 1.0, np.arange(side) * 2.0 + 1.0)
+    draw = np.random.default_rng(8)
+    n = side * side
+    gas = Gas(
+        box=(2.0 * side, 2.0 * side),
+        position=np.column_stack((x.ravel(), y.ravel())),
+        velocity=draw.choice([-1.0, 1.0], (n, 2)),
+        radius=np.full(n, 1.0),
+        mass=np.ones(n),
+        species=np.zeros(n, np.uint16),
+        species_names=("gas",),
+    )
+    stop = Stop(events=400)
+    oracle = log_of(gas, BruteForce(), stop, 65_536)
+    assert (np.diff(oracle[0]) == 0).mean() > 0.9
+    for filling in (0.1, 1.0, 1e9):
+        columns = log_of(gas, EventDriven(filling), stop, 100)
+        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True))

@@ -1,0 +1,44 @@
+"""Epoch lengths: powers of two, and a function of the gas alone."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from idealgas.engine.epoch import epoch_length
+from idealgas.gas import Gas
+
+
+def gas(n=100, speed=1.0, side=50.0):
+    draw = np.random.default_rng(3)
+    return Gas(
+        box=(side, side),
+        position=draw.uniform(1, side - 1, (n, 2)),
+        velocity=speed * draw.normal(size=(n, 2)),
+        radius=np.full(n, 0.5),
+        mass=np.ones(n),
+        species=np.zeros(n, np.uint16),
+        species_names=("gas",),
+    )
+
+
+def test_a_power_of_two():
+    for speed in (1e-8, 0.3, 1.0, 1e8):
+        assert math.frexp(epoch_length(gas(speed=speed)))[0] == 0.5
+
+
+def test_scales_with_speed():
+    assert epoch_length(gas(speed=4.0)) == epoch_length(gas()) / 4
+
+
+def test_does_not_depend_on_the_order_of_the_discs():
+    one = gas()
+    for seed in range(20):
+        order = np.random.default_rng(seed).permutation(len(one))
+        assert epoch_length(replace(one, velocity=one.velocity[order])) == epoch_length(one)
+
+
+@pytest.mark.parametrize("n", [1, 100])
+def test_infinite_at_rest(n):
+    assert epoch_length(gas(n, speed=0.0)) == math.inf

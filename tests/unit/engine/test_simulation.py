@@ -1,0 +1,159 @@
+"""Epochs, stops and audits of a simulation, on gases whose motion is known."""
+
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import empty_batch
+from idealgas.gas import Gas
+
+pytestmark = pytest.mark.interpreted
+
+methods = pytest.mark.parametrize("method", [EventDriven, BruteForce])
+
+
+def gas_of(box, *discs):
+    """Unit-mass discs from (x, y, vx, vy, radius)."""
+    table = np.array(discs, float)
+    return Gas(
+        box=box,
+        position=table[:, :2].copy(),
+        velocity=table[:, 2:4].copy(),
+        radius=table[:, 4].copy(),
+        mass=np.ones(len(table)),
+        species=np.zeros(len(table), np.uint16),
+        species_names=("gas",),
+    )
+
+
+def run(simulation, stop, batch_rows=64):
+    """All rows up to the stop, as a list of (time, disc, partner)."""
+    rows = []
+    while not simulation.finished(stop):
+        batch = empty_batch(batch_rows)
+        count = simulation.advance(stop, batch)
+        rows += zip(
+            batch.time[:count].tolist(), batch.disc[:count].tolist(), batch.partner[:count].tolist(), strict=True
+        )
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+    return rows
+
+
+@methods
+def test_one_disc_bounces_between_two_sides(method):
+    simulation = Simulation(gas_of((10, 10), (5, 5, 1, 0, 1)), method())
+    assert run(simulation, Stop(time=30.0)) == [(4, 0, -2), (12, 0, -1), (20, 0, -2), (28, 0, -1)]
+    end = simulation.at(30.0)
+    assert end.position.tolist() == [[3, 5]]
+    assert end.velocity.tolist() == [[1, 0]]
+
+
+@methods
+def test_a_corner_is_two_events_at_one_time(method):
+    simulation = Simulation(gas_of((10, 10), (5, 5, 1, 1, 1)), method())
+    assert run(simulation, Stop(events=3)) == [(4, 0, -2), (4, 0, -4), (12, 0, -1)]
+
+
+@methods
+def test_ties_come_in_the_order_of_ids(method):
+    discs = [(5, 2, 1, 0, 1), (5, 5, 1, 0, 1), (5, 8, 1, 0, 1)]
+    simulation = Simulation(gas_of((10, 10), *discs), method())
+    assert run(simulation, Stop(time=5.0)) == [(4, 0, -2), (4, 1, -2), (4, 2, -2)]
+
+
+@methods
+def test_stops_where_it_should(method):
+    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
+    whole = run(Simulation(gas_of((10, 10), *discs), method()), Stop(time=200.0))
+    some = Simulation(gas_of((10, 10), *discs), method())
+    assert run(some, Stop(time=200.0, events=17)) == whole[: len(run_rows(whole, 17))]
+    assert some.so_far.events == 17
+    pairs = Simulation(gas_of((10, 10), *discs), method())
+    run(pairs, Stop(time=200.0, disc_collisions=5))
+    assert pairs.so_far.disc_collisions == 5
+    early = Simulation(gas_of((10, 10), *discs), method())
+    assert run(early, Stop(time=20.0)) == [row for row in whole if row[0] <= 20.0]
+
+
+def run_rows(rows, events):
+    """The rows of the first so many events."""
+    taken, k = [], 0
+    while k < len(rows) and events:
+        step = 2 if rows[k][2] >= 0 else 1
+        taken += rows[k : k + step]
+        k, events = k + step, events - 1
+    return taken
+
+
+@methods
+@pytest.mark.parametrize("rows", [3, 7, 1000])
+def test_the_size_of_the_batch_changes_nothing(method, rows):
+    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
+    stop = Stop(time=60.0)
+    assert run(Simulation(gas_of((10, 10), *discs), method()), stop, rows) == run(
+        Simulation(gas_of((10, 10), *discs), method()), stop
+    )
+
+
+@methods
+def test_discs_at_rest_end_at_the_end_time(method):
+    simulation = Simulation(gas_of((10, 10), (2, 2, 0, 0, 1), (4, 2, 0, 0, 1)), method())
+    assert run(simulation, Stop(time=1e6)) == []
+    assert simulation.finished(Stop(time=1e6))
+    simulation = Simulation(gas_of((10, 10), (2, 2, 0, 0, 1)), method())
+    assert run(simulation, Stop(events=5)) == []
+
+
+@methods
+def test_three_discs_in_line_pass_the_motion_on(method):
+    discs = [(2, 5, 1, 0, 1), (5, 5, 0, 0, 1), (7, 5, 0, 0, 1)]
+    simulation = Simulation(gas_of((20, 10), *discs), method())
+    assert run(simulation, Stop(time=2.0)) == [(1, 0, 1), (1, 1, 0), (1, 1, 2), (1, 2, 1)]
+    assert simulation.at(2.0).velocity.tolist() == [[0, 0], [0, 0], [1, 0]]
+
+
+@methods
+def test_the_end_of_an_epoch_changes_only_records(method):
+    simulation = Simulation(gas_of((10, 10), (5, 5, 1, 0.5, 1)), method())
+    stop = Stop(time=4 * simulation.length)
+    while not simulation.finished(stop):
+        simulation.advance(stop, None)
+        if not simulation.finished(stop):
+            simulation.next_epoch()
+    assert simulation.epoch == 3
+    assert simulation.time == 3 * simulation.length
+    x = 1 + abs((4 + stop.time + 8) % 16 - 8)
+    assert simulation.at(stop.time).position[0, 0] == pytest.approx(x, abs=1e-9)
+    audit = simulation.audit()
+    assert audit.kinetic_energy == pytest.approx(0.625, rel=1e-15)
+    assert audit.overlap == 0
+    assert audit.outside < 1e-15
+
+
+def test_audit_finds_overlaps_and_escapes():
+    discs = [(5, 5, 1, 0, 1), (6.5, 5, 0, 0, 1), (0.9, 2, 0, 0, 1)]
+    for method in (EventDriven, BruteForce):
+        audit = Simulation(gas_of((10, 10), *discs), method()).audit()
+        assert audit.overlap == pytest.approx(0.25)
+        assert audit.outside == pytest.approx(0.05)
+
+
+@methods
+def test_a_gas_keeps_its_energy_and_never_overlaps(method):
+    draw = np.random.default_rng(5)
+    places = [(2.0 * i + 1.5, 2.0 * j + 1.5) for i in range(4) for j in range(4)]
+    discs = [(x, y, *draw.normal(size=2), 0.8) for x, y in places]
+    simulation = Simulation(gas_of((9, 9), *discs), method())
+    energy = simulation.gas.kinetic_energy
+    stop = Stop(events=600)
+    overlap = 0.0
+    while not simulation.finished(stop):
+        simulation.advance(stop, None, 100)
+        overlap = max(overlap, simulation.audit_at(simulation.last_event_time).overlap)
+    assert math.isclose(simulation.at(simulation.last_event_time).kinetic_energy, energy, rel_tol=1e-13)
+    assert overlap < 1e-13

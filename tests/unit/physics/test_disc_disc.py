@@ -1,0 +1,126 @@
+"""Contact times and collisions of two discs, against cases worked out by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from idealgas._jit import njit
+from idealgas.engine.records import DISC, aligned
+from idealgas.physics.constants import NEVER
+from idealgas.physics.disc_disc import collide, contact_time
+
+pytestmark = pytest.mark.interpreted
+
+
+@njit
+def contact_of(discs):
+    return contact_time(discs[0], discs[1])
+
+
+@njit
+def collide_them(discs):
+    collide(discs[0], discs[1])
+
+
+def pair(a, b):
+    """Two records from (x, y, vx, vy, t, r, m)."""
+    discs = aligned(2, DISC)
+    for record, values in zip(discs, (a, b), strict=True):
+        record.x, record.y, record.vx, record.vy, record.t, record.r, record.m = values
+    return discs
+
+
+def test_head_on():
+    assert contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 0, 0.5, 1))) == 2.0
+
+
+def test_records_at_different_times_meet_at_the_same_place():
+    assert contact_of(pair((-3, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 3, 0.5, 1))) == 5.0
+
+
+def test_oblique_contact_at_45_degrees():
+    time = contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (10, math.sqrt(0.5), 0, 0, 0, 0.5, 1)))
+    assert time == pytest.approx(10 - math.sqrt(0.5), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        ((0, 0, -1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1)),
+        ((0, 0, 1, 0, 0, 0.5, 1), (5, 1.01, 0, 0, 0, 0.5, 1)),
+        ((0, 0, 1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1)),
+        ((0, 0, 0, 0, 0, 0.5, 1), (1, 0, 1, 0, 0, 0.5, 1)),
+    ],
+    ids=["receding", "passing", "same velocity", "touching and receding"],
+)
+def test_no_contact(a, b):
+    assert contact_of(pair(a, b)) == NEVER
+
+
+@pytest.mark.parametrize("x", [1.0, 1.0 - 1e-15, 0.9], ids=["touching", "overlapping by rounding", "overlapping"])
+def test_approaching_discs_that_touch_meet_now(x):
+    assert contact_of(pair((0, 0, 1, 0, 7, 0.5, 1), (x, 0, 0, 0, 7, 0.5, 1))) == 7.0
+
+
+def test_touching_discs_whose_collision_changes_nothing_are_done():
+    assert contact_of(pair((0, 0, 1, 1e-30, 0, 0.5, 1), (0, 1, 1, 0, 0, 0.5, 1))) == 0.0
+    assert contact_of(pair((0, 0, 1, 1 + 1e-16, 0, 0.5, 1), (0, 1, 1, 1, 0, 0.5, 1))) == NEVER
+    assert contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (1e-17, 1, 0, 1, 0, 0.5, 1))) == NEVER
+
+
+def test_equal_discs_exchange_normal_velocities():
+    discs = pair((0, 0, 1, 0.25, 0, 0.5, 1), (1, 0, -2, 0.5, 0, 0.5, 1))
+    collide_them(discs)
+    assert discs.vx.tolist() == [-2, 1]
+    assert discs.vy.tolist() == [0.25, 0.5]
+
+
+def test_unequal_masses():
+    discs = pair((0, 0, 1, 0, 0, 0.5, 3), (1, 0, 0, 0, 0, 0.5, 1))
+    collide_them(discs)
+    assert discs.vx.tolist() == [0.5, 1.5]
+
+
+numbers = st.floats(-10, 10, allow_subnormal=False)
+records = st.tuples(numbers, numbers, numbers, numbers, st.floats(0, 10), st.floats(0.1, 2), st.floats(0.1, 10))
+
+
+@given(records, records)
+def test_both_laws_are_symmetric_to_the_last_bit(a, b):
+    there, back = pair(a, b), pair(b, a)
+    assert contact_of(there) == contact_of(back)
+    there.t = back.t = 0
+    if (a[0], a[1]) != (b[0], b[1]):
+        collide_them(there)
+        collide_them(back)
+        assert np.array_equal(there[0].tolist(), back[1].tolist(), equal_nan=True)
+        assert np.array_equal(there[1].tolist(), back[0].tolist(), equal_nan=True)
+
+
+@given(records, records, st.floats(0, 2 * math.pi))
+def test_a_collision_conserves_energy_and_momentum_and_turns_the_approach_round(a, b, angle):
+    a, b = list(a), list(b)
+    reach = a[5] + b[5]
+    b[0], b[1] = a[0] + reach * math.cos(angle), a[1] + reach * math.sin(angle)
+    discs = pair(a, b)
+    before = discs.copy()
+    collide_them(discs)
+    masses = discs.m
+
+    def energy(d):
+        return 0.5 * (masses * (d.vx**2 + d.vy**2)).sum()
+
+    speed = max(np.abs([before.vx, before.vy]).max(), 1e-300)
+    scale = masses.sum() * speed
+    assert energy(discs) == pytest.approx(energy(before), rel=1e-14, abs=1e-14 * scale * speed)
+    for component in ("vx", "vy"):
+        total = (masses * discs[component]).sum()
+        assert total == pytest.approx((masses * before[component]).sum(), abs=2e-14 * scale)
+
+    def approach(d):
+        return (d.x[0] - d.x[1]) * (d.vx[0] - d.vx[1]) + (d.y[0] - d.y[1]) * (d.vy[0] - d.vy[1])
+
+    assert approach(discs) == pytest.approx(-approach(before), abs=1e-13 * reach * speed)
