@@ -15,6 +15,7 @@ from idealgas.engine.order import precedes
 from idealgas.engine.records import Limits, aligned, make_discs
 from idealgas.engine.rows import DISC, WALL, write_row
 from idealgas.engine.schedule import (
+    NO_CONTACT,
     PREDICTION,
     SIDE_OF_BOX,
     Tree,
@@ -27,11 +28,8 @@ from idealgas.engine.schedule import (
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
 from idealgas.physics.box_side import arrival_delay, centre_range, reflect
-from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import collide, contact_time, first_touch
 from idealgas.physics.motion import advance
-
-NO_CONTACT = 0.5 * NEVER  # before NEVER, so that a miss never ties with "none yet"
 
 U = np.uintp
 

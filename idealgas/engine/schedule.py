@@ -28,6 +28,8 @@ PREDICTION = np.dtype(
 )
 SIDE_OF_BOX = 4
 
+NO_CONTACT = 0.5 * NEVER  # before NEVER, so that a miss never ties with "none yet"
+NO_CONTACT_KEY = int(np.float64(NO_CONTACT).view(np.int64))
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
 
 U = np.uintp  # unsigned indices spare the check for negative ones
@@ -143,7 +145,7 @@ def schedule(tree, predictions, ids, i):
         node = group + (n2 if k4 < k0 else n0)
         tied |= k0 == k4
         earliest = min(k0, k4)
-        if tied and earliest < NEVER_KEY:
+        if tied and earliest < NO_CONTACT_KEY:
             node = first_of_tied(tree, group, earliest, predictions, ids)
         first = winner[U(node)]
         base = start[U(level)]

@@ -1,0 +1,22 @@
+"""The event log: one HDF5 file that survives its writer, and the exact state of the gas at any time from it."""
+
+from idealgas.log.errors import LogError, check_output
+from idealgas.log.reader import Log, open_log
+from idealgas.log.recovery import recover
+from idealgas.log.replay import Checkpoint, LogState
+from idealgas.log.schema import Column, Wall, box_walls
+from idealgas.log.writer import LogWriter
+
+__all__ = [
+    "Checkpoint",
+    "Column",
+    "Log",
+    "LogError",
+    "LogState",
+    "LogWriter",
+    "Wall",
+    "box_walls",
+    "check_output",
+    "open_log",
+    "recover",
+]
