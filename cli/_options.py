@@ -1,0 +1,17 @@
+"""Arguments and options that several commands share."""
+
+from collections.abc import Callable
+
+import click
+
+
+def scene_argument(command: Callable) -> Callable:
+    """`SCENE.toml [--set TABLE.KEY=VALUE]...` as `path` and `overrides`, ready for `load_scene`."""
+    overrides = click.option(
+        "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
+        help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
+    )  # fmt: skip
+    return click.argument("path", metavar="SCENE.toml")(overrides(command))
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON for machines instead of tables.")

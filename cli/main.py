@@ -1,0 +1,45 @@
+"""The command `idealgas`: command NAME is the function NAME of the module NAME here, imported when it is called for.
+
+Modules whose name starts with an underscore, and this one, are no commands.
+"""
+
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import Any
+
+import click
+
+from idealgas import __version__
+from idealgas.errors import UserError
+
+from . import __path__ as folder
+
+
+class Commands(click.Group):
+    """Finds commands among the modules of this folder; prints a user's errors as plain lines."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        names = (module.name for module in iter_modules(folder))
+        return sorted(name.replace("_", "-") for name in names if name != "main" and not name.startswith("_"))
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in self.list_commands(ctx):
+            return None
+        module = name.replace("-", "_")
+        return getattr(import_module(f".{module}", __package__), module)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except UserError as error:
+            click.echo(str(error), err=True)
+            ctx.exit(error.exit_code)
+        except MemoryError:
+            click.echo("out of memory: the scene is too large for this machine", err=True)
+            ctx.exit(1)
+
+
+@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="idealgas")
+def main() -> None:
+    """Exact simulation of a two-dimensional gas of hard discs, with every event on record."""

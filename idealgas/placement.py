@@ -1,0 +1,176 @@
+"""Where discs are put: on a lattice, or at random without overlap.
+
+Random placement is sequential addition, the largest discs first. Whenever a place is refused, one of the discs placed
+so far makes a Metropolis step: the gas stays close to equilibrium and does not jam at the packing fraction 0.547
+of pure random addition (Feder, J. Theor. Biol. 87, 237 (1980)). At low density refusals are rare.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+
+PATIENCE = 3_000
+"""Refusals a disc, on the average, after which random placement gives up..."""
+
+LEAST_PATIENCE = 3_000_000
+"""...but never before this number in all."""
+
+
+class Grid(NamedTuple):
+    """Cells no smaller than the largest diameter, each with a linked list of the discs whose centres it holds.
+
+    first: (columns, rows) i4. next: (N,) i4. Both end with -1. size: (2,) f8, of a cell.
+    """
+
+    first: np.ndarray
+    next: np.ndarray
+    size: np.ndarray
+
+
+def make_grid(box: tuple[float, float], radius: np.ndarray) -> Grid:
+    """An empty grid with about one disc a cell."""
+    side = max(2 * float(radius.max()), math.sqrt(box[0] * box[1] / len(radius)))
+    shape = [max(int(length / side), 1) for length in box]
+    return Grid(np.full(shape, -1, np.int32), np.full(len(radius), -1, np.int32), np.array(box) / shape)
+
+
+@inline
+def _cell(grid, x, y):
+    columns, rows = grid.first.shape
+    return min(int(x / grid.size[0]), columns - 1), min(int(y / grid.size[1]), rows - 1)
+
+
+@inline
+def _insert(grid, position, i):
+    column, row = _cell(grid, position[i, 0], position[i, 1])
+    grid.next[i] = grid.first[column, row]
+    grid.first[column, row] = i
+
+
+@inline
+def _remove(grid, position, i):
+    column, row = _cell(grid, position[i, 0], position[i, 1])
+    if grid.first[column, row] == i:
+        grid.first[column, row] = grid.next[i]
+        return
+    k = grid.first[column, row]
+    while grid.next[k] != i:
+        k = grid.next[k]
+    grid.next[k] = grid.next[i]
+
+
+@inline
+def _is_free(grid, position, radius, x, y, reach, i):
+    """Whether a disc of radius `reach` at (x, y) would overlap none of the grid but, perhaps, disc i."""
+    column, row = _cell(grid, x, y)
+    for c in range(max(column - 1, 0), min(column + 2, grid.first.shape[0])):
+        for r in range(max(row - 1, 0), min(row + 2, grid.first.shape[1])):
+            k = grid.first[c, r]
+            while k >= 0:
+                dx = x - position[k, 0]
+                dy = y - position[k, 1]
+                contact = reach + radius[k]
+                if k != i and dx * dx + dy * dy < contact * contact:
+                    return False
+                k = grid.next[k]
+    return True
+
+
+@njit
+def insert(grid, position, radius, ids):
+    """Enter discs at their positions; return how many there are before the first that would overlap."""
+    for n, i in enumerate(ids):
+        if not _is_free(grid, position, radius, position[i, 0], position[i, 1], radius[i], i):
+            return n
+        _insert(grid, position, i)
+    return len(ids)
+
+
+@njit
+def free_sites(grid, position, radius, sites, reach):
+    """Mask (M,) of the sites (M, 2) where a disc of radius `reach` would overlap none of the grid."""
+    free = np.empty(len(sites), np.bool_)
+    for n in range(len(sites)):
+        free[n] = _is_free(grid, position, radius, sites[n, 0], sites[n, 1], reach, -1)
+    return free
+
+
+@njit
+def insert_randomly(grid, position, radius, bounds, ids, rng, patience):
+    """Put discs at random in the order of ids, centres within bounds (N, 4); return how many found room."""
+    placed = 0
+    refused = 0
+    while placed < len(ids) and refused < patience:
+        i = ids[placed]
+        x0, y0, x1, y1 = bounds[i, 0], bounds[i, 1], bounds[i, 2], bounds[i, 3]
+        x = min(x0 + (x1 - x0) * rng.random(), x1)
+        y = min(y0 + (y1 - y0) * rng.random(), y1)
+        if _is_free(grid, position, radius, x, y, radius[i], i):
+            position[i, 0], position[i, 1] = x, y
+            _insert(grid, position, i)
+            placed += 1
+            continue
+        refused += 1
+        if placed:
+            k = ids[int(placed * rng.random())]
+            x = position[k, 0] + radius[k] * (rng.random() - 0.5)
+            y = position[k, 1] + radius[k] * (rng.random() - 0.5)
+            inside = bounds[k, 0] <= x <= bounds[k, 2] and bounds[k, 1] <= y <= bounds[k, 3]
+            if inside and _is_free(grid, position, radius, x, y, radius[k], k):
+                _remove(grid, position, k)
+                position[k, 0], position[k, 1] = x, y
+                _insert(grid, position, k)
+    return placed
+
+
+def insert_on_lattice(grid, position, radius, bounds, ids) -> bool:
+    """Put discs on one lattice spaced for the largest of them, its free sites used evenly; False if there is no room.
+
+    bounds: (4,) x0, y0, x1, y1 for the centres of the largest. Sites taken by discs that lie already are left out.
+    """
+    largest = radius[ids].max()
+    wanted = len(ids)
+    while (sites := make_lattice(bounds[:2], bounds[2:], 2 * largest, wanted)) is not None:
+        sites = sites[free_sites(grid, position, radius, sites, largest)]
+        if len(sites) >= len(ids):
+            position[ids] = sites[np.arange(len(ids)) * len(sites) // len(ids)]
+            return insert(grid, position, radius, ids) == len(ids)
+        wanted += len(ids) - len(sites)
+    return False
+
+
+def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int) -> np.ndarray | None:
+    """At least `sites` points (M, 2) from low to high, no two closer than a diameter; None if there is no room.
+
+    Square if that fits, else triangular; in rows from below, filling the whole region.
+    """
+    width, height = high - low + diameter
+    rows = np.arange(1, min(int(2 * height / diameter), sites) + 1)
+    columns = -(-sites // rows)
+    nearest = np.minimum(width / columns, height / rows)
+    if nearest.max() >= diameter:
+        return _square(low, high, columns[nearest.argmax()], rows[nearest.argmax()], diameter)
+    along = (width - diameter) / (columns - 0.5)
+    across = (height - diameter) / np.maximum(rows - 1, 1)
+    nearest = np.minimum(np.minimum(along, np.hypot(along / 2, across)), np.where(rows > 2, 2 * across, np.inf))
+    if nearest.max() >= diameter:
+        return _triangular(low, high, columns[nearest.argmax()], rows[nearest.argmax()])
+    return None
+
+
+def _square(low: np.ndarray, high: np.ndarray, columns: int, rows: int, diameter: float) -> np.ndarray:
+    """Every disc in the middle of a cell of its own."""
+    shape = np.array((columns, rows))
+    index = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
+    corner = low - diameter / 2
+    return np.clip(corner + (index + 0.5) * ((high - low + diameter) / shape), low, high)
+
+
+def _triangular(low: np.ndarray, high: np.ndarray, columns: int, rows: int) -> np.ndarray:
+    """Rows shifted in turn by half a spacing, from wall to wall."""
+    column, row = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
+    step = (high - low) / (columns - 0.5, max(rows - 1, 1))
+    return np.minimum(low + np.column_stack((column + row % 2 / 2, row)) * step, high)

@@ -1,0 +1,44 @@
+"""Case files as parameters: `invalid_case`, `valid_case` and `shipped_scene` go through the folders of scenes.
+
+Hypothesis sets no deadlines: the first example of a test may have to compile.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("no-deadline", deadline=None)
+settings.load_profile("no-deadline")
+
+ROOT = Path(__file__).parent.parent
+CASES = ROOT / "tests" / "cases"
+
+
+class InvalidCase(NamedTuple):
+    """A scene and the lines it is refused with: its comments `# set: override` and `# expect: line, less the file`."""
+
+    path: Path
+    overrides: list[str]
+    lines: list[str]
+
+
+def read_invalid(path: Path) -> InvalidCase:
+    comments = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    expected = [line.removeprefix("# expect: ") for line in comments if line.startswith("# expect: ")]
+    return InvalidCase(
+        path,
+        [line.removeprefix("# set: ") for line in comments if line.startswith("# set: ")],
+        [line if line.startswith("--set ") else f"{path}:{line}" for line in expected],
+    )
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    if "invalid_case" in metafunc.fixturenames:
+        paths = sorted((CASES / "invalid").glob("*.toml"))
+        metafunc.parametrize("invalid_case", [read_invalid(path) for path in paths], ids=[path.stem for path in paths])
+    for name, folder in (("valid_case", CASES / "valid"), ("shipped_scene", ROOT / "configs")):
+        if name in metafunc.fixturenames:
+            paths = sorted(folder.glob("*.toml"))
+            metafunc.parametrize(name, paths, ids=[path.stem for path in paths])

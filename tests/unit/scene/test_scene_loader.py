@@ -1,0 +1,139 @@
+import pytest
+
+from idealgas.errors import UserError
+from idealgas.scene import Header, Log, Scene, SceneError, dump_scene, load_scene, parse_scene
+from idealgas.scene.model import LARGEST
+
+MINIMAL = """
+[box]
+size = [4, 2]
+[[disc]]
+position = [1, 1]
+radius = 0.5
+[run]
+until = 1
+"""
+
+
+def refused(text, *overrides):
+    with pytest.raises(SceneError) as refusal:
+        parse_scene(text, "s.toml", overrides)
+    return refusal.value.errors
+
+
+def test_defaults():
+    scene = parse_scene(MINIMAL)
+    assert scene.scene == Header(title="", seed=0)
+    assert scene.log == Log(events=True, compression="gzip", checkpoint_every=1)
+    assert scene.run.method == "event_driven"
+    assert scene.disc[0].velocity == (0.0, 0.0)
+    assert scene.disc[0].mass == 1.0
+    assert scene.species == ()
+    assert scene.effects == ()
+
+
+def test_whole_numbers_become_floats():
+    width = parse_scene(MINIMAL).box.size[0]
+    assert isinstance(width, float)
+    assert width == 4.0
+
+
+def test_scenes_are_frozen():
+    scene = parse_scene(MINIMAL)
+    with pytest.raises(ValueError, match="frozen"):
+        scene.run.until = 2.0
+
+
+def test_a_scene_made_in_python_is_checked_too():
+    with pytest.raises(ValueError, match="no stop rule"):
+        Scene.model_validate({"box": {"size": [4, 2]}, "disc": [{"position": [1, 1], "radius": 0.5}], "run": {}})
+
+
+def test_where_a_scene_was_written_is_no_part_of_it():
+    assert parse_scene(MINIMAL, "one.toml") == parse_scene("# moved\n" + MINIMAL, "two.toml")
+
+
+def test_the_error_is_a_user_error_and_a_value_error():
+    error = SceneError(["first", "second"])
+    assert isinstance(error, UserError)
+    assert isinstance(error, ValueError)
+    assert str(error) == "first\nsecond"
+    assert error.exit_code == 2
+
+
+def test_an_unreadable_file_is_one_line(tmp_path):
+    for path, reason in ((tmp_path / "none.toml", "No such file or directory"), (tmp_path, "Is a directory")):
+        with pytest.raises(SceneError) as refusal:
+            load_scene(path)
+        assert refusal.value.errors == [f"{path}: cannot be read ({reason})"]
+
+
+def test_a_file_name_with_a_null_byte_is_one_line():
+    with pytest.raises(SceneError) as refusal:
+        load_scene("a\0b")
+    assert len(refusal.value.errors) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("[box", "s.toml:1: not TOML: "),
+        ("\n\nsize = [1, 2", "s.toml:3: not TOML: "),
+        ("a = 1\n\n[box]]", "s.toml:3: not TOML: "),
+        ("a = " + "[" * 100_000, "s.toml: not TOML: nested too deeply"),
+        ("a = " + "1" * 5_000, "s.toml:1: not TOML: "),
+    ],
+    ids=["bracket", "end of text", "header", "deep", "huge integer"],
+)
+def test_not_toml(text, line):
+    (error,) = refused(text)
+    assert error.startswith(line)
+
+
+def test_windows_line_ends_count_as_one_line():
+    (error,) = refused(MINIMAL.replace("until = 1", "until = 0").replace("\n", "\r\n"))
+    assert error == "s.toml:8: run.until: out of range (got 0; allowed > 0)"
+
+
+def test_numbers_too_large_to_compute_with_are_refused():
+    (error,) = refused(MINIMAL.replace("radius = 0.5", "radius = 0.5\nmass = 1e200"))
+    assert error == f"s.toml:7: disc.0.mass: out of range (got 1e+200; allowed <= {LARGEST:g})"
+    assert len(refused(MINIMAL.replace("until = 1", "until = 1" + "0" * 400))) == 1
+
+
+def test_long_values_are_shown_in_part():
+    (error,) = refused(MINIMAL.replace("until = 1", f'until = "{"x" * 500}"'))
+    assert len(error) < 150
+
+
+def test_faults_between_tables_are_reported_beside_faults_within_them():
+    text = MINIMAL.replace("until = 1", "until = -1") + "[[disc]]\nposition = [1.5, 1]\nradius = 0.5\n"
+    assert [error.split(" (")[0] for error in refused(text)] == [
+        "s.toml:8: run.until: out of range",
+        "s.toml:10: disc.1.position: overlaps disc 0",
+    ]
+
+
+def test_discs_that_touch_do_not_overlap():
+    touching = MINIMAL + "[[disc]]\nposition = [2, 1]\nradius = 0.5\n"
+    assert len(parse_scene(touching).disc) == 2
+    assert len(refused(touching, "disc.1.position=[1.9999999999999998, 1]")) == 1
+
+
+def test_every_overlap_with_an_earlier_disc_is_reported():
+    discs = "".join(f"[[disc]]\nposition = [{x}, 1]\nradius = 0.5\n" for x in (3.5, 0.5, 2.75))
+    errors = refused(MINIMAL + discs)
+    assert [error.split(" (")[0].split(": ", 1)[1] for error in errors] == [
+        "disc.2.position: overlaps disc 0",
+        "disc.3.position: overlaps disc 1",
+    ]
+
+
+def test_a_dump_shows_the_defaults():
+    assert dump_scene(parse_scene(MINIMAL)).splitlines() == [
+        "[scene]", 'title = ""', "seed = 0", "",
+        "[box]", "size = [4.0, 2.0]", "",
+        "[[disc]]", "position = [1.0, 1.0]", "velocity = [0.0, 0.0]", "radius = 0.5", "mass = 1.0", "",
+        "[run]", 'method = "event_driven"', "until = 1.0", "",
+        "[log]", "events = true", 'compression = "gzip"', "checkpoint_every = 1",
+    ]  # fmt: skip
