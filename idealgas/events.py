@@ -14,13 +14,16 @@ class Kind(IntEnum):
 
     DISC = 0
     WALL = 1
+    WALL_END = 2
+    PISTON = 3
 
 
 class EventBatch(NamedTuple):
     """Rows of the event log, in order of time; a pair collision is two rows, the smaller id first.
 
     time: (n,) f8, time. disc: (n,) u4, id. partner: (n,) i4, the other disc's id, or -1 - k for wall k.
-    kind: (n,) u1, a `Kind`. position, velocity: (n, 2) f8, length and length/time, after the event.
+    kind: (n,) u1, a `Kind`. position, velocity: (n, 2) f8, length and length/time, after the event. Only with the effect:
+    angular_velocity: (n,) f8, 1/time, after the event. image: (n, 2) i4, box lengths that unwrap the position.
     """
 
     time: np.ndarray
@@ -29,13 +32,15 @@ class EventBatch(NamedTuple):
     kind: np.ndarray
     position: np.ndarray
     velocity: np.ndarray
+    angular_velocity: np.ndarray | None = None
+    image: np.ndarray | None = None
 
     def rows(self, start: int, stop: int) -> "EventBatch":
         """View of some of the rows."""
-        return EventBatch(*(column[start:stop] for column in self))
+        return EventBatch(*(None if column is None else column[start:stop] for column in self))
 
 
-def empty_batch(rows: int = BLOCK) -> EventBatch:
+def empty_batch(rows: int = BLOCK, rotating: bool = False, periodic: bool = False) -> EventBatch:
     """A batch for an engine to fill."""
     return EventBatch(
         time=np.empty(rows),
@@ -44,6 +49,8 @@ def empty_batch(rows: int = BLOCK) -> EventBatch:
         kind=np.empty(rows, np.uint8),
         position=np.empty((rows, 2)),
         velocity=np.empty((rows, 2)),
+        angular_velocity=np.empty(rows) if rotating else None,
+        image=np.empty((rows, 2), np.int32) if periodic else None,
     )
 
 
@@ -54,6 +61,8 @@ COLUMN_UNITS = {
     "kind": "",
     "position": "length",
     "velocity": "length/time",
+    "angular_velocity": "1/time",
+    "image": "",
 }
 
 BOX_SIDES = ("left", "right", "bottom", "top")

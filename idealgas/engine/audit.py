@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import borrowed, inline, njit
-from idealgas.engine.cells import cell_index
+from idealgas.engine.neighbours import gather
 from idealgas.gas import Gas
 
 U = np.uintp
@@ -26,34 +26,46 @@ class Audit(NamedTuple):
 
 
 @inline
-def overlap_of(a, b):
+def nearest_image(distance, length, joined):
+    """A coordinate difference, through joined sides if that is shorter."""
+    return distance - length * round(distance / length) if joined else distance
+
+
+@inline
+def overlap_of(a, b, periodic):
     """Depth to which two discs overlap, as a share of the sum of their radii; negative if they do not."""
-    return 1.0 - math.hypot(a.x - b.x, a.y - b.y) / (a.r + b.r)
+    x = a.x - b.x
+    y = a.y - b.y
+    if periodic is not None:
+        x = nearest_image(x, periodic.Lx, periodic.x)
+        y = nearest_image(y, periodic.Ly, periodic.y)
+    return 1.0 - math.hypot(x, y) / (a.r + b.r)
 
 
 @njit
-def deepest_overlap(record, cells):
+def deepest_overlap(record, ids, agenda, periodic):
     """Deepest overlap among records at one time that stand in their cells."""
-    record, cells = borrowed((record, cells))
+    record, ids, agenda, periodic = borrowed((record, ids, agenda, periodic))
     deepest = 0.0
     for i in range(record.shape[0]):
-        corner = cell_index(cells, record[U(i)]) - cells.columns - 1
-        for place in range(9):
-            j = cells.head[U(corner + place // 3 * cells.columns + place % 3)]
+        disc = record[U(i)]
+        count = gather(agenda, np.int64(disc.column) - 1, np.int64(disc.row) - 1, 3, 3, periodic)
+        for k in range(count):
+            j = agenda.candidates[U(k)]
             while j >= 0:
                 if j < i:
-                    deepest = max(deepest, overlap_of(record[U(i)], record[U(j)]))
-                j = cells.link[U(j)].next
+                    deepest = max(deepest, overlap_of(disc, record[U(j)], periodic))
+                j = agenda.cells.link[U(j)].next
     return deepest
 
 
 @njit
-def deepest_overlap_of_all(record):
+def deepest_overlap_of_all(record, periodic):
     """The same over all pairs."""
     deepest = 0.0
     for i in range(record.shape[0]):
         for j in range(i):
-            deepest = max(deepest, overlap_of(record[i], record[j]))
+            deepest = max(deepest, overlap_of(record[i], record[j], periodic))
     return deepest
 
 

@@ -1,4 +1,4 @@
-"""The brute-force method: before every event all pairs and all sides of the box are asked for the next one, O(N²).
+"""The brute-force method: before every event all pairs, walls and images are asked for the next one, O(N²).
 
 It is the oracle of the event-driven method: the same laws, the same rule for ties, nothing remembered.
 """
@@ -7,106 +7,192 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
-from idealgas.engine.records import Limits, make_discs
-from idealgas.engine.rows import DISC, WALL, write_row
+from idealgas.engine.effects import Effects
+from idealgas.engine.exits import is_piston_side, turns_along
+from idealgas.engine.records import Limits, add_to_counters, make_discs
+from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
+from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
-from idealgas.physics.box_side import arrival_delay, centre_range, reflect
+from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
-from idealgas.physics.disc_disc import collide, contact_time
-from idealgas.physics.motion import advance
+from idealgas.physics.disc_disc import contact_time
+from idealgas.physics.motion import acceleration_along
+from idealgas.physics.periodic import images_between, shift_of
+from idealgas.physics.piston import piston_contact, stop_contact
+from idealgas.physics.segment import segment_contact
+
+U = np.uintp
+PAIR, SIDE, SEGMENT, PISTON, STOP, TURN = range(6)
 
 
 @inline
-def side_contact(disc, side, box):
-    """Time at which a disc meets a side of the box; NEVER if it does not move towards it."""
-    low, high = centre_range(box[side >> 1], disc.r)
-    position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
-    if side & 1:
-        delay = arrival_delay(position, velocity, high) if velocity > 0.0 else NEVER
-    else:
-        delay = arrival_delay(position, velocity, low) if velocity < 0.0 else NEVER
-    return disc.t + delay if delay < NEVER else NEVER
+def wall_event(record, i, effects, length_x, length_y, best):
+    """The earlier of `best`, as `next_event` gives it, and disc i's meetings with sides, piston and segments."""
+    disc = record[U(i)]
+    for side in range(4):
+        along_y = side >= 2
+        pull = acceleration_along(effects.gravity, along_y)
+        if is_piston_side(side, effects.piston):
+            time = piston_hit(disc, effects.piston, effects.gravity)
+            if time < best[0]:
+                best = (time, PISTON, i, side, 0, 0)
+        elif not turns_along(effects.periodic, i, along_y)[1]:
+            time = side_contact(disc, side, length_y if along_y else length_x, pull)
+            if time < best[0]:
+                best = (time, SIDE, i, side, 0, 0)
+    return segment_event(disc, i, effects.segments, effects, best)
 
 
 @inline
-def next_event(record, box):
-    """Time, disc and partner (-1 - side for a side of the box) of the earliest event; records are in order of id.
+def piston_hit(disc, piston, gravity):
+    """When a disc meets the piston."""
+    if piston is not None:
+        return piston_contact(disc, piston[0], gravity)
+    return NEVER
+
+
+@inline
+def segment_event(disc, i, segments, effects, best):
+    """The earlier of `best` and disc i's meetings with wall segments."""
+    if segments is not None:
+        for k in range(segments.x.shape[0]):
+            if segments.active[U(k)]:
+                time = segment_contact(disc, i, segments, k, effects.gravity, effects.restitution)
+                if time < best[0]:
+                    best = (time, SEGMENT, i, k, 0, 0)
+    return best
+
+
+@inline
+def pair_event(record, i, j, effects, best):
+    """The earlier of `best` and the meetings of discs i and j in every image."""
+    for image_x in range(*image_range(effects.periodic, False)):
+        for image_y in range(*image_range(effects.periodic, True)):
+            images = images_between(effects.periodic, i, j, (image_x, image_y))
+            shift = shift_of(effects.periodic, images)
+            time = contact_time(record[U(i)], record[U(j)], i, j, effects.gravity, effects.restitution, shift)
+            if time < best[0]:
+                best = (time, PAIR, i, j, image_x, image_y)
+    return best
+
+
+@inline
+def image_range(periodic, along_y):
+    """The images of a neighbour along an axis."""
+    if periodic is not None:
+        return (-1, 2) if (periodic.y if along_y else periodic.x) else (0, 1)
+    return 0, 1
+
+
+@inline
+def turn_event(record, i, effects, periodic, best):
+    """The earlier of `best` and disc i's way through joined sides: no record changes, but the images to look at do."""
+    if periodic is not None:
+        disc = record[U(i)]
+        for axis in range(2):
+            turns, joined = turns_along(periodic, i, axis == 1)
+            if joined:
+                length = periodic.Ly if axis == 1 else periodic.Lx
+                position, velocity = (disc.y, disc.vy) if axis == 1 else (disc.x, disc.vx)
+                forward = velocity > 0.0
+                time = disc.t + arrival_delay(position, velocity, (turns + (1 if forward else 0)) * length)
+                if time < best[0]:
+                    best = (time, TURN, i, axis, 1 if forward else -1, 0)
+    return best
+
+
+@inline
+def stop_event(piston, best):
+    """The earlier of `best` and the piston's arrival at its end stop, which precedes all events of its time."""
+    if piston is not None:
+        time = stop_contact(piston[0])
+        if time <= best[0] and time < NEVER:
+            return time, STOP, 0, 0, 0, 0
+    return best
+
+
+@inline
+def next_event(record, box, effects):
+    """Time, what it is, disc, partner and image of the earliest event; records are in order of id.
 
     The search goes through the events in the order that decides ties: smaller id, then walls, then the other id.
     """
-    best = NEVER
-    disc = -1
-    partner = -1
+    best = (NEVER, PAIR, 0, 0, 0, 0)
     for i in range(record.shape[0]):
-        for side in range(4):
-            time = side_contact(record[i], side, box)
-            if time < best:
-                best, disc, partner = time, i, -1 - side
+        best = wall_event(record, i, effects, box[0], box[1], best)
         for j in range(i + 1, record.shape[0]):
-            time = contact_time(record[i], record[j])
-            if time < best:
-                best, disc, partner = time, i, j
-    return best, disc, partner
+            best = pair_event(record, i, j, effects, best)
+        best = turn_event(record, i, effects, effects.periodic, best)
+    return stop_event(effects.piston, best)
+
+
+@inline
+def turn(periodic, i, axis, forward):
+    """Count a way through joined sides."""
+    if periodic is not None:
+        periodic.turns[U(i), axis] += np.int32(forward)
 
 
 @njit
-def advance_events(record, box, until, most_events, most_collisions, epoch_start, batch, counters):
+def advance_events(record, ids, box, effects, until, most_events, most_collisions, epoch_start, batch, counters):
     """As `event_driven.advance_events`, for records in order of id."""
-    counter = counters[0]
     rows = 0
     events = 0
     collisions = 0
-    now = counter.time
+    now = counters[0].time
     reached = False
-    capacity = 0
-    if batch is not None:
-        capacity = batch.time.shape[0] - 1
-    while events < most_events and collisions < most_collisions:
-        if batch is not None and rows >= capacity:
-            break
-        time, i, partner = next_event(record, box)
+    capacity = batch_capacity(batch)
+    while events < most_events and collisions < most_collisions and rows < capacity:
+        time, what, i, partner, image_x, image_y = next_event(record, box, effects)
         if time > until:
             reached = True
             break
-        advance(record[i], time)
-        if partner >= 0:
-            advance(record[partner], time)
-            collide(record[i], record[partner])
+        if what == TURN:
+            turn(effects.periodic, i, partner, image_x)
+            continue
+        if what == STOP:
+            resolve_stop(time, effects.piston)
+            continue
+        disc = record[U(i)]
+        clock = epoch_start + time
+        if what == PAIR:
+            images = images_between(effects.periodic, i, partner, (image_x, image_y))
+            resolve_pair(disc, record[U(partner)], i, partner, time, images, effects)
+            rows += write_pair(batch, rows, clock, record, ids, i, partner, effects)
             collisions += 1
-            if batch is not None:
-                write_row(batch, rows, epoch_start + time, i, partner, DISC, record[i])
-                write_row(batch, rows + 1, epoch_start + time, partner, i, DISC, record[partner])
-                rows += 2
+        elif what == SIDE:
+            resolve_side(disc, i, partner, time, effects)
+            rows += write_side_hit(batch, rows, clock, i, partner, disc, effects)
+        elif what == SEGMENT:
+            at_end = resolve_segment(disc, i, partner, time, effects.segments, effects)
+            rows += write_segment_hit(batch, rows, clock, i, partner, at_end, disc, effects)
         else:
-            reflect(record[i], -1 - partner)
-            if batch is not None:
-                write_row(batch, rows, epoch_start + time, i, partner, WALL, record[i])
-                rows += 1
+            resolve_piston(disc, i, time, effects.piston, effects)
+            rows += write_piston_hit(batch, rows, clock, i, effects.piston, disc, effects)
         events += 1
         if time < now:
             raise ValueError("time ran backwards")
         now = time
-    counter.events += events
-    counter.disc_collisions += collisions
-    counter.wall_hits += events - collisions
-    counter.time = now
+    add_to_counters(counters[0], events, collisions, 0, 0, now)
     return rows, reached
 
 
 class BruteForce:
     """The method as an object: what an epoch needs between its start and its end."""
 
-    def start(self, gas: Gas) -> None:
+    def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""
         self.discs = make_discs(gas, np.arange(len(gas)))
+        self._effects = effects
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """See `advance_events`."""
-        return advance_events(self.discs.record, self.discs.box, *limits, epoch_start, batch, counters)
+        record, ids, box = self.discs
+        return advance_events(record, ids, box, self._effects, *limits, epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""
-        return deepest_overlap_of_all(self.discs.record)
+        return deepest_overlap_of_all(self.discs.record, self._effects.periodic)

@@ -8,14 +8,16 @@ EVENTS_PER_DISC = 64
 FEWEST_EVENTS = 1024  # of an epoch of few discs
 
 
-def epoch_length(gas: Gas) -> float:
+def epoch_length(gas: Gas, extra_speed: float = 0.0) -> float:
     """A power of two of time in which about 64 events a disc happen; infinite if nothing moves.
+
+    extra_speed: length/time, what gravity or a piston may add to the mean speed of the discs.
 
     A pure function of the gas: sums are exactly rounded, so neither the order of memory nor the processor has a say.
     The rate is a kinetic-theory estimate of collisions with discs and with the sides.
     """
     n = len(gas)
-    mean_speed = math.fsum(math.hypot(vx, vy) for vx, vy in gas.velocity.tolist()) / n
+    mean_speed = math.fsum(math.hypot(vx, vy) for vx, vy in gas.velocity.tolist()) / n + extra_speed
     if mean_speed == 0.0:
         return math.inf
     largest_radius = float(gas.radius.max())

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import njit
+from idealgas._jit import inline, njit
 from idealgas.gas import Gas
 from idealgas.physics.motion import advance
+from idealgas.physics.periodic import wrap
 
 DISC = np.dtype(
     [
@@ -62,18 +63,20 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
     return Discs(record, ids, gas.box)
 
 
+@inline
+def add_to_counters(counter, events, disc_collisions, crossings, stale, now):
+    """Count what happened in one call of a kernel."""
+    counter.events += events
+    counter.disc_collisions += disc_collisions
+    counter.wall_hits += events - disc_collisions
+    counter.crossings += crossings
+    counter.stale += stale
+    counter.time = now
+
+
 @njit
-def synchronise(record, time):
+def synchronise(record, ids, time, gravity, periodic):
     """Bring every disc to one local time."""
     for i in range(record.shape[0]):
-        advance(record[i], time)
-
-
-def positions_and_velocities(discs: Discs, time: float) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 2) arrays in order of id at a local time not before any record; the records stay as they are."""
-    record = discs.record.copy()
-    synchronise(record, time)
-    position, velocity = np.empty((2, len(record), 2))
-    position[discs.id] = np.column_stack((record.x, record.y))
-    velocity[discs.id] = np.column_stack((record.vx, record.vy))
-    return position, velocity
+        advance(record[i], time, gravity)
+        wrap(record[i], ids[i], periodic)

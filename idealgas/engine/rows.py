@@ -1,16 +1,40 @@
-"""Writing events into a batch."""
+"""Writing events into a batch; each function returns the rows it wrote, none where no log is kept."""
 
 import numpy as np
 
 from idealgas._jit import inline
+from idealgas.engine.resolve import FIRST_SEGMENT
 from idealgas.events import Kind
 
-DISC = int(Kind.DISC)
-WALL = int(Kind.WALL)
+DISC, WALL, WALL_END, PISTON = int(Kind.DISC), int(Kind.WALL), int(Kind.WALL_END), int(Kind.PISTON)
+NO_END = 1 << 62
 
 
 @inline
-def write_row(batch, row, time, own, partner, kind, disc):
+def batch_capacity(batch):
+    """Rows that may be written before a last event is."""
+    if batch is not None:
+        return batch.time.shape[0] - 1
+    return NO_END
+
+
+@inline
+def write_spin(column, row, own, rotation):
+    """The angular velocity, where there is one."""
+    if rotation is not None:
+        column[row] = rotation.omega[np.uintp(own)]
+
+
+@inline
+def write_image(column, row, own, periodic):
+    """The image, where sides are periodic."""
+    if periodic is not None:
+        column[row, 0] = periodic.image[np.uintp(own), 0]
+        column[row, 1] = periodic.image[np.uintp(own), 1]
+
+
+@inline
+def write_row(batch, row, time, own, partner, kind, disc, effects):
     """One disc's row: its state after the event."""
     u = np.uintp(row)
     batch.time[u] = time
@@ -21,3 +45,46 @@ def write_row(batch, row, time, own, partner, kind, disc):
     batch.position[u, 1] = disc.y
     batch.velocity[u, 0] = disc.vx
     batch.velocity[u, 1] = disc.vy
+    write_spin(batch.angular_velocity, u, own, effects.rotation)
+    write_image(batch.image, u, own, effects.periodic)
+
+
+@inline
+def write_pair(batch, row, time, record, ids, i, j, effects):
+    """Two discs met: the row of the smaller id comes first."""
+    if batch is not None:
+        a, b = (i, j) if ids[np.uintp(i)] < ids[np.uintp(j)] else (j, i)
+        a_id = ids[np.uintp(a)]
+        b_id = ids[np.uintp(b)]
+        write_row(batch, row, time, a_id, b_id, DISC, record[np.uintp(a)], effects)
+        write_row(batch, row + 1, time, b_id, a_id, DISC, record[np.uintp(b)], effects)
+        return 2
+    return 0
+
+
+@inline
+def write_side_hit(batch, row, time, own, side, disc, effects):
+    """A disc met a side of the box."""
+    if batch is not None:
+        write_row(batch, row, time, own, -1 - side, WALL, disc, effects)
+        return 1
+    return 0
+
+
+@inline
+def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
+    """A disc met a wall segment."""
+    if batch is not None:
+        kind = WALL_END if at_end else WALL
+        write_row(batch, row, time, own, -1 - FIRST_SEGMENT - segment, kind, disc, effects)
+        return 1
+    return 0
+
+
+@inline
+def write_piston_hit(batch, row, time, own, piston, disc, effects):
+    """A disc met the piston."""
+    if batch is not None and piston is not None:
+        write_row(batch, row, time, own, -1 - piston[0].side, PISTON, disc, effects)
+        return 1
+    return 0

@@ -17,16 +17,19 @@ PREDICTION = np.dtype(
     [
         ("contact", "f8"),  # time of the best contact with another disc
         ("exit", "f8"),  # time at which the disc leaves its cell or meets a side of the box
-        ("partner", "i4"),  # place of the other disc, -1 for none
+        ("partner", "i4"),  # place of the other disc, -1 for none, -2 - k for wall segment k
         (
             "partner_count",
             "u4",
         ),  # the partner's count then: once it has moved on, the contact is stale
+        ("image_x", "i2"),  # box lengths between the two records, where sides are periodic
+        ("image_y", "i2"),
         ("exit_code", "i4"),  # 0-3: into the cell on the left, right, below, above; 4-7: meets that side of the box
     ],
     align=True,
 )
 SIDE_OF_BOX = 4
+SEGMENT_WALL = 4  # walls 0-3 are the sides of the box
 
 NO_CONTACT = 0.5 * NEVER  # before NEVER, so that a miss never ties with "none yet"
 NO_CONTACT_KEY = int(np.float64(NO_CONTACT).view(np.int64))
@@ -71,25 +74,46 @@ def clear(key):
 
 
 @inline
+def segment_partner(segment):
+    """What stands for a wall segment among partners."""
+    return -2 - segment
+
+
+@inline
+def partner_rank(ids, partner):
+    """A partner's place in the order of simultaneous events."""
+    if partner >= 0:
+        return np.int64(ids[U(partner)])
+    return np.int64(wall_rank(SEGMENT_WALL - 2 - partner))
+
+
+@inline
 def contact_is_next(prediction, ids, i):
     """Whether a disc's next event is its contact, not its exit; an exit into a cell precedes all events of its time."""
     if prediction.contact != prediction.exit:
         return prediction.contact < prediction.exit
-    if prediction.exit_code < SIDE_OF_BOX or prediction.partner < 0:
+    if prediction.exit_code < SIDE_OF_BOX or prediction.partner == -1 or i == ids.shape[0]:
         return False
     own = np.int64(ids[U(i)])
-    return precedes(own, np.int64(ids[U(prediction.partner)]), own, wall_rank(prediction.exit_code - SIDE_OF_BOX))
+    return precedes(own, partner_rank(ids, prediction.partner), own, wall_rank(prediction.exit_code - SIDE_OF_BOX))
 
 
 @inline
 def event_ids(prediction, ids, i):
-    """The two ids by which the disc's next event is ordered among simultaneous ones."""
+    """The two ids by which the disc's next event is ordered among simultaneous ones.
+
+    The last leaf, beyond the discs, is the piston's: its contact is a hit of its side, its exit the end stop.
+    """
+    contact = contact_is_next(prediction, ids, i)
+    side = np.int64(wall_rank(prediction.exit_code - SIDE_OF_BOX))
+    if i == ids.shape[0]:
+        return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), np.int64(-1))
     own = np.int64(ids[U(i)])
-    if contact_is_next(prediction, ids, i):
-        return own, np.int64(ids[U(prediction.partner)])
+    if contact:
+        return own, partner_rank(ids, prediction.partner)
     if prediction.exit_code < SIDE_OF_BOX:
         return np.int64(-1), own
-    return own, np.int64(wall_rank(prediction.exit_code - SIDE_OF_BOX))
+    return own, side
 
 
 @inline

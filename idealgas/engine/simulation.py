@@ -7,12 +7,14 @@ import numpy as np
 
 from idealgas.engine.audit import Audit, audit
 from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.effects import Effects, begin_epoch, copy_of, end_epoch, speed_beyond, time_of_next_gate
 from idealgas.engine.epoch import epoch_length
 from idealgas.engine.event_driven import EventDriven
-from idealgas.engine.records import COUNTERS, Discs, Limits, positions_and_velocities
+from idealgas.engine.records import COUNTERS, Discs, Limits, synchronise
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
 from idealgas.physics.constants import NEVER
+from idealgas.physics.periodic import Periodic
 
 UNLIMITED = 1 << 62
 LATEST = 0.25 * NEVER
@@ -23,7 +25,7 @@ class Method(Protocol):
 
     discs: Discs
 
-    def start(self, gas: Gas) -> None: ...
+    def start(self, gas: Gas, effects: Effects) -> None: ...
 
     def advance(self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray) -> int: ...
 
@@ -52,13 +54,15 @@ class Totals:
 
 @dataclass
 class Simulation:
-    """Advances a gas by events; everything about it follows from the gas, time and totals at the start of an epoch.
+    """Advances a gas by events; all of it follows from gas, effects, time and totals at the start of an epoch.
 
-    gas: at the start of the epoch. time: of that start. method: a fresh method.
+    gas: at the start of the epoch. method: a fresh method. effects: with their state, which the simulation changes.
+    time: of the start of the epoch.
     """
 
     gas: Gas
     method: Method
+    effects: Effects = field(default_factory=Effects)
     time: float = 0.0
     epoch: int = 0
     totals: Totals = field(default_factory=Totals)
@@ -67,8 +71,10 @@ class Simulation:
         self._begin()
 
     def _begin(self) -> None:
-        self.length = epoch_length(self.gas)
-        self.method.start(self.gas)
+        begin_epoch(self.effects, self.time)
+        until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
+        self.length = min(epoch_length(self.gas, speed_beyond(self.gas, self.effects)), until_gate)
+        self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self.epoch_over = False
@@ -111,14 +117,23 @@ class Simulation:
 
     def at(self, time: float) -> Gas:
         """The gas at a time from the last event to the next; the simulation is not touched."""
-        position, velocity = positions_and_velocities(self.method.discs, time - self.time)
+        return self._synchronised(time - self.time, copy_of(self.effects.periodic))
+
+    def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
+        """The gas at a local time; the records stay as they are."""
+        record, ids, _ = self.method.discs
+        record = record.copy()
+        synchronise(record, ids, local_time, self.effects.gravity, periodic)
+        position, velocity = np.empty((2, len(record), 2))
+        position[ids] = np.column_stack((record.x, record.y))
+        velocity[ids] = np.column_stack((record.vx, record.vy))
         return replace(self.gas, position=position, velocity=velocity)
 
     def next_epoch(self) -> None:
         """Bring all discs to the end of the epoch and begin the next one there."""
-        end = self.time + self.length
-        self.gas, self.totals = self.at(end), self.so_far
-        self.time = end
+        self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.so_far
+        end_epoch(self.effects, self.length)
+        self.time += self.length
         self.epoch += 1
         self._begin()
 
@@ -130,5 +145,5 @@ class Simulation:
         """What must hold, at a time from the last event to the next."""
         gas = self.at(time)
         method = type(self.method)()
-        method.start(gas)
+        method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
         return audit(gas, method.deepest_overlap())

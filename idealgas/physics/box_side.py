@@ -1,12 +1,13 @@
-"""A disc and the reflecting sides of the box: left 0, right 1, bottom 2, top 3."""
+"""A disc and the sides of the box: left 0, right 1, bottom 2, top 3."""
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
+from idealgas.physics.fall import landing_delay
 
 
 @inline
 def arrival_delay(position, velocity, target):
-    """Time until a coordinate reaches the target it moves to; none if it is there or, by rounding, beyond."""
+    """Delay until a coordinate reaches the target it moves to; none if it is there or, by rounding, beyond."""
     delay = max((target - position) / velocity, 0.0)
     return NEVER if velocity == 0.0 else delay
 
@@ -18,9 +19,25 @@ def centre_range(length, radius):
 
 
 @inline
-def reflect(disc, side):
-    """Turn the velocity component normal to a side."""
-    if side < 2:
-        disc.vx = -disc.vx
+def inward_normal(side):
+    """Unit vector from a side into the box."""
+    sign = -1.0 if side & 1 else 1.0
+    return (sign, 0.0) if side < 2 else (0.0, sign)
+
+
+@inline
+def side_contact(disc, side, length, pull):
+    """Time at which a disc meets a side of the box; NEVER if not. pull: acceleration along the axis, or None."""
+    low, high = centre_range(length, disc.r)
+    position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
+    upper = side & 1
+    if pull is not None:
+        if upper:
+            delay = landing_delay(high - position, -velocity, -pull)
+        else:
+            delay = landing_delay(position - low, velocity, pull)
+    elif upper:
+        delay = arrival_delay(position, velocity, high) if velocity > 0.0 else NEVER
     else:
-        disc.vy = -disc.vy
+        delay = arrival_delay(position, velocity, low) if velocity < 0.0 else NEVER
+    return disc.t + delay if delay < NEVER else NEVER

@@ -1,4 +1,4 @@
-"""Two smooth elastic discs: when they touch and how they part.
+"""Two discs: when they touch and how they part.
 
 Both laws are symmetric to the last bit under exchange of the discs: every difference only changes its sign.
 """
@@ -7,47 +7,69 @@ import math
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
+from idealgas.physics.restitution import rebound
+from idealgas.physics.rotation import roll_off
 
 
 @inline
-def relative_motion(a, b):
-    """Later of the two records' times, and position and velocity of a relative to b at that time."""
+def relative_motion(a, b, gravity, shift):
+    """Later of the two records' times, and position and velocity of a relative to b at that time.
+
+    shift: None, or what to take off the relative position because b is met in a periodic image.
+    """
     time = a.t if a.t > b.t else b.t
     a_dt = time - a.t
     b_dt = time - b.t
     x = (a.x - b.x) + (a.vx * a_dt - b.vx * b_dt)
     y = (a.y - b.y) + (a.vy * a_dt - b.vy * b_dt)
-    return time, x, y, a.vx - b.vx, a.vy - b.vy
+    vx = a.vx - b.vx
+    vy = a.vy - b.vy
+    if gravity is not None:
+        ahead = 0.5 * (a_dt * a_dt - b_dt * b_dt)
+        x += gravity.x * ahead
+        y += gravity.y * ahead
+        vx += gravity.x * (a_dt - b_dt)
+        vy += gravity.y * (a_dt - b_dt)
+    if shift is not None:
+        x -= shift[0]
+        y -= shift[1]
+    return time, x, y, vx, vy
 
 
 @inline
-def first_touch(a, b):
-    """Time at which approaching discs touch, or of the later record if they touch or overlap by then; else NEVER.
+def touch_delay(x, y, vx, vy, reach):
+    """Delay until (x, y), moving with (vx, vy), comes within reach of the origin; 0 if it is and approaches.
 
     The root c/(√D - b) of the distance equation has no cancellation for small c, and D = v²S² - (v × r)² keeps its
     digits in a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). Free of branches.
     """
-    time, x, y, vx, vy = relative_motion(a, b)
     approach = x * vx + y * vy
-    reach = a.r + b.r
     gap = x * x + y * y - reach * reach
     cross = vx * y - vy * x
     discriminant = (vx * vx + vy * vy) * (reach * reach) - cross * cross
     delay = max(gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) - approach)
-    return time + delay if (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0)) else NEVER
+    return delay if (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0)) else NEVER
 
 
 @inline
-def contact_time(a, b):
+def first_touch(a, b, gravity, shift):
+    """Time at which approaching discs touch, or of the later record if they touch or overlap by then; else NEVER."""
+    time, x, y, vx, vy = relative_motion(a, b, gravity, shift)
+    delay = touch_delay(x, y, vx, vy, a.r + b.r)
+    return time + delay if delay < NEVER else NEVER
+
+
+@inline
+def contact_time(a, b, a_id, b_id, gravity, restitution, shift):
     """Time of the next collision of a and b; NEVER if there is none.
 
     Touching discs whose collision would not change a digit of any velocity are done with each other. This differs from
     `first_touch` only where that gives the time of a record.
     """
-    touch = first_touch(a, b)
+    touch = first_touch(a, b, gravity, shift)
     if touch == max(a.t, b.t):
-        _, x, y, vx, vy = relative_motion(a, b)
-        k = 2.0 * (x * vx + y * vy) / ((x * x + y * y) * (a.m + b.m))
+        _, x, y, vx, vy = relative_motion(a, b, gravity, shift)
+        k = normal_impulse(x, y, vx, vy, a.m + b.m, rebound(restitution, a_id, b_id, touch))
         unchanged = (
             (a.vx - k * b.m * x == a.vx)
             & (a.vy - k * b.m * y == a.vy)
@@ -60,12 +82,22 @@ def contact_time(a, b):
 
 
 @inline
-def collide(a, b):
-    """Exchange the normal momentum of two discs whose records stand at the contact."""
+def normal_impulse(x, y, vx, vy, total_mass, factor):
+    """What times the other's mass and (x, y) a disc's velocity loses: factor is 1 + the coefficient of restitution."""
+    return factor * (x * vx + y * vy) / ((x * x + y * y) * total_mass)
+
+
+@inline
+def collide(a, b, a_id, b_id, restitution, rotation, shift):
+    """Exchange the momentum of two discs whose records stand at the contact."""
     x = a.x - b.x
     y = a.y - b.y
-    approach = x * (a.vx - b.vx) + y * (a.vy - b.vy)
-    k = 2.0 * approach / ((x * x + y * y) * (a.m + b.m))
+    if shift is not None:
+        x -= shift[0]
+        y -= shift[1]
+    if rotation is not None:
+        roll_off(a, b, a_id, b_id, x, y, rotation)
+    k = normal_impulse(x, y, a.vx - b.vx, a.vy - b.vy, a.m + b.m, rebound(restitution, a_id, b_id, a.t))
     a.vx -= k * b.m * x
     a.vy -= k * b.m * y
     b.vx += k * a.m * x

@@ -1,12 +1,34 @@
-"""Free flight: r(t) = r₀ + v t."""
+"""Free flight: r(t) = r₀ + v t, and under gravity + ½ g t²."""
+
+from typing import NamedTuple
 
 from idealgas._jit import inline
 
 
+class Gravity(NamedTuple):
+    """Constant acceleration, length/time²."""
+
+    x: float
+    y: float
+
+
 @inline
-def advance(disc, time):
+def advance(disc, time, gravity):
     """Move a disc's record to a later time."""
     dt = time - disc.t
     disc.x += disc.vx * dt
     disc.y += disc.vy * dt
+    if gravity is not None:
+        disc.x += 0.5 * gravity.x * dt * dt
+        disc.y += 0.5 * gravity.y * dt * dt
+        disc.vx += gravity.x * dt
+        disc.vy += gravity.y * dt
     disc.t = time
+
+
+@inline
+def acceleration_along(gravity, along_y):
+    """Component of the acceleration along an axis of the box; None without gravity."""
+    if gravity is not None:
+        return gravity.y if along_y else gravity.x
+    return None

@@ -72,7 +72,7 @@ def log_of(gas: Gas, method, stop: Stop, batch_rows: int) -> list[np.ndarray]:
         parts.append(batch.rows(0, simulation.advance(stop, batch)))
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
-    return [np.concatenate(columns) for columns in zip(*parts, strict=True)]
+    return [np.concatenate(columns) for columns in zip(*parts, strict=True) if columns[0] is not None]
 
 
 def assert_same_log(case: Case, events: int) -> None:

@@ -17,12 +17,12 @@ pytestmark = pytest.mark.interpreted
 
 @njit
 def contact_of(discs):
-    return contact_time(discs[0], discs[1])
+    return contact_time(discs[0], discs[1], 0, 1, None, None, None)
 
 
 @njit
 def collide_them(discs):
-    collide(discs[0], discs[1])
+    collide(discs[0], discs[1], 0, 1, None, None, None)
 
 
 def pair(a, b):

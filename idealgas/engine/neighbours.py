@@ -1,0 +1,161 @@
+"""The earliest contact of a disc: with the discs of the cells around it and the wall segments of its own."""
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.engine.agenda import copy_image, image_of, note_image
+from idealgas.engine.cells import cell_index
+from idealgas.engine.order import precedes
+from idealgas.engine.schedule import NO_CONTACT, partner_rank, segment_partner
+from idealgas.physics.disc_disc import contact_time, first_touch
+from idealgas.physics.periodic import images_between, shift_of
+from idealgas.physics.segment import segment_contact
+
+U = np.uintp
+
+
+@inline
+def place(index, count, joined):
+    """A column or row, and the image it is met in, for an index that may lie beyond joined sides."""
+    if joined:
+        if index < 1:
+            return index + count - 2, -1
+        if index > count - 2:
+            return index - (count - 2), 1
+    return index, 0
+
+
+@inline
+def gather(agenda, column, row, across, down, periodic):
+    """Put the first discs of a block of cells among the candidates; return how many."""
+    cells = agenda.cells
+    count = 0
+    for y in range(down):
+        for x in range(across):
+            if periodic is not None:
+                c, image_x = place(column + x, cells.columns, periodic.x)
+                r, image_y = place(row + y, cells.rows, periodic.y)
+                note_image(agenda.images, count, image_x, image_y)
+            else:
+                c = column + x
+                r = row + y
+            j = cells.head[U(r * cells.columns + c)]
+            agenda.candidates[U(count)] = j
+            count += 1 if j >= 0 else 0
+    return count
+
+
+@inline
+def shift_to(agenda, k, ids, i, j, periodic):
+    """What to take off the relative position of disc i and candidate k, disc j; None without periodic sides."""
+    if periodic is not None:
+        images = images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
+        return shift_of(periodic, images)
+    return None
+
+
+@inline
+def store_contact(agenda, record, ids, i, k, time, periodic):
+    """Make candidate k the partner of disc i's contact."""
+    prediction = agenda.prediction[U(i)]
+    j = agenda.candidates[U(k)]
+    prediction.contact = time
+    prediction.partner = j
+    prediction.partner_count = record[U(j)].count
+    if periodic is not None:
+        images = images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
+        prediction.image_x = images[0]
+        prediction.image_y = images[1]
+
+
+@inline
+def test_candidates(record, ids, agenda, count, i, now, effects):
+    """Keep disc i's earliest contact among the candidates; the chains behind them are appended on the way.
+
+    The quick loop has no branches; ties and contacts at this very instant are rare and settled by `test_carefully`.
+    """
+    candidates = agenda.candidates
+    disc = record[U(i)]
+    best = agenda.prediction[U(i)].contact
+    chosen = -1
+    tied = False
+    k = 0
+    while k < count:
+        j = candidates[U(k)]
+        behind = agenda.cells.link[U(j)].next
+        candidates[U(count)] = behind
+        copy_image(agenda.images, count, k)
+        count += 1 if behind >= 0 else 0
+        shift = shift_to(agenda, k, ids, i, j, effects.periodic)
+        time = first_touch(disc, record[U(j)], effects.gravity, shift)
+        tied |= time == best
+        hit = time < best
+        best = time if hit else best
+        chosen = k if hit else chosen
+        k += 1
+    if tied | (best <= now):
+        test_carefully(record, ids, agenda, count, i, effects)
+    elif chosen >= 0:
+        store_contact(agenda, record, ids, i, chosen, best, effects.periodic)
+
+
+@njit
+def test_carefully(record, ids, agenda, count, i, effects):
+    """What `test_candidates` is for, with the rules for ties and for collisions that are done."""
+    prediction = agenda.prediction[U(i)]
+    own = np.int64(ids[U(i)])
+    for k in range(count):
+        j = agenda.candidates[U(k)]
+        other = np.int64(ids[U(j)])
+        shift = shift_to(agenda, k, ids, i, j, effects.periodic)
+        time = contact_time(record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, shift)
+        earlier = time < prediction.contact
+        if time == prediction.contact:
+            earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))
+        if earlier:
+            store_contact(agenda, record, ids, i, k, time, effects.periodic)
+
+
+@inline
+def test_segments(record, ids, agenda, i, segments, effects):
+    """Keep disc i's earliest contact among the wall segments of its cell."""
+    if segments is not None:
+        cell = U(cell_index(agenda.cells, record[U(i)]))
+        prediction = agenda.prediction[U(i)]
+        own = np.int64(ids[U(i)])
+        for entry in range(agenda.walls.start[cell], agenda.walls.start[cell + U(1)]):
+            k = agenda.walls.item[U(entry)]
+            time = segment_contact(record[U(i)], own, segments, k, effects.gravity, effects.restitution)
+            earlier = time < prediction.contact
+            if time == prediction.contact:
+                rank = partner_rank(ids, prediction.partner)
+                earlier = precedes(own, partner_rank(ids, segment_partner(k)), own, rank)
+            if earlier:
+                prediction.contact = time
+                prediction.partner = segment_partner(k)
+
+
+@inline
+def predict_contact(record, ids, agenda, i, now, effects):
+    """Disc i's earliest contact with any disc of its own and the eight cells around, or a segment of its own."""
+    prediction = agenda.prediction[U(i)]
+    prediction.contact = NO_CONTACT
+    prediction.partner = -1
+    disc = record[U(i)]
+    count = gather(agenda, np.int64(disc.column) - 1, np.int64(disc.row) - 1, 3, 3, effects.periodic)
+    test_candidates(record, ids, agenda, count, i, now, effects)
+    test_segments(record, ids, agenda, i, effects.segments, effects)
+
+
+@inline
+def extend_contact(record, ids, agenda, i, exit_code, now, effects):
+    """After a step into the next cell: test the three cells that came within reach; the contact so far stays valid."""
+    disc = record[U(i)]
+    forward = 1 if exit_code & 1 else -1
+    along_y = exit_code >= 2
+    column = np.int64(disc.column) + (-1 if along_y else forward)
+    row = np.int64(disc.row) + (forward if along_y else -1)
+    across = 3 if along_y else 1
+    count = gather(agenda, column, row, across, 4 - across, effects.periodic)
+    test_candidates(record, ids, agenda, count, i, now, effects)
+    test_segments(record, ids, agenda, i, effects.segments, effects)

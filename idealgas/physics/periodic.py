@@ -1,0 +1,60 @@
+"""Periodic sides: where a disc that went through one comes back, and in which image it meets another."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import inline
+
+U = np.uintp
+
+
+class Periodic(NamedTuple):
+    """x, y: which sides are joined. Lx, Ly: box, length.
+
+    turns: (N, 2) i4 by id, how often each disc went through them since its record. image: (N, 2) i4 by id, box lengths
+    to add to a record's position to unwrap it.
+    """
+
+    x: bool
+    y: bool
+    Lx: float
+    Ly: float
+    turns: np.ndarray
+    image: np.ndarray
+
+
+@inline
+def images_between(periodic, a_id, b_id, image):
+    """Box lengths between the records of a and b, which stand `image` box lengths apart now; None without."""
+    if periodic is not None:
+        return (
+            periodic.turns[U(a_id), 0] - periodic.turns[U(b_id), 0] + image[0],
+            periodic.turns[U(a_id), 1] - periodic.turns[U(b_id), 1] + image[1],
+        )
+    return None
+
+
+@inline
+def shift_of(periodic, images):
+    """Length to take off the relative position of two records so many images apart."""
+    if periodic is not None:
+        return periodic.Lx * images[0], periodic.Ly * images[1]
+    return None
+
+
+@inline
+def wrap(disc, own, periodic):
+    """Put a record's position back into the box and keep count."""
+    if periodic is not None:
+        if periodic.x:
+            boxes = math.floor(disc.x / periodic.Lx)
+            disc.x -= boxes * periodic.Lx
+            periodic.image[U(own), 0] += np.int32(boxes)
+            periodic.turns[U(own), 0] -= np.int32(boxes)
+        if periodic.y:
+            boxes = math.floor(disc.y / periodic.Ly)
+            disc.y -= boxes * periodic.Ly
+            periodic.image[U(own), 1] += np.int32(boxes)
+            periodic.turns[U(own), 1] -= np.int32(boxes)

@@ -1,0 +1,91 @@
+"""A piston: a wall across the box that moves along one axis, at a given velocity or with a mass under a pressure.
+
+Between hits it falls: X(t) = X₀ + V t + ½ A t²; A comes from the outer pressure and gravity (0 at a given velocity).
+"""
+
+import numpy as np
+
+from idealgas._jit import inline
+from idealgas.physics.constants import NEVER
+from idealgas.physics.fall import landing_delay
+from idealgas.physics.restitution import wall_rebound
+
+PISTON = np.dtype(
+    [
+        ("x", "f8"), ("v", "f8"), ("a", "f8"),  # position, velocity, acceleration along the axis
+        ("t", "f8"),  # local time of the record
+        ("m", "f8"),  # mass; 0: moves at a given velocity whatever hits it
+        ("stop", "f8"),  # position of the end stop, the side of the box that it stands for
+        ("side", "i4"), ("count", "u4"),
+    ],
+    align=True,
+)  # fmt: skip
+
+
+@inline
+def outward(piston):
+    """+1 if the gas is below the piston's coordinate, -1 if above."""
+    return 1.0 if piston.side & 1 else -1.0
+
+
+@inline
+def gravity_along(gravity, along_y):
+    """Acceleration of a disc along the piston's axis."""
+    if gravity is not None:
+        return gravity.y if along_y else gravity.x
+    return 0.0
+
+
+@inline
+def piston_contact(disc, piston, gravity):
+    """Time at which a disc meets the piston; NEVER if it does not."""
+    along_y = piston.side >= 2
+    sign = outward(piston)
+    time = max(disc.t, piston.t)
+    d_dt = time - disc.t
+    p_dt = time - piston.t
+    pull = gravity_along(gravity, along_y)
+    place, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
+    d_place = place + velocity * d_dt + 0.5 * pull * d_dt * d_dt
+    p_place = piston.x + piston.v * p_dt + 0.5 * piston.a * p_dt * p_dt
+    d_velocity = velocity + pull * d_dt
+    p_velocity = piston.v + piston.a * p_dt
+    height = sign * (p_place - d_place) - disc.r
+    delay = landing_delay(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
+    return time + delay if delay < NEVER else NEVER
+
+
+@inline
+def stop_contact(piston):
+    """Time at which the piston meets its end stop."""
+    sign = outward(piston)
+    delay = landing_delay(sign * (piston.stop - piston.x), -sign * piston.v, -sign * piston.a)
+    return piston.t + delay if delay < NEVER else NEVER
+
+
+@inline
+def advance_piston(piston, time):
+    """Move the piston's record to a later time."""
+    dt = time - piston.t
+    piston.x += piston.v * dt + 0.5 * piston.a * dt * dt
+    piston.v += piston.a * dt
+    piston.t = time
+
+
+@inline
+def collide_with_piston(disc, own, piston, restitution):
+    """Exchange momentum along the axis; returns nothing, both records stand at the contact."""
+    along_y = piston.side >= 2
+    velocity = disc.vy if along_y else disc.vx
+    factor = wall_rebound(restitution, own, disc.t)
+    approach = velocity - piston.v
+    if piston.m > 0.0:
+        velocity -= factor * piston.m / (disc.m + piston.m) * approach
+        piston.v += factor * disc.m / (disc.m + piston.m) * approach
+        piston.count += np.uint32(1)
+    else:
+        velocity -= factor * approach
+    if along_y:
+        disc.vy = velocity
+    else:
+        disc.vx = velocity

@@ -1,0 +1,99 @@
+"""The first time at which a quartic falls through zero."""
+
+import math
+
+from idealgas._jit import inline
+from idealgas.physics.constants import NEVER
+
+BISECTIONS = 200  # more than enough to close any interval of floats
+
+
+@inline
+def horner(a, b, c, d, e, t):
+    """a t⁴ + b t³ + c t² + d t + e."""
+    return (((a * t + b) * t + c) * t + d) * t + e
+
+
+@inline
+def bisect(a, b, c, d, e, low, high):
+    """The point of [low, high] where the polynomial changes sign, to the last bit; the signs at the ends differ."""
+    rising = horner(a, b, c, d, e, low) < horner(a, b, c, d, e, high)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if (horner(a, b, c, d, e, middle) > 0.0) == rising:
+            high = middle
+        else:
+            low = middle
+    return high if not rising else low
+
+
+@inline
+def quadratic_roots(a, b, c):
+    """The real roots of a t² + b t + c in order, without cancellation; NEVER twice if there are none."""
+    if a == 0.0:
+        return (-c / b, NEVER) if b != 0.0 else (NEVER, NEVER)
+    discriminant = b * b - 4.0 * a * c
+    if discriminant < 0.0:
+        return NEVER, NEVER
+    q = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
+    if q == 0.0:
+        return 0.0, 0.0
+    first, second = q / a, c / q
+    return (first, second) if first <= second else (second, first)
+
+
+@inline
+def cubic_turns(b, c, d, e, last):
+    """Zeros of b t³ + c t² + d t + e in (0, last), in order, as a triple padded with `last`."""
+    left, right = quadratic_roots(3.0 * b, 2.0 * c, d)
+    found = 0
+    first = second = third = last
+    low = 0.0
+    for k in range(3):
+        high = last
+        if k == 0:
+            high = min(max(left, 0.0), last)
+        elif k == 1:
+            high = min(max(right, 0.0), last)
+        if high > low:
+            at_low = horner(0.0, b, c, d, e, low)
+            at_high = horner(0.0, b, c, d, e, high)
+            if (at_low < 0.0) != (at_high < 0.0):
+                zero = bisect(0.0, b, c, d, e, low, high)
+                if found == 0:
+                    first = zero
+                elif found == 1:
+                    second = zero
+                else:
+                    third = zero
+                found += 1
+            low = high
+    return first, second, third
+
+
+@inline
+def first_descent(a, b, c, d, e):
+    """Smallest t ≥ 0 at which p(t) = a t⁴ + b t³ + c t² + d t + e is zero or less and falls; NEVER if there is none.
+
+    a > 0. Between the turning points, the zeros of p', p is monotonic; the first stretch that ends at or below zero
+    holds the root. A p that is zero or less at 0 and falls there gives 0; if it rises there, the next descent counts.
+    """
+    if e <= 0.0 and d < 0.0:
+        return 0.0
+    largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
+    last = 1.0 + largest / a  # Cauchy's bound on the roots
+    bound = 2.0 * max(max(abs(b / a), math.sqrt(abs(c / a))), max(abs(d / a) ** (1.0 / 3.0), abs(e / a) ** 0.25))
+    last = min(last, bound)  # Fujiwara's
+    first, second, third = cubic_turns(4.0 * a, 3.0 * b, 2.0 * c, d, last)
+    low = 0.0
+    for k in range(4):
+        high = first if k == 0 else (second if k == 1 else (third if k == 2 else last))
+        if high > low:
+            at_low = horner(a, b, c, d, e, low)
+            at_high = horner(a, b, c, d, e, high)
+            if at_high <= 0.0 and at_high < at_low:
+                return bisect(a, b, c, d, e, low, high) if at_low > 0.0 else low
+            low = high
+    return NEVER

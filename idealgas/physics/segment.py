@@ -1,0 +1,152 @@
+"""A disc and a straight wall segment with two solid ends."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import inline
+from idealgas.physics.constants import NEVER
+from idealgas.physics.disc_disc import touch_delay
+from idealgas.physics.polynomial import first_descent
+from idealgas.physics.restitution import wall_rebound
+
+U = np.uintp
+
+
+class Segments(NamedTuple):
+    """All (S,) f8: start point, unit tangent, length.
+
+    opens, closes: (S,) f8, from when to when a gate is not there; infinite for a wall. active: (S,) b1, whether it is
+    there in this epoch.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    tx: np.ndarray
+    ty: np.ndarray
+    length: np.ndarray
+    opens: np.ndarray
+    closes: np.ndarray
+    active: np.ndarray
+
+
+@inline
+def foot_inside(s, length):
+    """Whether a foot point at arc length s lies strictly between the ends."""
+    return (s > 0.0) & (s < length)
+
+
+@inline
+def straight_body_delay(d, s, v_normal, v_tangent, r, length):
+    """Delay until a disc in straight flight meets the body: d, s are its normal and tangential coordinates."""
+    towards = -v_normal if d > 0.0 else v_normal
+    if towards <= 0.0:
+        return NEVER
+    delay = max(abs(d) - r, 0.0) / towards
+    return delay if foot_inside(s + v_tangent * delay, length) else NEVER
+
+
+@inline
+def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
+    """The same on a parabola: the earliest approach to either face with the foot inside."""
+    best = NEVER
+    for face in range(2):
+        sign = 1.0 if face == 0 else -1.0
+        height = sign * d - r
+        speed = sign * vn
+        pull = sign * an
+        discriminant = speed * speed - 2.0 * pull * height
+        root = math.sqrt(max(discriminant, 0.0))
+        if height > 0.0:
+            if speed < 0.0 and discriminant >= 0.0:
+                delay = 2.0 * height / (root - speed)
+            elif speed >= 0.0 and pull < 0.0:
+                delay = (speed + root) / -pull
+            else:
+                delay = NEVER
+        elif sign * d > 0.0:  # touching this face, or sunk into it by rounding
+            if speed < 0.0:
+                delay = 0.0 if foot_inside(s, length) else NEVER
+            elif pull < 0.0:
+                delay = (speed + root) / -pull
+            else:
+                delay = NEVER
+        else:  # on the other side: may come round an end and meet this face on its way back
+            delay = (speed + root) / -pull if pull < 0.0 and discriminant >= 0.0 else NEVER
+        if delay < best and foot_inside(s + vt * delay + 0.5 * at * delay * delay, length):
+            best = delay
+    return best
+
+
+@inline
+def accelerated_end_delay(x, y, vx, vy, r, gravity):
+    """Delay until a disc at (x, y) on a parabola meets the origin: the first descent of |r(t)|² - R² through zero."""
+    return first_descent(
+        0.25 * (gravity.x * gravity.x + gravity.y * gravity.y),
+        gravity.x * vx + gravity.y * vy,
+        vx * vx + vy * vy + gravity.x * x + gravity.y * y,
+        2.0 * (x * vx + y * vy),
+        x * x + y * y - r * r,
+    )
+
+
+@inline
+def segment_normal(disc, segments, k):
+    """Unit normal towards a disc that touches segment k, and whether it touches an end."""
+    u = U(k)
+    tx = segments.tx[u]
+    ty = segments.ty[u]
+    x = disc.x - segments.x[u]
+    y = disc.y - segments.y[u]
+    s = tx * x + ty * y
+    if foot_inside(s, segments.length[u]):
+        return (-ty, tx, False) if tx * y - ty * x > 0.0 else (ty, -tx, False)
+    if s > 0.0:
+        x -= segments.length[u] * tx
+        y -= segments.length[u] * ty
+    distance = math.sqrt(x * x + y * y)
+    return x / distance, y / distance, True
+
+
+@inline
+def reflection_changes(disc, own, nx, ny, restitution):
+    """Whether a reflection would change any digit; if not, it counts as done."""
+    speed = disc.vx * nx + disc.vy * ny
+    k = wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
+    return (disc.vx - k * nx != disc.vx) | (disc.vy - k * ny != disc.vy)
+
+
+@inline
+def segment_contact(disc, own, segments, k, gravity, restitution):
+    """Time at which a disc meets segment k, body or end; NEVER if it does not.
+
+    A touching disc whose reflection would not change a digit of its velocity is done, unless gravity presses it on.
+    """
+    u = U(k)
+    tx = segments.tx[u]
+    ty = segments.ty[u]
+    length = segments.length[u]
+    x = disc.x - segments.x[u]
+    y = disc.y - segments.y[u]
+    d = tx * y - ty * x
+    s = tx * x + ty * y
+    vn = tx * disc.vy - ty * disc.vx
+    vt = tx * disc.vx + ty * disc.vy
+    far_x = x - length * tx
+    far_y = y - length * ty
+    if gravity is not None:
+        an = tx * gravity.y - ty * gravity.x
+        at = tx * gravity.x + ty * gravity.y
+        delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
+        delay = min(delay, accelerated_end_delay(x, y, disc.vx, disc.vy, disc.r, gravity))
+        delay = min(delay, accelerated_end_delay(far_x, far_y, disc.vx, disc.vy, disc.r, gravity))
+    else:
+        delay = straight_body_delay(d, s, vn, vt, disc.r, length)
+        delay = min(delay, touch_delay(x, y, disc.vx, disc.vy, disc.r))
+        delay = min(delay, touch_delay(far_x, far_y, disc.vx, disc.vy, disc.r))
+        if delay == 0.0:
+            nx, ny, _ = segment_normal(disc, segments, k)
+            if not reflection_changes(disc, own, nx, ny, restitution):
+                return NEVER
+    return disc.t + delay if delay < NEVER else NEVER

@@ -1,0 +1,71 @@
+"""Thermal walls: a disc leaves with the velocity of a gas at the wall's temperature that streams through its surface.
+
+Normal speed density (m v/T) exp(-m v²/2T), tangential velocity and spin Gaussian. The random numbers are a pure
+function of the seed, the disc and the number of its emissions (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so neither
+the order of discs in memory nor a resumed run changes them.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import inline
+
+_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_2 = np.uint64(0x94D049BB133111EB)
+_S27, _S30, _S31, _S11 = (np.uint64(s) for s in (27, 30, 31, 11))
+
+
+class Thermal(NamedTuple):
+    """temperature: (walls,) f8, energy, negative for a wall that reflects. seed: of the scene.
+
+    emissions: (N,) u8 by id, how often each disc was emitted.
+    """
+
+    temperature: np.ndarray
+    seed: np.uint64
+    emissions: np.ndarray
+
+
+@inline
+def is_thermal(thermal, wall):
+    """Whether a wall emits."""
+    if thermal is not None:
+        return thermal.temperature[np.uintp(wall)] >= 0.0
+    return False
+
+
+@inline
+def mix(z):
+    """SplitMix64's output function."""
+    z = (z ^ (z >> _S30)) * _MIX_1
+    z = (z ^ (z >> _S27)) * _MIX_2
+    return z ^ (z >> _S31)
+
+
+@inline
+def uniform(thermal, own, draw):
+    """A number in (0, 1] for a disc's current emission; draw: which of its numbers."""
+    key = mix(thermal.seed + _GOLDEN * (np.uint64(own) + np.uint64(1)))
+    count = thermal.emissions[np.uintp(own)] * np.uint64(8) + np.uint64(draw)
+    bits = mix(mix(key + _GOLDEN * (count + np.uint64(1))) + key) >> _S11
+    return (np.float64(bits) + 1.0) * 2.0**-53
+
+
+@inline
+def emit(disc, own, nx, ny, wall, thermal, rotation):
+    """Give a disc a new velocity away from the wall."""
+    if thermal is not None:
+        temperature = thermal.temperature[np.uintp(wall)]
+        normal = math.sqrt(-2.0 * temperature / disc.m * math.log(uniform(thermal, own, 0)))
+        radius = math.sqrt(-2.0 * math.log(uniform(thermal, own, 1)))
+        angle = 2.0 * math.pi * uniform(thermal, own, 2)
+        tangent = math.sqrt(temperature / disc.m) * radius * math.cos(angle)
+        disc.vx = normal * nx - tangent * ny
+        disc.vy = normal * ny + tangent * nx
+        if rotation is not None:
+            u = np.uintp(own)
+            rotation.omega[u] = math.sqrt(temperature / rotation.inertia[u]) * radius * math.sin(angle)
+        thermal.emissions[np.uintp(own)] += np.uint64(1)
