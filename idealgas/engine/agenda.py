@@ -10,6 +10,7 @@ from idealgas.engine.effects import Effects
 from idealgas.engine.records import aligned
 from idealgas.engine.schedule import PREDICTION, Tree, make_tree
 from idealgas.engine.wall_cells import WallCells, make_wall_cells
+from idealgas.physics.periodic import NO_IMAGES
 
 
 class Agenda(NamedTuple):
@@ -61,5 +62,5 @@ def copy_image(images, to, k):
 def image_of(images, k):
     """In which image candidate k is met."""
     if images is not None:
-        return images[np.uintp(k), 0], images[np.uintp(k), 1]
-    return None
+        return np.int64(images[np.uintp(k), 0]), np.int64(images[np.uintp(k), 1])
+    return NO_IMAGES

@@ -17,8 +17,7 @@ from idealgas.gas import Gas
 from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
-from idealgas.physics.motion import acceleration_along
-from idealgas.physics.periodic import images_between, shift_of
+from idealgas.physics.periodic import images_between
 from idealgas.physics.piston import piston_contact, stop_contact
 from idealgas.physics.segment import segment_contact
 
@@ -32,13 +31,12 @@ def wall_event(record, i, effects, length_x, length_y, best):
     disc = record[U(i)]
     for side in range(4):
         along_y = side >= 2
-        pull = acceleration_along(effects.gravity, along_y)
         if is_piston_side(side, effects.piston):
             time = piston_hit(disc, effects.piston, effects.gravity)
             if time < best[0]:
                 best = (time, PISTON, i, side, 0, 0)
         elif not turns_along(effects.periodic, i, along_y)[1]:
-            time = side_contact(disc, side, length_y if along_y else length_x, pull)
+            time = side_contact(disc, side, length_y if along_y else length_x, effects.gravity)
             if time < best[0]:
                 best = (time, SIDE, i, side, 0, 0)
     return segment_event(disc, i, effects.segments, effects, best)
@@ -70,8 +68,9 @@ def pair_event(record, i, j, effects, best):
     for image_x in range(*image_range(effects.periodic, False)):
         for image_y in range(*image_range(effects.periodic, True)):
             images = images_between(effects.periodic, i, j, (image_x, image_y))
-            shift = shift_of(effects.periodic, images)
-            time = contact_time(record[U(i)], record[U(j)], i, j, effects.gravity, effects.restitution, shift)
+            time = contact_time(
+                record[U(i)], record[U(j)], i, j, effects.gravity, effects.restitution, effects.periodic, images
+            )
             if time < best[0]:
                 best = (time, PAIR, i, j, image_x, image_y)
     return best

@@ -11,13 +11,13 @@ from idealgas.engine.agenda import make_agenda
 from idealgas.engine.audit import deepest_overlap
 from idealgas.engine.cells import cell_index, cell_of, discs_per_cell, enter, make_cells
 from idealgas.engine.effects import Effects
-from idealgas.engine.exits import predict_exit, step_into_next_cell
+from idealgas.engine.exits import change_cell, predict_exit
 from idealgas.engine.neighbours import extend_contact, predict_contact
 from idealgas.engine.piston_leaf import offer_to_piston, predict_piston
 from idealgas.engine.records import Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
-from idealgas.engine.schedule import SIDE_OF_BOX, clear, contact_is_next, next_disc, schedule
+from idealgas.engine.schedule import SIDE_OF_BOX, clear, contact_is_next, next_disc, schedule, segment_of
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
 
@@ -31,6 +31,14 @@ def predict(record, ids, agenda, i, now, effects):
     predict_exit(record, ids, agenda, i, now, effects)
     schedule(agenda.tree, agenda.prediction, ids, i)
     offer_to_piston(record, ids, agenda, i, effects.piston, effects.gravity)
+
+
+@inline
+def step_into_next_cell(record, ids, agenda, i, exit_code, now, effects):
+    """Membership changes, the record does not; the contact found so far stays valid."""
+    change_cell(record, ids, agenda, i, exit_code, effects.periodic)
+    extend_contact(record, ids, agenda, i, exit_code, now, effects)
+    predict_exit(record, ids, agenda, i, now, effects)
 
 
 @njit
@@ -71,53 +79,45 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
         if time > until:
             reached = True
             break
+        other = -1
         if i == ids.shape[0]:
+            i = prediction.partner
             if not at_contact:
                 resolve_stop(time, effects.piston)
+            if not at_contact or record[U(i)].count != prediction.partner_count:
+                stale += at_contact
                 predict_piston(record, ids, agenda, effects.piston, effects.gravity)
                 continue
-            j = prediction.partner
-            if record[U(j)].count != prediction.partner_count:
-                stale += 1
-                predict_piston(record, ids, agenda, effects.piston, effects.gravity)
-                continue
-            resolve_piston(record[U(j)], ids[U(j)], time, effects.piston, effects)
-            rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(j)], effects.piston, record[U(j)], effects)
+            resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
             predict_piston(record, ids, agenda, effects.piston, effects.gravity)
-            predict(record, ids, agenda, j, time, effects)
-        elif at_contact:
-            j = prediction.partner
-            if j < 0:
-                segment = -2 - j
-                disc = record[U(i)]
-                at_end = resolve_segment(disc, ids[U(i)], segment, time, effects.segments, effects)
-                rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], segment, at_end, disc, effects)
-                predict(record, ids, agenda, i, time, effects)
-            elif record[U(j)].count != prediction.partner_count:
+            rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
+        elif at_contact and prediction.partner >= 0:
+            other = prediction.partner
+            if record[U(other)].count != prediction.partner_count:
                 stale += 1
                 predict_contact(record, ids, agenda, i, time, effects)
                 schedule(agenda.tree, agenda.prediction, ids, i)
                 continue
-            else:
-                images = (prediction.image_x, prediction.image_y)
-                resolve_pair(record[U(i)], record[U(j)], ids[U(i)], ids[U(j)], time, images, effects)
-                rows += write_pair(batch, rows, epoch_start + time, record, ids, i, j, effects)
-                predict(record, ids, agenda, i, time, effects)
-                predict(record, ids, agenda, j, time, effects)
-                collisions += 1
+            images = (np.int64(prediction.image_x), np.int64(prediction.image_y))
+            resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
+            rows += write_pair(batch, rows, epoch_start + time, record, ids, i, other, effects)
+            collisions += 1
+        elif at_contact:
+            wall = segment_of(prediction.partner)
+            at_end = resolve_segment(record[U(i)], ids[U(i)], wall, time, effects.segments, effects)
+            rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
+        elif prediction.exit_code < SIDE_OF_BOX:
+            crossings += 1
+            step_into_next_cell(record, ids, agenda, i, prediction.exit_code, time, effects)
+            schedule(agenda.tree, agenda.prediction, ids, i)
+            continue
         else:
-            code = prediction.exit_code
-            if code < SIDE_OF_BOX:
-                crossings += 1
-                step_into_next_cell(record, ids, agenda, i, code, effects.periodic)
-                extend_contact(record, ids, agenda, i, code, time, effects)
-                predict_exit(record, ids, agenda, i, time, effects)
-                schedule(agenda.tree, agenda.prediction, ids, i)
-                continue
-            side = code - SIDE_OF_BOX
+            side = prediction.exit_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
-            predict(record, ids, agenda, i, time, effects)
+        predict(record, ids, agenda, i, time, effects)
+        if other >= 0:
+            predict(record, ids, agenda, other, time, effects)
         events += 1
         if time < now:
             raise ValueError("time ran backwards")

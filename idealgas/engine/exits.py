@@ -52,9 +52,10 @@ def accelerated_exit(disc, along_y, cell, size, cells_across, length, turns, joi
 
 
 @inline
-def exit_along(disc, along_y, cell, size, cells_across, length, turns, joined, now, pull):
-    """The one or the other; pull: acceleration along the axis, None without gravity."""
-    if pull is not None:
+def exit_along(disc, along_y, cell, size, cells_across, length, turns, joined, now, gravity):
+    """The one or the other."""
+    if gravity is not None:
+        pull = acceleration_along(gravity, along_y)
         return accelerated_exit(disc, along_y, cell, size, cells_across, length, turns, joined, now, pull)
     return straight_exit(disc, along_y, cell, size, cells_across, length, turns, joined)
 
@@ -67,8 +68,7 @@ def axis_exit(disc, along_y, cells, own, now, effects):
     across = cells.rows if along_y else cells.columns
     length = cells.Ly if along_y else cells.Lx
     turns, joined = turns_along(effects.periodic, own, along_y)
-    pull = acceleration_along(effects.gravity, along_y)
-    time, forward, at_side = exit_along(disc, along_y, cell, size, across, length, turns, joined, now, pull)
+    time, forward, at_side = exit_along(disc, along_y, cell, size, across, length, turns, joined, now, effects.gravity)
     if at_side and is_piston_side((2 if along_y else 0) + (1 if forward else 0), effects.piston):
         time = NEVER
     return time, forward, at_side
@@ -120,8 +120,8 @@ def go_round(disc, own, cells, along_y, periodic):
 
 
 @inline
-def step_into_next_cell(record, ids, agenda, i, exit_code, periodic):
-    """Membership changes, the record does not."""
+def change_cell(record, ids, agenda, i, exit_code, periodic):
+    """Move a disc from its cell's chain to the next cell's."""
     disc = record[U(i)]
     leave(agenda.cells, i, cell_index(agenda.cells, disc))
     forward = 1 if exit_code & 1 else -1

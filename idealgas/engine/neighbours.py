@@ -8,7 +8,7 @@ from idealgas.engine.cells import cell_index
 from idealgas.engine.order import precedes
 from idealgas.engine.schedule import NO_CONTACT, partner_rank, segment_partner
 from idealgas.physics.disc_disc import contact_time, first_touch
-from idealgas.physics.periodic import images_between, shift_of
+from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.segment import segment_contact
 
 U = np.uintp
@@ -46,12 +46,11 @@ def gather(agenda, column, row, across, down, periodic):
 
 
 @inline
-def shift_to(agenda, k, ids, i, j, periodic):
-    """What to take off the relative position of disc i and candidate k, disc j; None without periodic sides."""
+def images_to(agenda, k, ids, i, j, periodic):
+    """Box lengths between the records of disc i and candidate k, disc j."""
     if periodic is not None:
-        images = images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
-        return shift_of(periodic, images)
-    return None
+        return images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
+    return NO_IMAGES
 
 
 @inline
@@ -63,7 +62,7 @@ def store_contact(agenda, record, ids, i, k, time, periodic):
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
     if periodic is not None:
-        images = images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
+        images = images_to(agenda, k, ids, i, j, periodic)
         prediction.image_x = images[0]
         prediction.image_y = images[1]
 
@@ -86,8 +85,8 @@ def test_candidates(record, ids, agenda, count, i, now, effects):
         candidates[U(count)] = behind
         copy_image(agenda.images, count, k)
         count += 1 if behind >= 0 else 0
-        shift = shift_to(agenda, k, ids, i, j, effects.periodic)
-        time = first_touch(disc, record[U(j)], effects.gravity, shift)
+        images = images_to(agenda, k, ids, i, j, effects.periodic)
+        time = first_touch(disc, record[U(j)], effects.gravity, effects.periodic, images)
         tied |= time == best
         hit = time < best
         best = time if hit else best
@@ -107,8 +106,10 @@ def test_carefully(record, ids, agenda, count, i, effects):
     for k in range(count):
         j = agenda.candidates[U(k)]
         other = np.int64(ids[U(j)])
-        shift = shift_to(agenda, k, ids, i, j, effects.periodic)
-        time = contact_time(record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, shift)
+        images = images_to(agenda, k, ids, i, j, effects.periodic)
+        time = contact_time(
+            record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
+        )
         earlier = time < prediction.contact
         if time == prediction.contact:
             earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))

@@ -6,7 +6,7 @@ from idealgas._jit import inline
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.motion import advance
-from idealgas.physics.periodic import shift_of, wrap
+from idealgas.physics.periodic import wrap
 from idealgas.physics.piston import advance_piston, collide_with_piston
 from idealgas.physics.restitution import note_collision
 from idealgas.physics.segment import segment_normal
@@ -42,10 +42,10 @@ def finish(disc, own, time, effects):
 
 @inline
 def resolve_pair(a, b, a_id, b_id, time, images, effects):
-    """Two discs meet; images: box lengths between their records, or None."""
+    """Two discs meet; images: box lengths between their records."""
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
-    collide(a, b, a_id, b_id, effects.restitution, effects.rotation, shift_of(effects.periodic, images))
+    collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
     finish(a, a_id, time, effects)
     finish(b, b_id, time, effects)
 

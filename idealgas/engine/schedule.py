@@ -80,11 +80,17 @@ def segment_partner(segment):
 
 
 @inline
+def segment_of(partner):
+    """The wall segment that a partner stands for."""
+    return -2 - partner
+
+
+@inline
 def partner_rank(ids, partner):
     """A partner's place in the order of simultaneous events."""
     if partner >= 0:
         return np.int64(ids[U(partner)])
-    return np.int64(wall_rank(SEGMENT_WALL - 2 - partner))
+    return np.int64(wall_rank(SEGMENT_WALL + segment_of(partner)))
 
 
 @inline

@@ -3,6 +3,7 @@
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import landing_delay
+from idealgas.physics.motion import acceleration_along
 
 
 @inline
@@ -26,12 +27,13 @@ def inward_normal(side):
 
 
 @inline
-def side_contact(disc, side, length, pull):
-    """Time at which a disc meets a side of the box; NEVER if not. pull: acceleration along the axis, or None."""
+def side_contact(disc, side, length, gravity):
+    """Time at which a disc meets a side of the box; NEVER if it does not."""
     low, high = centre_range(length, disc.r)
     position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
     upper = side & 1
-    if pull is not None:
+    if gravity is not None:
+        pull = acceleration_along(gravity, side >= 2)
         if upper:
             delay = landing_delay(high - position, -velocity, -pull)
         else:

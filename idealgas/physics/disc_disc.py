@@ -7,15 +7,16 @@ import math
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
+from idealgas.physics.periodic import through_sides
 from idealgas.physics.restitution import rebound
 from idealgas.physics.rotation import roll_off
 
 
 @inline
-def relative_motion(a, b, gravity, shift):
+def relative_motion(a, b, gravity, periodic, images):
     """Later of the two records' times, and position and velocity of a relative to b at that time.
 
-    shift: None, or what to take off the relative position because b is met in a periodic image.
+    images: box lengths between the records, where sides are periodic.
     """
     time = a.t if a.t > b.t else b.t
     a_dt = time - a.t
@@ -30,9 +31,7 @@ def relative_motion(a, b, gravity, shift):
         y += gravity.y * ahead
         vx += gravity.x * (a_dt - b_dt)
         vy += gravity.y * (a_dt - b_dt)
-    if shift is not None:
-        x -= shift[0]
-        y -= shift[1]
+    x, y = through_sides(x, y, periodic, images)
     return time, x, y, vx, vy
 
 
@@ -52,23 +51,23 @@ def touch_delay(x, y, vx, vy, reach):
 
 
 @inline
-def first_touch(a, b, gravity, shift):
+def first_touch(a, b, gravity, periodic, images):
     """Time at which approaching discs touch, or of the later record if they touch or overlap by then; else NEVER."""
-    time, x, y, vx, vy = relative_motion(a, b, gravity, shift)
+    time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     delay = touch_delay(x, y, vx, vy, a.r + b.r)
     return time + delay if delay < NEVER else NEVER
 
 
 @inline
-def contact_time(a, b, a_id, b_id, gravity, restitution, shift):
+def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
     """Time of the next collision of a and b; NEVER if there is none.
 
     Touching discs whose collision would not change a digit of any velocity are done with each other. This differs from
     `first_touch` only where that gives the time of a record.
     """
-    touch = first_touch(a, b, gravity, shift)
+    touch = first_touch(a, b, gravity, periodic, images)
     if touch == max(a.t, b.t):
-        _, x, y, vx, vy = relative_motion(a, b, gravity, shift)
+        _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
         k = normal_impulse(x, y, vx, vy, a.m + b.m, rebound(restitution, a_id, b_id, touch))
         unchanged = (
             (a.vx - k * b.m * x == a.vx)
@@ -88,13 +87,9 @@ def normal_impulse(x, y, vx, vy, total_mass, factor):
 
 
 @inline
-def collide(a, b, a_id, b_id, restitution, rotation, shift):
+def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
     """Exchange the momentum of two discs whose records stand at the contact."""
-    x = a.x - b.x
-    y = a.y - b.y
-    if shift is not None:
-        x -= shift[0]
-        y -= shift[1]
+    x, y = through_sides(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
         roll_off(a, b, a_id, b_id, x, y, rotation)
     k = normal_impulse(x, y, a.vx - b.vx, a.vy - b.vy, a.m + b.m, rebound(restitution, a_id, b_id, a.t))

@@ -28,7 +28,7 @@ def advance(disc, time, gravity):
 
 @inline
 def acceleration_along(gravity, along_y):
-    """Component of the acceleration along an axis of the box; None without gravity."""
+    """Component of the acceleration along an axis of the box."""
     if gravity is not None:
         return gravity.y if along_y else gravity.x
-    return None
+    return 0.0

@@ -8,6 +8,7 @@ import numpy as np
 from idealgas._jit import inline
 
 U = np.uintp
+NO_IMAGES = (0, 0)
 
 
 class Periodic(NamedTuple):
@@ -27,21 +28,21 @@ class Periodic(NamedTuple):
 
 @inline
 def images_between(periodic, a_id, b_id, image):
-    """Box lengths between the records of a and b, which stand `image` box lengths apart now; None without."""
+    """Box lengths between the records of a and b, which stand `image` box lengths apart now."""
     if periodic is not None:
         return (
-            periodic.turns[U(a_id), 0] - periodic.turns[U(b_id), 0] + image[0],
-            periodic.turns[U(a_id), 1] - periodic.turns[U(b_id), 1] + image[1],
+            np.int64(periodic.turns[U(a_id), 0] - periodic.turns[U(b_id), 0] + image[0]),
+            np.int64(periodic.turns[U(a_id), 1] - periodic.turns[U(b_id), 1] + image[1]),
         )
-    return None
+    return NO_IMAGES
 
 
 @inline
-def shift_of(periodic, images):
-    """Length to take off the relative position of two records so many images apart."""
+def through_sides(x, y, periodic, images):
+    """The relative position of two discs whose records are so many box lengths apart."""
     if periodic is not None:
-        return periodic.Lx * images[0], periodic.Ly * images[1]
-    return None
+        return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
+    return x, y
 
 
 @inline

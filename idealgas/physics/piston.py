@@ -8,6 +8,7 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import landing_delay
+from idealgas.physics.motion import acceleration_along
 from idealgas.physics.restitution import wall_rebound
 
 PISTON = np.dtype(
@@ -29,14 +30,6 @@ def outward(piston):
 
 
 @inline
-def gravity_along(gravity, along_y):
-    """Acceleration of a disc along the piston's axis."""
-    if gravity is not None:
-        return gravity.y if along_y else gravity.x
-    return 0.0
-
-
-@inline
 def piston_contact(disc, piston, gravity):
     """Time at which a disc meets the piston; NEVER if it does not."""
     along_y = piston.side >= 2
@@ -44,7 +37,7 @@ def piston_contact(disc, piston, gravity):
     time = max(disc.t, piston.t)
     d_dt = time - disc.t
     p_dt = time - piston.t
-    pull = gravity_along(gravity, along_y)
+    pull = acceleration_along(gravity, along_y)
     place, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     d_place = place + velocity * d_dt + 0.5 * pull * d_dt * d_dt
     p_place = piston.x + piston.v * p_dt + 0.5 * piston.a * p_dt * p_dt

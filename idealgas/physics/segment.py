@@ -73,7 +73,7 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
             else:
                 delay = NEVER
         else:  # on the other side: may come round an end and meet this face on its way back
-            delay = (speed + root) / -pull if pull < 0.0 and discriminant >= 0.0 else NEVER
+            delay = (speed + root) / -pull if speed > 0.0 and pull < 0.0 and discriminant >= 0.0 else NEVER
         if delay < best and foot_inside(s + vt * delay + 0.5 * at * delay * delay, length):
             best = delay
     return best

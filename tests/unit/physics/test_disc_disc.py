@@ -17,12 +17,12 @@ pytestmark = pytest.mark.interpreted
 
 @njit
 def contact_of(discs):
-    return contact_time(discs[0], discs[1], 0, 1, None, None, None)
+    return contact_time(discs[0], discs[1], 0, 1, None, None, None, (0, 0))
 
 
 @njit
 def collide_them(discs):
-    collide(discs[0], discs[1], 0, 1, None, None, None)
+    collide(discs[0], discs[1], 0, 1, None, None, None, (0, 0))
 
 
 def pair(a, b):

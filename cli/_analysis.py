@@ -1,0 +1,91 @@
+"""What the commands that analyse a log share: arguments, a progress bar, and how estimates are printed."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from idealgas.errors import UserError
+
+if TYPE_CHECKING:
+    from idealgas.analysis.statistics import Estimate
+    from idealgas.analysis.window import Window
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+def log_argument(command: Callable) -> Callable:
+    """`RUN.h5` as `path`."""
+    return click.argument("path", metavar="RUN.h5")(command)
+
+
+def window_options(command: Callable) -> Callable:
+    """`--from T --to T` as `start` and `end`."""
+    end = click.option(
+        "--to", "end", type=float, metavar="T", help="End of the window, time.  [default: the log's end]"
+    )
+    start = click.option(
+        "--from", "start", type=float, metavar="T", help="Start of the window, time.  [default: detected equilibrium]"
+    )
+    return start(end(command))
+
+
+def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+    if value is not None and not value.lower().endswith(PICTURES):
+        raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
+    return value
+
+
+plot_option = click.option(
+    "--plot", metavar="FILE.png", callback=_check_ending, help="Draw a picture (.png, .pdf or .svg)."
+)
+
+
+@contextmanager
+def reading() -> Iterator[Callable[[int, int], None]]:
+    """Yield progress(rows done, rows in all), shown as a bar on a terminal and nowhere else."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
+        task = bar.add_task("reading events", total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def print_json(result: dict[str, Any]) -> None:
+    """Print a result for machines."""
+    import json
+
+    click.echo(json.dumps(result, indent=2, allow_nan=False))
+
+
+def describe(window: "Window") -> str:
+    """One line on the window that was used."""
+    how = "from detected equilibrium" if window.detected else "as asked"
+    return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"
+
+
+ESTIMATE_HEADS = ("value", "± s.e.", "samples", "theory", "dev./s.e.")
+
+
+def cells(estimate: "Estimate") -> tuple[str, ...]:
+    """An estimate under ESTIMATE_HEADS."""
+    theory = "" if estimate.theory is None else f"{estimate.theory:.6g}"
+    deviation = "" if estimate.deviation is None else f"{estimate.deviation:+.2f}"
+    samples = f"{estimate.independent_samples:.0f}"
+    return f"{estimate.value:.6g}", f"{estimate.standard_error:.2g}", samples, theory, deviation
+
+
+def print_estimates(title: str, rows: "list[tuple[str, Estimate]]") -> None:
+    """A table of named estimates."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("", title=title, title_justify="left")
+    for head in ESTIMATE_HEADS:
+        table.add_column(head, justify="right")
+    for name, estimate in rows:
+        table.add_row(name, *cells(estimate))
+    Console().print(table)

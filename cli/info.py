@@ -1,0 +1,52 @@
+"""`idealgas info`: what is in a log?"""
+
+from typing import Any
+
+import click
+
+from ._analysis import log_argument, print_json
+from ._options import json_option
+
+
+@click.command()
+@log_argument
+@json_option
+def info(path: str, as_json: bool) -> None:
+    """Show what a log holds: its scene, its discs, and how far the run came."""
+    from rich.console import Console
+
+    from idealgas.analysis.info import info as describe_log
+    from idealgas.log import open_log
+
+    with open_log(path) as log:
+        found = describe_log(log)
+    if as_json:
+        print_json(found)
+        return
+    console = Console()
+    for name, values in found.items():
+        console.print(_table(name, {key: value for key, value in values.items() if key != "species"}))
+    for species in found["gas"]["species"]:
+        console.print("species: " + ", ".join(f"{key} {_text(value)}" for key, value in species.items()))
+
+
+def _table(title: str, values: dict[str, Any]):
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=title, title_justify="left", show_header=False, min_width=60)
+    for key, value in values.items():
+        table.add_row(key.replace("_", " "), Text(_text(value)))
+    return table
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, dict):
+        return "\n".join(f"{key.replace('_', ' ')}: {_text(entry)}" for key, entry in value.items()) or "none"
+    if isinstance(value, list):
+        return ", ".join(_text(entry) for entry in value) or "none"
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: "none"}[value]
+    if isinstance(value, int):
+        return f"{value:,}"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

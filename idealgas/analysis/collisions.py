@@ -1,0 +1,94 @@
+"""How often discs of each species meet, how far they fly in between, and what kinetic theory says."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis import theory
+from idealgas.analysis.composition import Composition
+from idealgas.analysis.flights import Moments
+from idealgas.analysis.impacts import Impacts
+from idealgas.analysis.statistics import Estimate, estimate, mean, ratio
+from idealgas.analysis.window import Window
+
+
+@dataclass(frozen=True)
+class CollisionRate:
+    """Collisions per time of one disc of `species` with discs of the species `other`."""
+
+    species: str
+    other: str
+    rate: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"species": self.species, "other": self.other, "rate": self.rate.as_dict()}
+
+
+@dataclass(frozen=True)
+class FreePath:
+    """Mean path and mean time of a disc between collisions with discs, and its mean speed."""
+
+    species: str
+    path: Estimate
+    time: Estimate
+    speed: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {"path": self.path.as_dict(), "time": self.time.as_dict(), "speed": self.speed.as_dict()}
+        return {"species": self.species, **values}
+
+
+def expected_rates(discs: Composition, box: tuple[float, float], temperature: float) -> np.ndarray:
+    """Γ_ij (S, S) by theory for all discs of a closed box; not a number where the fluid freezes.
+
+    The contacts that the pressure comes from (`theory.box_compressibility`), met at relative speeds that a fixed total
+    energy makes a little larger than Maxwell and Boltzmann's.
+    """
+    contacts = theory.box_contacts(discs.radius, discs.number, box)
+    reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
+    speed = np.sqrt(np.pi * temperature / (2 * reduced)) * theory.finite_speed_factor(2 * discs.number.sum())
+    return contacts * speed
+
+
+def collision_rates(
+    discs: Composition, expected: np.ndarray, window: Window, impacts: Impacts
+) -> tuple[CollisionRate, ...]:
+    """Rates of all pairs of species. expected: as `expected_rates` gives them."""
+    counts = window.of(impacts.collisions)
+
+    def rate(i: int, j: int) -> Estimate:
+        discs_per_event = 2 if i == j else 1
+        series = discs_per_event * counts[:, min(i, j), max(i, j)] / discs.number[i]
+        return mean(series, theory=_known(expected[i, j]))
+
+    species = range(len(discs.name))
+    return tuple(CollisionRate(discs.name[i], discs.name[j], rate(i, j)) for i in species for j in species)
+
+
+def free_paths(
+    discs: Composition, expected: np.ndarray, temperature: float, window: Window, moments: Moments, impacts: Impacts
+) -> tuple[FreePath, ...]:
+    """Mean free path λ = ⟨v⟩/Γ and time 1/Γ of each species. expected: as `expected_rates` gives them."""
+    counts = window.of(impacts.collisions)
+    paths = []
+    for i, (name, mass, number) in enumerate(zip(discs.name, discs.mass, discs.number, strict=True)):
+        own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
+        speeds = window.of(moments.flights)[:, i, 0] / number
+        speed = theory.mean_speed(temperature, mass, 2 * discs.number.sum())
+        free_time = np.inf if expected[i].sum() == 0 else 1 / expected[i].sum()
+        paths.append(
+            FreePath(
+                name,
+                path=ratio(speeds, own, theory=_known(speed * free_time)),
+                time=estimate(lambda rate: 1 / rate, own, theory=_known(free_time)),
+                speed=mean(speeds, theory=speed),
+            )
+        )
+    return tuple(paths)
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

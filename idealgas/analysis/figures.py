@@ -1,0 +1,116 @@
+"""Pictures of the analyses, all alike: colours that colour-blind readers can tell apart, every axis with its unit."""
+
+import os
+from collections.abc import Iterable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from idealgas.analysis.heat_capacity import HeatCapacity
+from idealgas.analysis.histogram import Histogram
+from idealgas.analysis.pressure import Pressure
+from idealgas.analysis.temperature import Temperature
+from idealgas.errors import UserError
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+"""Okabe & Ito, Color Universal Design (2008)."""
+
+GREY = "#767676"
+
+
+def save(figure: Figure, path: str | os.PathLike[str]) -> None:
+    """Write a picture in the format that the path's ending names. Raises UserError (exit code 1) if it cannot be."""
+    try:
+        figure.savefig(path, dpi=150)
+    except OSError as error:
+        failure = UserError(f"{path}: cannot be written: {error.strerror}")
+        failure.exit_code = 1
+        raise failure from error
+
+
+def panels(number: int) -> tuple[Figure, list[Axes]]:
+    """A figure of `number` panels below one another."""
+    figure = Figure(figsize=(7.0, 1.2 + 3.0 * number), layout="constrained")
+    axes = [figure.add_subplot(number, 1, k + 1) for k in range(number)]
+    for ax in axes:
+        ax.grid(color="#dddddd", linewidth=0.6)
+        ax.set_axisbelow(True)
+    return figure, axes
+
+
+def histogram_figure(result: Histogram) -> Figure:
+    """Measured density with its error band, laws over it; one panel a species."""
+    figure, axes = panels(len(result.distributions))
+    for ax, found in zip(axes, result.distributions, strict=True):
+        ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=found.name)
+        middle = (found.edges[1:] + found.edges[:-1]) / 2
+        ax.errorbar(middle, found.density, found.error, fmt="none", ecolor=GREY, elinewidth=0.8)
+        x = np.linspace(found.edges[0], found.edges[-1], 600)
+        for test, colour, style in zip(found.tests, COLOURS, ("-", "--"), strict=False):
+            ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
+        ax.set_xlim(found.edges[0], _last_seen(found.density, found.edges))
+        ax.set_xlabel(f"{result.quantity} ({result.unit})")
+        ax.set_ylabel(f"density (1/({result.unit}))")
+        ax.legend(frameon=False)
+    return figure
+
+
+def _last_seen(density: np.ndarray, edges: np.ndarray) -> float:
+    """Edge beyond which less than 1e-3 of the largest density is found."""
+    return float(edges[1 + np.flatnonzero(density > 1e-3 * density.max())[-1]])
+
+
+def temperature_figure(result: Temperature) -> Figure:
+    """Temperature of every species against time; the window is where it is not shaded."""
+    figure, (ax,) = panels(1)
+    edges = result.window.edges
+    for entry, colour in zip(result.species, _repeated(COLOURS), strict=False):
+        ax.stairs(entry.history, edges, baseline=None, color=colour, label=f"{entry.species} (N = {entry.number})")
+    ax.axhline(result.expected, color=GREY, linestyle="--", label="E/N")
+    if result.window.first:
+        ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
+    ax.set_xlabel("t (time)")
+    ax.set_ylabel("temperature (energy, k_B = 1)")
+    ax.legend(frameon=False)
+    return figure
+
+
+def pressure_figure(result: Pressure) -> Figure:
+    """Z by every route with its error bar, and the theories as lines."""
+    figure, (ax,) = panels(1)
+    routes = result.routes[::-1]
+    values = [route.compressibility.value for route in routes]
+    errors = [route.compressibility.standard_error for route in routes]
+    ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3)
+    ax.set_yticks(range(len(routes)), [route.name for route in routes])
+    for (name, value), colour, style in zip(
+        result.theories.items(), (GREY, *COLOURS[1:]), _repeated(("-", "--", ":")), strict=False
+    ):
+        ax.axvline(value, color=colour, linestyle=style, label=f"{name}: {value:.5g}")
+    ax.set_xlabel(f"Z = PA/NT (no unit) at packing fraction {result.packing_fraction:.4g}")
+    ax.set_ylabel("route")
+    ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(0, -0.2))
+    return figure
+
+
+def heat_capacity_figure(result: HeatCapacity) -> Figure:
+    """Energy per disc against the temperature that the walls feel, the fit, and E = NT."""
+    figure, (ax,) = panels(1)
+    temperature = np.array([point.temperature.value for point in result.points])
+    error = [point.temperature.standard_error for point in result.points]
+    energy = np.array([point.energy for point in result.points])
+    x = np.array([0.0, 1.1 * temperature.max()])
+    ax.plot(x, x, "--", color=GREY, label="E/N = T")
+    fit = f"{result.route} = ({result.per_disc.value:.4g} ± {result.per_disc.standard_error:.2g}) N"
+    ax.plot(x, result.intercept + result.per_disc.value * x, color=COLOURS[1], label=fit)
+    ax.errorbar(temperature, energy, xerr=error, fmt="o", color=COLOURS[0], capsize=3, label="logs")
+    ax.set_xlabel("temperature by wall pressure (energy, k_B = 1)")
+    ax.set_ylabel("energy per disc (energy)")
+    ax.legend(frameon=False)
+    return figure
+
+
+def _repeated(items: tuple[str, ...]) -> Iterable[str]:
+    while True:
+        yield from items

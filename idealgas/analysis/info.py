@@ -1,0 +1,44 @@
+"""What is in a log, without reading its events."""
+
+import os
+from typing import Any
+
+from idealgas.analysis.composition import composition
+from idealgas.log import Log
+
+
+def info(log: Log) -> dict[str, Any]:
+    """Nested plain values, ready for JSON: the file, the scene, the discs and what was stored of the run."""
+    gas, discs = log.discs, composition(log.discs)
+    species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
+    return {
+        "file": {
+            "path": str(log.path),
+            "bytes": os.path.getsize(log.path),
+            **log.attributes,
+            "command": log.command,
+            "state": "complete" if log.complete else "being written" if log.live else "interrupted",
+        },
+        "scene": {"title": log.scene.scene.title, "seed": log.scene.scene.seed, "method": log.scene.run.method},
+        "gas": {
+            "box": list(log.box),
+            "number": len(gas),
+            "packing_fraction": gas.packing_fraction,
+            "kinetic_energy": gas.kinetic_energy,
+            "temperature": gas.temperature,
+            "species": [
+                {"name": name, "number": number, "radius": radius, "mass": mass}
+                for name, number, radius, mass in species
+            ],
+        },
+        "run": {
+            "start_time": log.start_time,
+            "end_time": log.end_time,
+            "event_rows": len(log) if log.has_events else None,
+            "event_columns": list(log.columns) if log.has_events else [],
+            "walls": [wall.name for wall in log.walls],
+            "checkpoints": len(log.checkpoints),
+            "observables": sorted(log.observables),
+            "summary": log.summary,
+        },
+    }

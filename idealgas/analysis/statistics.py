@@ -1,0 +1,146 @@
+"""Estimates with error bars from correlated series.
+
+A series is an observable averaged over consecutive blocks of time. pymbar measures how many of its samples are
+independent (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007)) and where equilibrium begins (Chodera, ibid. 12, 1799
+(2016)).
+"""
+
+import logging
+import math
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
+from pymbar import timeseries  # noqa: E402
+
+LONG_BLOCKS = 32
+"""Blocks that errors of anticorrelated series are taken from."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A measured value, its standard error, the independent samples behind it, and what theory says."""
+
+    value: float
+    standard_error: float
+    independent_samples: float
+    theory: float | None = None
+
+    @property
+    def deviation(self) -> float | None:
+        """(value - theory) in standard errors; None without theory or without an error bar."""
+        if self.theory is None or not self.standard_error > 0:
+            return None
+        return (self.value - self.theory) / self.standard_error
+
+    def interval(self, level: float = 0.95) -> tuple[float, float]:
+        """Confidence interval by Student's t."""
+        half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
+        return self.value - half, self.value + half
+
+    def as_dict(self) -> dict[str, float | None]:
+        """For JSON, which has no word for what is not a number."""
+        fields = asdict(self) | {"deviation": self.deviation}
+        return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
+
+
+def inefficiency(series: np.ndarray) -> float:
+    """Statistical inefficiency g ≥ 1: samples per independent sample; 1 for a series too short or constant to tell."""
+    if len(series) < 4 or not np.ptp(series) > 1e-12 * np.abs(series).max():
+        return 1.0
+    return float(timeseries.statistical_inefficiency(series))
+
+
+def ensemble_inefficiency(series: np.ndarray) -> float:
+    """The same from many series of one process, such as all discs of a species. series: (samples, members)."""
+    if len(series) < 4 or np.ptp(series) == 0:
+        return 1.0
+    return float(timeseries.statistical_inefficiency_multiple(list(series.T)))
+
+
+def equilibration(*series: np.ndarray) -> int:
+    """Index from which every series is stationary: the start that leaves the most independent samples."""
+    start = 0
+    for values in series:
+        if len(values) >= 16 and np.ptp(values) > 1e-12 * np.abs(values).max():
+            start = max(start, int(timeseries.detect_equilibration(values, nskip=max(1, len(values) // 64))[0]))
+    return start
+
+
+def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | None = None) -> Estimate:
+    """function(mean of each series), its error by linear propagation through the series' joint fluctuations.
+
+    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is one correlated series, so that covariances need no bookkeeping: a mean is
+    `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`.
+    """
+    columns = np.array(series, float)
+    means = columns.mean(axis=1)
+    influence = np.zeros(columns.shape[1])
+    with np.errstate(divide="ignore", invalid="ignore"):  # a ratio of what never happened is not a number
+        for k, column in enumerate(columns):
+            if (step := 1e-3 * column.std()) > 0:
+                shift = np.zeros(len(means))
+                shift[k] = step
+                slope = (function(*(means + shift)) - function(*(means - shift))) / (2 * step)
+                influence += slope * (column - means[k])
+        value = float(function(*means))
+    error, samples = _error_of_mean(influence)
+    return Estimate(value, error, samples, theory)
+
+
+def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
+    """Standard error and independent samples of a mean.
+
+    Inefficiencies below 1 are beyond pymbar; yet what walls receive swings back and forth with the sound in the box.
+    So longer blocks decide where they give an error clearly smaller than chance would (Flyvbjerg & Petersen, J. Chem.
+    Phys. 91, 461 (1989)).
+    """
+    if len(series) < 2:
+        return math.nan, float(len(series))
+    samples = len(series) / inefficiency(series)
+    error = float(series.std(ddof=1) / math.sqrt(samples))
+    if len(series) >= 2 * LONG_BLOCKS:
+        longer, fewer = _error_of_mean(block_averages(series, LONG_BLOCKS))
+        if longer < (1 - 2.5 / math.sqrt(2 * LONG_BLOCKS)) * error:
+            return longer, fewer
+    return error, samples
+
+
+def mean(series: np.ndarray, theory: float | None = None) -> Estimate:
+    """Mean of one series."""
+    return estimate(lambda a: a, series, theory=theory)
+
+
+def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: float | None = None) -> Estimate:
+    """Ratio of two means."""
+    return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
+
+
+def block_averages(series: np.ndarray, blocks: int) -> np.ndarray:
+    """Averages over `blocks` equal stretches of a series; samples that do not fill the last one are left out."""
+    length = len(series) // blocks
+    return np.asarray(series)[: length * blocks].reshape(blocks, length).mean(axis=1)
+
+
+def bootstrap(
+    replicates: np.ndarray,
+    function: Callable[[np.ndarray], float] = np.mean,
+    *,
+    seed: int = 0,
+    resamples: int = 2000,
+    theory: float | None = None,
+) -> Estimate:
+    """function(replicates) with its error from resampling independent replicates (first axis) with replacement.
+
+    The spread of a bootstrap is that of n - 1 degrees of freedom over n, which is made good: Efron & Tibshirani, An
+    Introduction to the Bootstrap (1993), eq. 5.12.
+    """
+    replicates = np.asarray(replicates)
+    n = len(replicates)
+    picks = np.random.default_rng(seed).integers(n, size=(resamples, n))
+    spread = np.std([function(replicates[pick]) for pick in picks], ddof=1)
+    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), theory)

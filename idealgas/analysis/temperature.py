@@ -1,0 +1,79 @@
+"""Equipartition: the temperature of every degree of freedom, species by species."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.composition import composition
+from idealgas.analysis.flights import Moments
+from idealgas.analysis.statistics import Estimate, mean
+from idealgas.analysis.window import Window, measure
+from idealgas.log import Log
+
+
+@dataclass(frozen=True)
+class SpeciesTemperature:
+    """Mean of m vx², m vy² and m v²/2 of the discs of one species, k_B = 1, beside E/N.
+
+    history: (B,), m v²/2 in every block that was read, those before the window included.
+    """
+
+    species: str
+    number: int
+    x: Estimate
+    y: Estimate
+    both: Estimate
+    history: np.ndarray
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {"x": self.x.as_dict(), "y": self.y.as_dict(), "both": self.both.as_dict()}
+        return {"species": self.species, "number": self.number, **values, "history": self.history.tolist()}
+
+
+@dataclass(frozen=True)
+class Temperature:
+    """Temperatures by species, the last of them that of all discs; expected: E/N."""
+
+    window: Window
+    expected: float
+    species: tuple[SpeciesTemperature, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "window": self.window.as_dict(),
+            "expected": self.expected,
+            "block_edges": self.window.edges.tolist(),
+            "species": [entry.as_dict() for entry in self.species],
+        }
+
+
+def temperature(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Temperature:
+    """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
+    moments = Moments()
+    window = measure(log, [moments], start, end, progress)
+    discs = composition(log.discs)
+    expected = log.discs.temperature
+    sums = moments.flights[:, :, 1:3] / window.width
+
+    def entry(name: str, number: int, directions: np.ndarray) -> SpeciesTemperature:
+        """directions: (B, 2), sums of m vx² and m vy²."""
+        x, y = directions[window.first :].T / number
+        history = directions.sum(axis=1) / (2 * number)
+        return SpeciesTemperature(
+            name, number, mean(x, expected), mean(y, expected), mean((x + y) / 2, expected), history
+        )
+
+    entries = [
+        entry(name, int(number), sums[:, s])
+        for s, (name, number) in enumerate(zip(discs.name, discs.number, strict=True))
+    ]
+    return Temperature(window, expected, (*entries, entry("all discs", len(log.discs), sums.sum(axis=1))))

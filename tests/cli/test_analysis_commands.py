@@ -1,0 +1,94 @@
+import json
+
+import pytest
+from click.testing import CliRunner
+from idealgas_cli.main import main
+
+SCENE = """
+box.size = [20, 20]
+species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
+run.collisions_per_disc = 100
+"""
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("analysis")
+    (folder / "scene.toml").write_text(SCENE)
+    ran = CliRunner().invoke(main, ["run", str(folder / "scene.toml"), "-o", str(folder / "run.h5")])
+    assert ran.exit_code == 0, ran.output
+    return str(folder / "run.h5")
+
+
+def idealgas(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+COMMANDS = [
+    ("info",),
+    ("temperature",),
+    ("pressure",),
+    ("heat-capacity",),
+    *(("histogram", "--quantity", q) for q in ("speed", "vx", "vy", "energy", "free-path", "free-time", "wait")),
+]
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_tables_and_json(path, command):
+    table = idealgas(*command, path)
+    assert table.exit_code == 0, table.output
+    assert table.stderr == ""
+    assert max(map(len, table.stdout.splitlines())) <= 400
+    found = idealgas(*command, path, "--json")
+    assert found.exit_code == 0
+    assert json.loads(found.stdout)
+
+
+@pytest.mark.parametrize("command", COMMANDS[1:5], ids=" ".join)
+def test_plot(path, command, tmp_path):
+    drawn = idealgas(*command, path, "--plot", tmp_path / "picture.png")
+    assert drawn.exit_code == 0, drawn.output
+    assert (tmp_path / "picture.png").stat().st_size > 5000
+
+
+def test_window(path):
+    found = json.loads(idealgas("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
+    assert found["window"] == {"start": 10.0, "end": 20.0, "equilibration_detected": False}
+
+
+def test_pressure_check(path):
+    assert "agree within 4 standard errors" in idealgas("pressure", path, "--check").stdout
+    assert json.loads(idealgas("pressure", path, "--check", "--json").stdout)["agrees"] is True
+
+
+def test_check_that_fails_exits_with_one(path, monkeypatch):
+    monkeypatch.setattr("idealgas.analysis.pressure.TOLERANCE", 1e-9)
+    result = idealgas("pressure", path, "--check")
+    assert result.exit_code == 1
+    assert "do not agree" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--from", 1e6), "no window"),
+        (("--from", 5, "--to", 5), "no window"),
+        (("--plot", "picture.xyz"), "unknown kind of picture"),
+    ],
+)
+@pytest.mark.parametrize("command", COMMANDS[1:5], ids=" ".join)
+def test_bad_input_is_one_line(path, command, arguments, message):
+    result = idealgas(*command, path, *arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert len(result.stderr.splitlines()) == 1
+    assert message in result.stderr
+
+
+@pytest.mark.parametrize("command", COMMANDS[:5], ids=" ".join)
+def test_not_a_log(command, tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    for name in ("scene.toml", "missing.h5"):
+        result = idealgas(*command, tmp_path / name)
+        assert result.exit_code == 2
+        assert len(result.stderr.splitlines()) == 1

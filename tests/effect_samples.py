@@ -1,0 +1,98 @@
+"""Small gases with any set of effects, for tests of the engine."""
+
+import math
+
+import numpy as np
+
+from idealgas.engine.effects import Effects
+from idealgas.engine.records import aligned
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import empty_batch
+from idealgas.gas import Gas
+from idealgas.physics.motion import Gravity
+from idealgas.physics.periodic import Periodic
+from idealgas.physics.piston import PISTON
+from idealgas.physics.restitution import Restitution
+from idealgas.physics.rotation import Rotation
+from idealgas.physics.segment import Segments
+from idealgas.physics.thermal import Thermal
+
+BOX = (12.0, 9.0)
+
+NAMES = ("gravity", "periodic", "segments", "gates", "rotation", "restitution", "thermal", "piston")
+
+
+def make_segments(*walls: tuple[float, float, float, float, float, float]) -> Segments:
+    """Walls from (x0, y0, x1, y1, opens, closes)."""
+    table = np.array(walls, float)
+    along = table[:, 2:4] - table[:, :2]
+    length = np.hypot(*along.T)
+    tangent = along / length[:, None]
+    columns = (table[:, 0], table[:, 1], *tangent.T, length, table[:, 4], table[:, 5])
+    return Segments(*(np.ascontiguousarray(c) for c in columns), active=np.ones(len(walls), bool))
+
+
+def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
+    """Discs of two kinds on a loose lattice that keeps clear of the walls and the piston below."""
+    draw = np.random.default_rng(seed)
+    n = columns * rows
+    site = np.arange(n)
+    position = np.column_stack((site % columns, site // columns)) * [2.0, 2.4] + [1.2, 1.4]
+    kind = draw.integers(2, size=n)
+    return Gas(
+        box=BOX,
+        position=position + draw.uniform(-0.2, 0.2, position.shape),
+        velocity=draw.normal(size=(n, 2)),
+        radius=np.where(kind == 0, 0.5, 0.3),
+        mass=np.where(kind == 0, 1.0, 2.5),
+        species=kind.astype(np.uint16),
+        species_names=("a", "b"),
+    )
+
+
+def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
+    """Fresh effects. Periodic sides join left and right (top and bottom where gravity or a piston leave no other)."""
+    n = len(gas)
+    draw = np.random.default_rng(seed)
+    walls = []
+    if "segments" in names:
+        walls += [(9.0, 1.0, 10.0, 4.0, math.inf, math.inf), (9.5, 7.0, 10.5, 7.0, math.inf, math.inf)]
+    if "gates" in names:
+        walls += [(8.6, 4.5, 8.6, 8.8, 3.0, 7.0), (0.5, 8.6, 3.5, 8.6, 0.0, 4.0)]
+    inertia = 0.5 * gas.mass * gas.radius**2
+    temperature = np.full(4 + len(walls), -1.0)
+    temperature[2] = 1.5
+    piston = aligned(1, PISTON)
+    piston[0].x, piston[0].a, piston[0].m, piston[0].stop, piston[0].side = 11.5, -0.8, 20.0, 12.0, 1
+    return Effects(
+        gravity=Gravity(0.0, -0.4) if "gravity" in names else None,
+        periodic=Periodic(
+            "piston" not in names, "piston" in names, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)
+        )
+        if "periodic" in names
+        else None,
+        segments=make_segments(*walls) if walls else None,
+        rotation=Rotation(draw.normal(size=n), inertia, 0.6, 0.3) if "rotation" in names else None,
+        restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
+        thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
+        piston=piston if "piston" in names else None,
+        ledger=np.zeros(4 + len(walls)),
+    )
+
+
+def allowed(names: set[str]) -> bool:
+    """Whether the effects go together here: gravity points down, so it leaves only the left and right sides to join."""
+    return not {"gravity", "periodic", "piston"} <= names and not {"thermal", "periodic", "piston"} <= names
+
+
+def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:
+    """All columns of the event log, and the state of the effects at the end."""
+    simulation = Simulation(gas, method, effects)
+    parts = []
+    while not simulation.finished(stop):
+        batch = empty_batch(rows, effects.rotation is not None, effects.periodic is not None)
+        parts.append(batch.rows(0, simulation.advance(stop, batch)))
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
+    return [*columns, effects.ledger]

@@ -1,0 +1,129 @@
+"""Long runs against theory: kinetic theory and the equation of state within 4 standard errors, speeds by KS at 0.001.
+
+The seeds are fixed. What a run must at least resolve is asserted too, so that the tests can fail.
+"""
+
+import math
+
+import pytest
+
+from idealgas.analysis.heat_capacity import heat_capacity
+from idealgas.analysis.histogram import histogram
+from idealgas.analysis.pressure import pressure
+from idealgas.analysis.temperature import temperature
+from idealgas.log import open_log
+from idealgas.scene import parse_scene
+from idealgas.simulate import simulate
+
+STANDARD_ERRORS = 4
+LEAST_P = 0.001
+
+
+def scene(number, packing_fraction, collisions_per_disc, seed, temperature=1.0):
+    radius = math.sqrt(packing_fraction * 100 / (math.pi * number))
+    return parse_scene(f"""
+        scene.seed = {seed}
+        box.size = [10, 10]
+        species = [{{name = "gas", count = {number}, radius = {radius!r}, temperature = {temperature}}}]
+        run.collisions_per_disc = {collisions_per_disc}
+    """)
+
+
+@pytest.fixture(scope="module", params=[0.01, 0.1, 0.3], ids="phi={}".format)
+def million(request, tmp_path_factory):
+    """A million collisions of a thousand discs."""
+    path = tmp_path_factory.mktemp("million") / "run.h5"
+    simulate(scene(1000, request.param, 2000, seed=11), path)
+    with open_log(path) as log:
+        yield log
+    path.unlink()
+
+
+def test_pressure_collision_rate_and_free_path(million):
+    result = pressure(million)
+    z = {route.name: route.compressibility for route in result.routes}
+    for name, estimate in z.items():
+        assert abs(estimate.deviation) < STANDARD_ERRORS, name
+    assert z["pairs, virial"].standard_error < 1e-3 * z["pairs, virial"].value
+    assert z["walls, virial"].standard_error < 1e-2 * z["walls, virial"].value
+    (rate,), (flight,) = result.collision_rates, result.free_paths
+    for estimate in (rate.rate, flight.path, flight.time, flight.speed):
+        assert abs(estimate.deviation) < STANDARD_ERRORS
+        assert estimate.standard_error < 3e-3 * estimate.value
+    assert result.check()
+
+
+@pytest.mark.parametrize("quantity", ["speed", "vx", "vy", "energy"])
+def test_velocities(million, quantity):
+    (found,) = histogram(million, quantity).distributions
+    assert found.samples > 20_000
+    assert all(test.p_value > LEAST_P for test in found.tests)
+
+
+@pytest.mark.parametrize("quantity", ["free-path", "free-time", "wait"])
+def test_free_flights_and_waits(million, quantity):
+    """The laws are those of a dilute gas; at φ = 0.1 to 0.3 they are off by 0.006 in the distribution function."""
+    (found,) = histogram(million, quantity).distributions
+    assert found.samples > 4_000
+    (test,) = found.tests
+    if million.discs.packing_fraction < 0.05:
+        assert test.p_value > LEAST_P
+    else:
+        assert test.distance < 0.006 + 1.95 / math.sqrt(found.samples)  # 1.95/√n is Kolmogorov's bound for p = 0.001
+
+
+def test_small_gas_tells_fixed_energy_from_maxwell(tmp_path):
+    """Four discs have eight degrees of freedom, and no speed beyond √(2E/m)."""
+    path = tmp_path / "four.h5"
+    simulate(scene(4, 0.05, 40_000, seed=2), path)
+    with open_log(path) as log:
+        (found,) = histogram(log, "speed").distributions
+    maxwell, finite = found.tests
+    assert maxwell.p_value < 1e-6
+    assert finite.p_value > LEAST_P
+
+
+def test_mixture(tmp_path):
+    """Equipartition from unequal temperatures, and the rates at which two masses and radii meet."""
+    path = tmp_path / "mixture.h5"
+    text = """
+        scene.seed = 3
+        box.size = [10, 10]
+        run.collisions_per_disc = 1500
+        [[species]]
+        name = "light"
+        count = 600
+        radius = 0.05
+        temperature = 1.5
+        [[species]]
+        name = "heavy"
+        count = 300
+        radius = 0.1
+        mass = 4.0
+        temperature = 0.2
+    """
+    simulate(parse_scene(text), path)
+    with open_log(path) as log:
+        temperatures, pressures = temperature(log), pressure(log)
+    for entry in temperatures.species[:-1]:
+        for estimate in (entry.x, entry.y, entry.both):
+            assert abs(estimate.deviation) < STANDARD_ERRORS, entry.species
+            assert estimate.standard_error < 0.02 * estimate.value
+    for rate in pressures.collision_rates:
+        assert abs(rate.rate.deviation) < STANDARD_ERRORS, (rate.species, rate.other)
+        assert rate.rate.standard_error < 0.01 * rate.rate.value
+    assert pressures.check()
+
+
+def test_heat_capacity_is_the_number_of_discs(tmp_path):
+    logs = []
+    for k, t in enumerate((0.5, 1.0, 1.5, 2.0)):
+        path = tmp_path / f"{t}.h5"
+        simulate(scene(500, 0.1, 400, seed=20 + k, temperature=t), path)
+        logs.append(open_log(path))
+    result = heat_capacity(logs)
+    for log in logs:
+        log.close()
+    assert result.route == "dE/dT"
+    assert abs(result.per_disc.deviation) < STANDARD_ERRORS
+    assert result.per_disc.standard_error < 0.03

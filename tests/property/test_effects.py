@@ -1,0 +1,40 @@
+"""Every allowed pair of effects, and all at once: the event-driven log is that of brute force, float for float."""
+
+from itertools import combinations
+
+import numba
+import numpy as np
+import pytest
+from effect_samples import NAMES, allowed, log_of, make_effects, make_gas
+
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.simulation import Stop
+
+SETS = [set(), *({name} for name in NAMES), *(set(pair) for pair in combinations(NAMES, 2))]
+SETS += [set(triple) for triple in combinations(NAMES, 3) if allowed(set(triple))]
+ALL = set(NAMES) - {"periodic"}
+ALL_PERIODIC = set(NAMES) - {"piston"}
+
+interpreted_only = pytest.mark.skipif(not numba.config.DISABLE_JIT, reason="one compilation per set: run interpreted")
+
+
+def assert_same_log(names: set[str], seed: int, events: int, shape=(4, 3)) -> None:
+    gas = make_gas(seed, *shape)
+    oracle = log_of(gas, make_effects(names, gas), BruteForce(), Stop(events=events), 65_536)
+    for filling, rows in ((None, 65_536), (0.2, 7), (1e9, 65_536)):
+        columns = log_of(gas, make_effects(names, gas), EventDriven(filling), Stop(events=events), rows)
+        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True)), (filling, rows)
+
+
+@pytest.mark.interpreted
+@interpreted_only
+@pytest.mark.parametrize("names", SETS, ids=lambda names: "+".join(sorted(names)) or "plain")
+def test_same_log_as_the_oracle(names):
+    assert_same_log(names, 1, 60)
+
+
+@pytest.mark.parametrize("names", [ALL, ALL_PERIODIC], ids=["all but periodic sides", "all but the piston"])
+@pytest.mark.parametrize("seed", range(3))
+def test_same_log_as_the_oracle_with_everything(names, seed):
+    assert_same_log(names, seed, 5_000)

@@ -1,0 +1,60 @@
+"""What several tests need: gases made by hand, whole event logs in memory, and the command `idealgas`."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import BLOCK, EventBatch, empty_batch
+from idealgas.gas import Gas
+
+ROOT = Path(__file__).parent.parent
+IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
+
+
+def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
+    """A gas of one species from arrays; radius and mass may be one number for all."""
+    position = np.array(position, float)
+    n = len(position)
+    return Gas(
+        box=box,
+        position=position,
+        velocity=np.array(np.broadcast_to(velocity, (n, 2)), float),
+        radius=np.array(np.broadcast_to(radius, n), float),
+        mass=np.array(np.broadcast_to(mass, n), float),
+        species=np.zeros(n, np.uint16),
+        species_names=("gas",),
+    )
+
+
+def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK, on_epoch: Callable[[Simulation], None] | None = None):
+    """Run to the stop and yield the event rows; `on_epoch` sees the simulation at the start of every further epoch."""
+    while not simulation.finished(stop):
+        batch = empty_batch(rows)
+        yield batch.rows(0, simulation.advance(stop, batch))
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+            if on_epoch is not None:
+                on_epoch(simulation)
+
+
+def record(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
+    """Run to the stop and return all event rows."""
+    return EventBatch(*(np.concatenate(columns) for columns in zip(*batches(simulation, stop, rows), strict=True)))
+
+
+def idealgas(*arguments: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The command, run in a folder to its end."""
+    return subprocess.run(
+        [IDEALGAS, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=folder,
+        env=os.environ | environment,
+        stdin=subprocess.DEVNULL,
+    )

@@ -1,0 +1,95 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from idealgas.analysis import statistics
+from idealgas.analysis.statistics import Estimate
+
+
+def autoregressive(rng, length, memory, runs=1):
+    """Stationary AR(1) series of mean 5 and variance 1, whose statistical inefficiency is (1 + a)/(1 - a)."""
+    noise = rng.normal(size=(length, runs))
+    series = np.empty_like(noise)
+    series[0] = noise[0]
+    for k in range(1, length):
+        series[k] = memory * series[k - 1] + np.sqrt(1 - memory**2) * noise[k]
+    return series + 5.0
+
+
+@pytest.mark.parametrize(("memory", "length"), [(0.0, 100), (0.0, 512), (0.5, 512), (0.8, 1000), (0.9, 2000)])
+def test_interval_covers_the_truth(memory, length):
+    series = autoregressive(np.random.default_rng(7), length, memory, runs=200)
+    hits = 0
+    for k in range(200):
+        low, high = statistics.mean(series[:, k]).interval(0.95)
+        hits += low < 5.0 < high
+    assert 180 <= hits <= 198
+
+
+def test_interval_of_a_ratio_covers_the_truth():
+    rng = np.random.default_rng(11)
+    hits = 0
+    for _ in range(200):
+        below = autoregressive(rng, 400, 0.5)[:, 0]
+        above = 2 * below + rng.normal(size=400)
+        low, high = statistics.ratio(above, below).interval()
+        hits += low < 2.0 < high
+    assert 180 <= hits <= 198
+
+
+def test_common_fluctuations_cancel_in_a_ratio():
+    a = autoregressive(np.random.default_rng(3), 500, 0.5)[:, 0]
+    result = statistics.ratio(3 * a, a)
+    assert result.value == pytest.approx(3.0, rel=1e-14)
+    assert result.standard_error < 1e-8  # slopes are finite differences
+
+
+@pytest.mark.parametrize(("memory", "expected"), [(0.0, 1.0), (0.5, 3.0), (0.9, 19.0)])
+def test_inefficiency_of_a_known_process(memory, expected):
+    rng = np.random.default_rng(5)
+
+    def error(samples):  # three standard errors √(4W/n) with a window W of 3g: Wolff, Comput. Phys. Commun. 156, 143
+        return 3 * np.sqrt(12 * expected / samples)
+
+    one = statistics.inefficiency(autoregressive(rng, 20_000, memory)[:, 0])
+    assert one == pytest.approx(expected, rel=error(20_000))
+    many = statistics.ensemble_inefficiency(autoregressive(rng, 400, memory, runs=100))
+    assert many == pytest.approx(expected, rel=error(40_000))
+
+
+def test_equilibration_finds_the_end_of_a_transient():
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        series = rng.normal(size=400) * 0.1 + 3 * np.exp(-np.arange(400) / 10.0)
+        assert 20 <= statistics.equilibration(series) <= 150
+
+
+def test_constant_and_short_series():
+    constant = statistics.mean(np.full(50, 2.5), theory=2.5)
+    assert (constant.value, constant.standard_error, constant.deviation) == (2.5, 0.0, None)
+    assert statistics.equilibration(np.full(50, 2.5)) == 0
+    assert np.isnan(statistics.mean(np.array([1.0])).standard_error)
+
+
+def test_deviation_is_in_standard_errors():
+    assert Estimate(1.2, 0.1, 40, theory=1.0).deviation == pytest.approx(2.0)
+    assert Estimate(1.2, 0.1, 40).deviation is None
+
+
+def test_bootstrap_error_of_a_mean():
+    values = np.random.default_rng(2).normal(size=30)
+    result = statistics.bootstrap(values)
+    assert result.value == values.mean()
+    assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(30), rel=0.06)  # 4/√(2·2000) resamples
+
+
+def test_block_averages():
+    assert statistics.block_averages(np.arange(11.0), 5).tolist() == [0.5, 2.5, 4.5, 6.5, 8.5]
+
+
+def test_import_prints_nothing():
+    code = "import idealgas.analysis.statistics"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout + done.stderr == ""

@@ -1,0 +1,239 @@
+"""The compiled tallies against a slow and obvious computation in plain Python."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.flights import Moments, VelocityHistogram
+from idealgas.analysis.impacts import Impacts
+from idealgas.analysis.intervals import FreeFlights, Waits
+from idealgas.analysis.stream import stream
+from idealgas.log import open_log
+from idealgas.scene import parse_scene
+from idealgas.simulate import simulate
+
+SCENE = """
+[scene]
+seed = 3
+[box]
+size = [6.0, 4.0]
+[[species]]
+name = "light"
+count = 9
+radius = 0.2
+temperature = 1.0
+[[species]]
+name = "heavy"
+count = 5
+radius = 0.35
+mass = 3.0
+speed = 0.5
+[run]
+events = 900
+"""
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    path = tmp_path_factory.mktemp("tallies") / "small.h5"
+    simulate(parse_scene(SCENE), path)
+    with open_log(path) as log:
+        yield log
+
+
+@pytest.fixture(scope="module", params=[(0.0, 1.0, 11), (0.23, 0.71, 4), (0.1, 1.0, 900)], ids=str)
+def edges(log, request):
+    start, end, blocks = request.param
+    return np.linspace(start * log.end_time, end * log.end_time, blocks + 1)
+
+
+def rows_of(log, edges):
+    columns = ("time", "disc", "partner", "kind", "position", "velocity")
+    (rows,) = log.chunks(columns, log.row_at(edges[0], "right"), log.row_at(edges[-1], "right"))
+    return [tuple(row) for row in zip(*(column.tolist() for column in rows), strict=True)]
+
+
+def block_of(edges, time):
+    return min(max(int(np.searchsorted(edges, time, "left")) - 1, 0), len(edges) - 2)
+
+
+def flights_of(log, edges):
+    """(disc, block, duration, velocity) of every flight, cut at the block edges."""
+    discs = range(len(log.discs))
+    state = log.state_at(edges[0])
+    since, velocity = dict.fromkeys(discs, edges[0]), dict(enumerate(state.velocity))
+    pieces = []
+
+    def fly(disc, until):
+        cuts = [since[disc], *(edge for edge in edges[1:-1] if since[disc] < edge < until), until]
+        for a, b in pairwise(cuts):
+            pieces.append((disc, block_of(edges, (a + b) / 2), b - a, velocity[disc]))
+        since[disc] = until
+
+    for time, disc, _, _, _, after in rows_of(log, edges):
+        fly(disc, time)
+        velocity[disc] = np.array(after)
+    for disc in discs:
+        fly(disc, edges[-1])
+    return pieces
+
+
+def test_moments(log, edges):
+    tally = Moments()
+    stream(log, edges, [tally])
+    flights = np.zeros_like(tally.flights)
+    for disc, block, duration, v in flights_of(log, edges):
+        m = log.discs.mass[disc]
+        powers = (math.hypot(*v), m * v[0] ** 2, m * v[1] ** 2, (m * (v @ v)) ** 2)
+        flights[block, log.discs.species[disc]] += duration * np.array(powers)
+    assert tally.flights == pytest.approx(flights, rel=1e-11, abs=1e-13)
+    events = np.zeros_like(tally.events)
+    for time, disc, partner, *_ in rows_of(log, edges):
+        if partner < 0:
+            events[block_of(edges, time), 1] += 1
+        elif disc > partner:
+            events[block_of(edges, time), 0] += 1
+    assert tally.events.tolist() == events.tolist()
+    energy = tally.flights[:, :, 1:3].sum(axis=(1, 2)) / 2 / np.diff(edges)
+    assert energy == pytest.approx(np.full(len(energy), log.discs.kinetic_energy), rel=1e-10)
+
+
+@pytest.mark.parametrize("quantity", ["speed", "vx", "vy", "energy"])
+def test_velocity_histogram(log, edges, quantity):
+    value = {
+        "speed": lambda m, v: math.hypot(*v),
+        "vx": lambda m, v: v[0],
+        "vy": lambda m, v: v[1],
+        "energy": lambda m, v: m * (v @ v) / 2,
+    }[quantity]
+    low, high = np.array([-0.5, 0.1]), np.array([1.2, 0.8])
+    sampled = np.array([0, 3, 10])
+    tally = VelocityHistogram(quantity, low, high, 8, sampled)
+    stream(log, edges, [tally])
+    counts, sums = np.zeros_like(tally.counts), np.zeros_like(tally.sums)
+    for disc, block, duration, v in flights_of(log, edges):
+        s = log.discs.species[disc]
+        x = value(log.discs.mass[disc], v)
+        place = np.searchsorted(np.linspace(low[s], high[s], 9), x, "right")
+        counts[block, s, place] += duration
+        sums[block, s] += duration * x
+    assert tally.counts == pytest.approx(counts, rel=1e-11, abs=1e-12)
+    assert tally.sums == pytest.approx(sums, rel=1e-11, abs=1e-12)
+    for k, state in enumerate(log.frames(edges[1:-1])):
+        found = [value(log.discs.mass[disc], state.velocity[disc]) for disc in sampled]
+        assert tally.snapshots[k] == pytest.approx(found, rel=1e-14)
+
+
+def test_impacts(log, edges):
+    tally = Impacts()
+    stream(log, edges, [tally])
+    before = {disc: v for disc, v in enumerate(log.state_at(edges[0]).velocity)}
+    expected = {name: np.zeros_like(getattr(tally, name)) for name in ("pair_virial", "wall_virial", "impulse", "hits")}
+    collisions = np.zeros_like(tally.collisions)
+    rows = rows_of(log, edges)
+    mass, species = log.discs.mass, log.discs.species
+    for k, (time, disc, partner, _, position, velocity) in enumerate(rows):
+        block = block_of(edges, time)
+        push = mass[disc] * (np.array(velocity) - before[disc])
+        before[disc] = np.array(velocity)
+        if partner < 0:
+            expected["hits"][block, -1 - partner] += 1
+            expected["impulse"][block, -1 - partner] -= push
+            expected["wall_virial"][block] -= (np.array(position) - np.array(log.box) / 2) @ push
+        elif disc < partner:
+            other = rows[k + 1]
+            assert (other[1], other[2]) == (partner, disc)
+            expected["pair_virial"][block] += (np.array(position) - np.array(other[4])) @ push
+            collisions[block, min(species[disc], species[partner]), max(species[disc], species[partner])] += 1
+    for name, sums in expected.items():
+        assert getattr(tally, name) == pytest.approx(sums, rel=1e-10, abs=1e-12), name
+    assert tally.collisions.tolist() == collisions.tolist()
+
+
+def test_virials_of_pairs_and_walls_balance(log, edges):
+    """d/dt Σ r·p = 2E + Σ r·F of pairs and walls: over any window both sides are the same number."""
+    tally = Impacts()
+    stream(log, edges, [tally])
+    mass = log.discs.mass[:, None]
+    first, last = (
+        (mass * (state.position - np.array(log.box) / 2) * state.velocity).sum()
+        for state in log.frames([edges[0], edges[-1]])
+    )
+    energy = log.discs.kinetic_energy * (edges[-1] - edges[0])
+    balance = 2 * energy + tally.pair_virial.sum() - tally.wall_virial.sum()
+    assert balance == pytest.approx(last - first, abs=1e-9 * energy)
+
+
+@pytest.mark.parametrize("path", [True, False], ids=["path", "time"])
+def test_free_flights(log, edges, path):
+    high = np.array([2.0, 1.0])
+    tally = FreeFlights(path, high, 10, stride=3, most_samples=200)
+    stream(log, edges, [tally])
+    since, speed, length, began = {}, {}, {}, {}
+    flights = []
+    for time, disc, partner, _, _, velocity in rows_of(log, edges):
+        if disc in began:
+            length[disc] += (speed[disc] if path else 1.0) * (time - since[disc])
+        since[disc], speed[disc] = time, math.hypot(*velocity)
+        if partner >= 0:
+            if disc in began:
+                flights.append((block_of(edges, began[disc]), int(log.discs.species[disc]), length[disc]))
+            began[disc], length[disc] = time, 0.0
+    counts, sums = np.zeros_like(tally.counts), np.zeros_like(tally.sums)
+    for block, s, x in flights:
+        counts[block, s, np.searchsorted(np.linspace(0, high[s], 11), x, "right")] += 1
+        sums[block, s] += x
+    assert tally.counts.tolist() == counts.tolist()
+    assert tally.sums == pytest.approx(sums, rel=1e-11)
+    chosen = flights[::3][:200]
+    assert tally.sample == pytest.approx([x for _, _, x in chosen], rel=1e-11)
+    assert tally.sample_block.tolist() == [block for block, _, _ in chosen]
+    assert tally.sample_species.tolist() == [s for _, s, _ in chosen]
+
+
+def test_waits(log, edges):
+    tally = Waits(np.array([0.05]), 10, stride=4, most_samples=50)
+    stream(log, edges, [tally])
+    times = [time for time, disc, partner, *_ in rows_of(log, edges) if partner < 0 or disc < partner]
+    waits = np.diff(times)
+    assert tally.counts.sum() == len(waits)
+    assert tally.sums.sum() == pytest.approx(times[-1] - times[0], rel=1e-12)
+    assert tally.sample == pytest.approx(waits[::4][:50], rel=1e-12, abs=1e-15)
+    assert tally.sample_block.tolist() == [block_of(edges, time) for time in times[:-1:4][:50]]
+    counts = np.histogram(waits, np.append(np.linspace(0, 0.05, 11), np.inf))[0]
+    assert tally.counts.sum(axis=(0, 1)).tolist() == [0, *counts]
+
+
+def test_rows_cut_into_chunks_make_no_difference(log, edges):
+    """Pairs may straddle two chunks."""
+
+    class Cut:
+        discs, state_at, row_at = log.discs, log.state_at, log.row_at
+
+        def chunks(self, columns, start, stop):
+            for row in range(start, stop, 7):
+                yield from log.chunks(columns, row, min(row + 7, stop))
+
+    whole, parts = (
+        [Moments(), Impacts(), FreeFlights(True, np.ones(2), 5, 2, 100), Waits(np.ones(1), 5, 2, 100)] for _ in range(2)
+    )
+    stream(log, edges, whole)
+    stream(Cut(), edges, parts)
+    assert np.array_equal(whole[0].flights, parts[0].flights)
+    assert np.array_equal(whole[1].pair_virial, parts[1].pair_virial)
+    assert np.array_equal(whole[1].collisions, parts[1].collisions)
+    assert np.array_equal(whole[2].sample, parts[2].sample)
+    assert np.array_equal(whole[3].counts, parts[3].counts)
+
+
+def test_progress_counts_rows(log):
+    seen = []
+    stream(
+        log,
+        np.linspace(0, log.end_time, 5),
+        [Waits(np.ones(1), 5, 2, 9)],
+        lambda done, total: seen.append((done, total)),
+    )
+    assert seen[-1] == (len(log), len(log))
