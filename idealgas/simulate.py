@@ -163,7 +163,7 @@ class _Run:
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.last_event_time
-        audit = simulation.audit_at(end_time)
+        audit = simulation.audit_now()
         self._observe(end_time, audit)
         totals = simulation.so_far
         drift = audit.kinetic_energy / self._start_energy - 1.0 if self._start_energy > 0 else 0.0

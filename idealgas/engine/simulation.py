@@ -78,6 +78,7 @@ class Simulation:
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self.epoch_over = False
+        self._local_now = 0.0
 
     def advance(self, stop: Stop, batch: EventBatch | None, events: int = UNLIMITED) -> int:
         """Process events until the epoch is over, the stop is reached or the batch is full; return the rows filled.
@@ -91,6 +92,7 @@ class Simulation:
             stop.disc_collisions - done.disc_collisions,
         )
         rows, self.epoch_over = self.method.advance(limits, self.time, batch, self._counters)
+        self._local_now = limits.until if self.epoch_over else float(self._counters[0].time)
         return rows
 
     def finished(self, stop: Stop) -> bool:
@@ -115,9 +117,9 @@ class Simulation:
         """Time of the last event, or the epoch's start if there was none in it."""
         return self.time + float(self._counters[0].time)
 
-    def at(self, time: float) -> Gas:
-        """The gas at a time from the last event to the next; the simulation is not touched."""
-        return self._synchronised(time - self.time, copy_of(self.effects.periodic))
+    def gas_now(self) -> Gas:
+        """The gas where the last call of `advance` left it: at its time limit, or at the last event before another limit."""
+        return self._synchronised(self._local_now, copy_of(self.effects.periodic))
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
         """The gas at a local time; the records stay as they are."""
@@ -141,9 +143,9 @@ class Simulation:
         """What must hold, at the start of the epoch."""
         return audit(self.gas, self.overlap)
 
-    def audit_at(self, time: float) -> Audit:
-        """What must hold, at a time from the last event to the next."""
-        gas = self.at(time)
+    def audit_now(self) -> Audit:
+        """What must hold, where the last call of `advance` left the gas."""
+        gas = self.gas_now()
         method = type(self.method)()
         method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
         return audit(gas, method.deepest_overlap())
