@@ -1,0 +1,249 @@
+"""Reading a log: whole chunks, in bounded memory, whether its writer ended, died or still lives.
+
+    with open_log("run.h5") as log:
+        print(log.discs.temperature, len(log), log.end_time, log.summary)
+        for block in log.chunks(("time", "disc", "velocity"), log.row_at(50.0)):
+            print(block.time[-1], (block.velocity**2).sum(axis=1).mean())
+        for state in log.frames(np.linspace(0, log.end_time, 100)):
+            print(state.time, state.position.mean(axis=0))
+
+Without this package the columns are plain datasets:
+
+    import h5py, json
+    with h5py.File("run.h5") as log:  # swmr=True while its writer lives, or if it died
+        rows = min(len(column) for column in log["events"].values())
+        for start in range(0, rows, 65536):
+            block = slice(start, min(start + 65536, rows))
+            time, disc = log["events/time"][block], log["events/disc"][block]
+            energy = log["discs/mass"][:][disc] / 2 * (log["events/velocity"][block] ** 2).sum(axis=1)
+            print(time[-1], energy.mean())
+        print(dict(zip(log["summary/name"], log["summary/value"])) or "interrupted")
+"""
+
+import json
+import os
+from collections import namedtuple
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from idealgas.events import BLOCK, EventBatch, Kind
+from idealgas.gas import Gas
+from idealgas.log.errors import LogError
+from idealgas.log.replay import Checkpoints, LogState, Replay
+from idealgas.log.schema import DISC_COLUMNS, Wall
+from idealgas.log.source import Source
+from idealgas.log.superblock import is_locked
+
+if TYPE_CHECKING:
+    from idealgas.scene import Scene
+
+
+def open_log(path: str | os.PathLike[str]) -> "Log":
+    """Open a log for reading. Raises LogError if it is not one or is damaged, and so do all of its methods."""
+    return Log(Source(Path(path)))
+
+
+class Log:
+    """A log open for reading; a context manager.
+
+    path: the file. unclosed: its writer died or still lives. complete: the run came to its end. has_events: events were
+    kept. box: (Lx, Ly). start_time. len() is the number of event rows that hold, at a whole event.
+    """
+
+    start_time = 0.0
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self.path = source.path
+        self.unclosed = source.unclosed
+        self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
+        self._update()
+
+    @property
+    def live(self) -> bool:
+        """Whether another process is writing the log now."""
+        return self.unclosed and is_locked(self.path)
+
+    def refresh(self) -> None:
+        """See what a living writer has stored meanwhile."""
+        self._source.refresh()
+        self._update()
+
+    def _update(self) -> None:
+        self.commit = self._source.commit
+        self.complete = self.commit.complete
+        self.has_events = "events" in self.commit.rows
+        self._rows = self.commit.rows.get("events", 0)
+        if self._rows:
+            start = (self._rows - 1) // BLOCK * BLOCK
+            disc, partner, kind = (
+                self._source.chunk(f"events/{name}", start)[self._rows - 1 - start]
+                for name in ("disc", "partner", "kind")
+            )
+            if kind == Kind.DISC and disc < partner:  # the first row of a pair, whose second did not get here
+                self._rows -= 1
+        self._first_times: dict[int, float] = {}
+        for name in ("checkpoints", "observables", "summary", "end_time"):
+            self.__dict__.pop(name, None)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._source.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __len__(self) -> int:
+        return self._rows
+
+    # ── what was known before the run ──
+
+    @cached_property
+    def scene_text(self) -> str:
+        """The resolved scene, TOML."""
+        return self._source.texts("scene")[0]
+
+    @cached_property
+    def scene(self) -> "Scene":
+        """The resolved scene."""
+        from idealgas.scene import parse_scene
+
+        return parse_scene(self.scene_text, name=f"{self.path}: scene")
+
+    @cached_property
+    def command(self) -> str:
+        """The command that made the log."""
+        return self._source.texts("command")[0]
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """format, format_version, seed, created (UTC), and the versions of the programs that made it."""
+        return self._source.attributes("/") | self._source.attributes("versions")
+
+    @cached_property
+    def discs(self) -> Gas:
+        """The start state."""
+        columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
+        return Gas(box=self.box, species_names=tuple(self._source.texts("discs/species_name")), **columns)
+
+    @cached_property
+    def walls(self) -> list[Wall]:
+        """Wall k is the partner -1 - k of events."""
+        ends = self._source.fixed("walls/endpoints").tolist()
+        return [Wall(name, *map(tuple, end)) for name, end in zip(self._source.texts("walls/name"), ends, strict=True)]
+
+    # ── what the run stored ──
+
+    @cached_property
+    def checkpoints(self) -> Checkpoints:
+        """States that the run can go on from."""
+        return Checkpoints(self._source, len(self))
+
+    @cached_property
+    def observables(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Times and values of each observable, by name."""
+        names = [name.partition("/")[0] for name in self._source.names("observables") if name.endswith("/value")]
+        times = next((name for name in self._source.names("observables") if name.endswith("/time")), "")
+        return {
+            name: (self._source.column(f"observables/{times}"), self._source.column(f"observables/{name}/value"))
+            for name in names
+        }
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """What the run told of itself at its end; empty if it did not come there."""
+        names, values = (self._source.column(f"summary/{name}").tolist() for name in ("name", "value"))
+        return {name.decode(): json.loads(value) for name, value in zip(names, values, strict=True)}
+
+    @cached_property
+    def end_time(self) -> float:
+        """Time up to which the log is complete."""
+        if "end_time" in self.summary:
+            return self.summary["end_time"]
+        last = [self.start_time]
+        if len(self.checkpoints):
+            last.append(self.checkpoints.times[-1].item())
+        if len(self):
+            last.append(self._times((len(self) - 1) // BLOCK * BLOCK)[-1].item())
+        return max(last)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the event columns."""
+        return tuple(self._source.names("events"))
+
+    def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
+        """Event rows from `start` up to `stop`, in blocks of at most 65 536 cut at multiples of that.
+
+        A block is an EventBatch, or a named tuple of the columns asked for.
+        """
+        block: Any = EventBatch if columns is None else namedtuple("Rows", columns)
+        names = self.columns if columns is None else columns
+        stop = len(self) if stop is None else min(stop, len(self))
+        for first in range(start // BLOCK * BLOCK, stop, BLOCK) if start < stop else ():
+            some = slice(max(start - first, 0), stop - first)
+            yield block(**{name: self._source.chunk(f"events/{name}", first)[some] for name in names})
+
+    def row_at(self, time: float, side: str = "left") -> int:
+        """The first event row at `time` or later; with side "right", later than `time`. Reads O(log n) chunks."""
+        low, high = 0, -(-len(self) // BLOCK)  # the row lies in one of these chunks, or just behind the last
+        while high - low > 1:
+            middle = (low + high) // 2
+            if middle not in self._first_times:
+                self._first_times[middle] = self._times(middle * BLOCK)[0].item()
+            first = self._first_times[middle]
+            if first < time or (first == time and side == "right"):
+                low = middle
+            else:
+                high = middle
+        times = self._times(low * BLOCK) if len(self) else np.empty(0)
+        return low * BLOCK + int(times.searchsorted(time, side))  # type: ignore[call-overload]
+
+    def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[Any]:
+        """Event rows of one disc or all, from time `t0` until before `t1`, in blocks as `chunks` gives them."""
+        start = 0 if t0 is None else self.row_at(t0)
+        stop = len(self) if t1 is None else self.row_at(t1)
+        if disc is None:
+            yield from self.chunks(None, start, stop)
+            return
+        row = start
+        for ids in self.chunks(("disc",), start, stop):
+            own = np.flatnonzero(ids.disc == disc)
+            for block in self.chunks(None, row, row + len(ids.disc)) if len(own) else ():
+                yield block._make(None if column is None else column[own] for column in block)
+            row += len(ids.disc)
+
+    def state_at(self, time: float) -> LogState:
+        """All discs at a time; at the time of events, after them."""
+        return next(self.frames([time]))
+
+    def frames(self, times: Iterable[float]) -> Iterator[LogState]:
+        """All discs at times that do not decrease, in one pass. Raises LogError at one that the log does not cover."""
+        replay: Replay | None = None
+        earliest = self.start_time
+        for time in times:
+            if not earliest <= time <= self.end_time:
+                raise LogError(f"{self.path}: no state at time {time:g} (got up to {self.end_time:g}, asked in order)")
+            earliest = time
+            nearest = int(self.checkpoints.times.searchsorted(time, "right")) - 1
+            if replay is None or (nearest >= 0 and self.checkpoints.rows[nearest] > replay.row):
+                replay = self._replay(nearest)
+            for block in self.chunks(("time", "disc", "position", "velocity"), replay.row, self.row_at(time, "right")):
+                replay.follow(block)
+            yield replay.at(time)
+
+    def _replay(self, checkpoint: int) -> Replay:
+        if checkpoint < 0:
+            return Replay(self.start_time, 0, self.discs.position, self.discs.velocity)
+        start = self.checkpoints[checkpoint]
+        return Replay(start.time, start.row, start.position, start.velocity)
+
+    def _times(self, first: int) -> np.ndarray:
+        return self._source.chunk("events/time", first)[: len(self) - first]

@@ -1,0 +1,86 @@
+"""Opening a log for writing again: after its writer died, or to continue it from a checkpoint."""
+
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+import h5py
+
+from idealgas.log.commit import Commit
+from idealgas.log.errors import LogError, check_output, storage_error
+from idealgas.log.reader import open_log
+from idealgas.log.schema import FILE_OPTIONS
+from idealgas.log.superblock import abandon, clear_mark, is_marked, lock
+from idealgas.log.table import Table, commit_tables, open_tables
+
+
+def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None) -> int:
+    """Make a log whose writer died open normally, in place or as a copy `output`; returns the event rows kept.
+
+    A log that was closed stays as it is. Raises LogError if the file is damaged or its writer lives.
+    """
+    path = Path(path)
+    if output is None:
+        return _recover(path)
+    copy = Path(output)
+    check_output(copy)
+    with open_log(path):
+        pass
+    try:
+        shutil.copyfile(path, copy)
+        return _recover(copy)
+    except OSError as error:
+        raise storage_error(copy, error) from error
+
+
+def _recover(path: Path) -> int:
+    with open_log(path) as log:
+        rows, unclosed = len(log), log.unclosed
+        held = {"events": rows, "checkpoints": len(log.checkpoints)}
+        keep = {table: held.get(table, stored) for table, stored in log.commit.rows.items()}
+    if unclosed:
+        _cut(path, keep)[0].close()
+    return rows
+
+
+def reopen(path: str | os.PathLike[str], checkpoint: int) -> tuple[h5py.File, dict[str, Table], int]:
+    """A log to go on with after one of its checkpoints: file, tables, and the number of its last commit."""
+    path = Path(path)
+    with open_log(path) as log:
+        try:
+            start = log.checkpoints[checkpoint]
+        except IndexError:
+            raise LogError(f"{path}: no checkpoint {checkpoint} among {len(log.checkpoints)}") from None
+        held = {"events": start.row, "checkpoints": range(len(log.checkpoints))[checkpoint] + 1}
+        for times, _ in log.observables.values():
+            held["observables"] = int(times.searchsorted(start.time, "right"))
+        keep = {table: held.get(table, 0) for table in log.commit.rows}
+    return _cut(path, keep)
+
+
+def _cut(path: Path, keep: Mapping[str, int]) -> tuple[h5py.File, dict[str, Table], int]:
+    """Open for appending after the first `keep` rows of each table; what came after them is gone.
+
+    The record says so first: at any moment from then on, the rows kept are there.
+    """
+    try:
+        if is_marked(path):
+            clear_mark(path)
+        file = h5py.File(path, "r+", **FILE_OPTIONS)
+    except (OSError, ValueError) as error:
+        raise storage_error(path, error) from error
+    try:
+        lock(file.id.get_vfd_handle())
+        commit = Commit.read(file)
+        tables = open_tables(file, commit, keep)
+        file.swmr_mode = True
+        for sequence in (1, 2):
+            commit_tables(file, tables, commit.sequence + sequence)
+        for table in tables.values():
+            table.trim()
+        file.flush()
+    except (OSError, RuntimeError, ValueError) as error:
+        abandon(file)
+        raise storage_error(path, error) from error
+    return file, tables, commit.sequence + 2

@@ -1,0 +1,129 @@
+"""The file under a log being read: how it is opened, and its columns by chunks. Every fault becomes a LogError."""
+
+import re
+import time
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import h5py
+import numpy as np
+
+from idealgas.log import schema
+from idealgas.log.commit import Commit, table_of
+from idealgas.log.errors import LogError
+from idealgas.log.superblock import Unmarked, is_locked, is_marked
+from idealgas.log.table import StoredColumn
+
+_CACHED_CHUNKS = 8
+_ATTEMPTS = 10
+_PAUSE = 0.02
+
+Result = TypeVar("Result")
+
+
+class Source:
+    """An HDF5 file that is a log, open for reading; its writer may have died or be alive."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._file: Any = None
+        self.chunk = lru_cache(_CACHED_CHUNKS)(self._chunk)
+        try:
+            self._read(self._open)
+        except LogError:
+            self.close()
+            raise
+
+    def refresh(self) -> None:
+        """See what the writer has committed meanwhile."""
+        self._read(self._open)
+        self.chunk.cache_clear()
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def rows(self, table: str) -> int:
+        """Rows committed, 0 for a table that is not there."""
+        return self.commit.rows.get(table, 0)
+
+    def names(self, table: str) -> list[str]:
+        """Names of a table's columns."""
+        return [path.partition("/")[2] for path in self.commit.tails if table_of(path) == table]
+
+    def chunk_rows(self, path: str) -> int:
+        """Rows of a chunk of a column."""
+        return self._columns[path].chunk[0]
+
+    def column(self, path: str) -> np.ndarray:
+        """All rows of a column of a short table."""
+        column = self._columns[path]
+        parts = [self.chunk(path, start) for start in range(0, self.rows(table_of(path)), column.chunk[0])]
+        return np.concatenate(parts) if parts else np.empty((0, *column.chunk[1:]), column.dtype)
+
+    def fixed(self, name: str) -> np.ndarray:
+        """A dataset that was stored before the run."""
+
+        def read() -> np.ndarray:
+            dataset = self._file[name]
+            return StoredColumn(dataset).read(0, len(dataset)) if dataset.size else dataset[()]
+
+        return self._read(read, f"{name}: ")
+
+    def texts(self, name: str) -> list[str]:
+        """A dataset of strings that was stored before the run."""
+        return [text.decode() for text in self.fixed(name).tolist()]
+
+    def attributes(self, group: str) -> dict[str, str | int]:
+        """Attributes of a group."""
+        values = self._read(lambda: {name: value.item() for name, value in self._file[group].attrs.items()})
+        return {name: value.decode() if isinstance(value, bytes) else value for name, value in values.items()}
+
+    def _open(self) -> None:
+        self.close()
+        try:
+            marked = is_marked(self.path)
+        except OSError as error:
+            raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
+        if marked is None:
+            raise LogError(f"{self.path}: not a log of idealgas")
+        self.unclosed = marked
+        self._file = h5py.File(Unmarked(self.path) if marked else self.path, "r")
+        if self._file.attrs.get("format", b"") != schema.FORMAT.encode():
+            raise LogError(f"{self.path}: not a log of idealgas")
+        if (version := int(self._file.attrs["format_version"])) > schema.VERSION:
+            raise LogError(f"{self.path}: of format {version}; this version of idealgas reads up to {schema.VERSION}")
+        self.commit = Commit.read(self._file)
+        size = self.path.stat().st_size
+        if marked and size < self.commit.file_size:
+            raise LogError(f"{self.path}: damaged: truncated, {size} bytes of {self.commit.file_size}")
+        self._columns = {path: StoredColumn(self._file[path]) for path in self.commit.tails}
+
+    def _chunk(self, path: str, start: int) -> np.ndarray:
+        column, rows, tail = self._columns[path], self.rows(table_of(path)), self.commit.tails[path]
+        data = self._read(lambda: column.read(start, rows, tail), f"{path} from row {start}: ")
+        data.flags.writeable = False
+        return data
+
+    def _read(self, action: Callable[[], Result], what: str = "") -> Result:
+        """Do it, and again a few times if it fails while a living writer may be at work on these very bytes."""
+        attempt = 1
+        while True:
+            try:
+                return action()
+            except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:
+                if attempt == _ATTEMPTS or not is_locked(self.path):
+                    raise LogError(f"{self.path}: damaged: {what}{_reason(error)}") from error
+            attempt += 1
+            time.sleep(_PAUSE)
+
+
+def _reason(error: Exception) -> str:
+    """Why a reading failed, in one line; HDF5 says it in parentheses."""
+    text = str(error.args[0] if error.args else error).splitlines()[0]
+    inner = re.search(r"\((.*)\)$", text)
+    return inner[1] if inner and isinstance(error, OSError | RuntimeError | KeyError) else text

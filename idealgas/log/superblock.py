@@ -1,0 +1,161 @@
+"""The first bytes of an HDF5 file: who has it open, and where it ends.
+
+A writer that lives or died has its mark there, and HDF5 then refuses to open the file in the common way.
+HDF5 File Format Specification 3.0, II.A: version 3 has the status flags in byte 11, the end of the file in bytes 28 to
+35, and the lookup3 checksum of all before it in bytes 44 to 47.
+"""
+
+import fcntl
+import io
+import os
+import struct
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+import h5py
+
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_SIZE = 48
+_PAGE = 4096
+_FAR = 1 << 50
+_MASK = 0xFFFFFFFF
+
+
+def is_marked(path: Path) -> bool | None:
+    """Whether a writer has left its mark; None if this is not an HDF5 file of version 3."""
+    with path.open("rb") as file:
+        block = file.read(_SIZE)
+    return block[11] != 0 if len(block) == _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
+
+
+def clear_mark(path: Path) -> None:
+    """Take a dead writer's mark off. Raises ValueError where it is damaged, OSError where the writer lives."""
+    with path.open("r+b") as file:
+        lock(file)
+        end = -(-os.fstat(file.fileno()).st_size // _PAGE) * _PAGE
+        block = _unmarked(file.read(_SIZE), end)
+        file.truncate(end)
+        file.seek(0)
+        file.write(block)
+
+
+class Unmarked(io.RawIOBase):
+    """A file to read as if its writer had closed it.
+
+    HDF5's own way, SWMR, goes on trying for ever where a byte is damaged. The file seems to end far away, since a
+    living writer may put there what it will then tell of; whatever it has not put there yet is zero.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Raises ValueError where the superblock is damaged."""
+        self._file = path.open("rb", buffering=0)
+        self._place = 0
+        try:
+            self._head = _unmarked(self._file.read(_SIZE), _FAR)
+        except ValueError:
+            self._file.close()
+            raise
+
+    def readable(self) -> bool:
+        """True."""
+        return True
+
+    def seekable(self) -> bool:
+        """True."""
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """As any file."""
+        self._place = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: _FAR}[whence]
+        return self._place
+
+    def tell(self) -> int:
+        """As any file."""
+        return self._place
+
+    def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
+        """As any file, with another beginning."""
+        data, count = memoryview(buffer).cast("B"), 0
+        while some := os.preadv(self._file.fileno(), [data[count:]], self._place + count):
+            count += some
+        data[count:] = bytes(len(data) - count)
+        head = self._head[self._place : self._place + len(data)]
+        data[: len(head)] = head
+        self._place += len(data)
+        return len(data)
+
+    def close(self) -> None:
+        """As any file."""
+        self._file.close()
+        super().close()
+
+
+def abandon(file: h5py.File) -> None:
+    """Close a file that could not be written to, and leave it as its writer's death would.
+
+    HDF5 would write what it can, and take its mark off: that goes nowhere.
+    """
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nowhere, file.id.get_vfd_handle())
+    os.close(nowhere)
+    with suppress(OSError, RuntimeError):
+        file.close()
+
+
+def lock(file: int | IO) -> None:
+    """Hold a file open for writing as its only writer, as long as the process lives. Raises OSError if another does.
+
+    HDF5 gives up its own lock in SWMR mode. This one is advisory, and readers do not look at it.
+    """
+    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def is_locked(path: Path) -> bool:
+    """Whether another process holds the file with `lock`."""
+    try:
+        with path.open("rb") as file:
+            fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError as error:
+        return isinstance(error, BlockingIOError)
+    return False
+
+
+def _unmarked(block: bytes, end: int) -> bytes:
+    """The superblock of a file that was closed and has `end` bytes.
+
+    What a dead writer's superblock says of the end is as old as its last flush; all that it wrote lies before the end.
+    """
+    if len(block) < _SIZE or struct.unpack_from("<I", block, _SIZE - 4)[0] != lookup3(block[:-4]):
+        raise ValueError("the superblock's checksum does not match")
+    head = block[:11] + b"\0" + block[12:28] + struct.pack("<Q", end) + block[36:-4]
+    return head + struct.pack("<I", lookup3(head))
+
+
+def lookup3(data: bytes) -> int:
+    """Bob Jenkins's hash of one byte or more, `hashlittle` of lookup3.c (2006, public domain) with initial value 0."""
+    a = b = c = 0xDEADBEEF + len(data) & _MASK
+    blocks = (len(data) - 1) // 12
+    for block in range(blocks):
+        x, y, z = struct.unpack_from("<III", data, 12 * block)
+        a, b, c = _mix(a + x & _MASK, b + y & _MASK, c + z & _MASK)
+    x, y, z = struct.unpack("<III", data[12 * blocks :].ljust(12, b"\0"))
+    return _final(a + x & _MASK, b + y & _MASK, c + z & _MASK)
+
+
+def _rotate(value: int, bits: int) -> int:
+    return (value << bits | value >> 32 - bits) & _MASK
+
+
+def _mix(a: int, b: int, c: int) -> tuple[int, int, int]:
+    for bits in (4, 6, 8, 16, 19, 4):
+        a, c = (a - c & _MASK) ^ _rotate(c, bits), c + b & _MASK
+        a, b, c = b, c, a
+    return a, b, c
+
+
+def _final(a: int, b: int, c: int) -> int:
+    for bits in (14, 11, 25, 16, 4, 14, 24):
+        c = (c ^ b) - _rotate(b, bits) & _MASK
+        a, b, c = b, c, a
+    return b

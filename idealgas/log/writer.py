@@ -1,0 +1,261 @@
+"""Writing a log while the run goes on: buffers go round between an engine and a thread that stores them."""
+
+import json
+import math
+import os
+import queue
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+import h5py
+import numpy as np
+
+from idealgas.events import BLOCK, EventBatch, empty_batch
+from idealgas.gas import Gas
+from idealgas.log import schema
+from idealgas.log.commit import Commit
+from idealgas.log.errors import LogError, check_output, storage_error
+from idealgas.log.schema import Column, Wall
+from idealgas.log.superblock import abandon, lock
+from idealgas.log.table import Table, commit_tables, open_tables
+
+BUFFERS = 4
+FLUSH_ROWS = 4 * BLOCK
+FLUSH_SECONDS = 1.0
+
+
+class _Rows(NamedTuple):
+    """Rows for a table, on their way to the thread; `buffer` goes back to the pool."""
+
+    table: Table
+    rows: int
+    data: list[np.ndarray]
+    buffer: Any = None
+
+
+_END = object()
+
+
+class LogWriter:
+    """A log being written; a context manager that closes it as interrupted unless `close` came first.
+
+    Whatever is handed over is stored in order. It is committed every 2¹⁸ rows or every second, whichever comes first:
+    what is committed survives the death of the process, and with `fsync` that of the machine. Failures to store (a full
+    disk) come up as LogError with exit code 1 in the next call; what was committed before stays readable.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        gas: Gas,
+        *,
+        scene_text: str,
+        seed: int,
+        walls: Sequence[Wall],
+        command: str = "",
+        events: bool = True,
+        compression: str = "gzip",
+        fsync: bool = False,
+        force: bool = False,
+        event_columns: Sequence[Column] = schema.EVENT_COLUMNS,
+        make_batch: Callable[[], Any] = empty_batch,
+        checkpoint_arrays: Sequence[Column] = schema.CHECKPOINT_ARRAYS,
+        checkpoint_values: Sequence[Column] = (),
+        observables: Sequence[Column] = (),
+    ) -> None:
+        """Make the file with all its datasets. An existing one is replaced only with `force`.
+
+        gas: the start state. walls: wall k of the events. events: whether event rows are kept. make_batch: a buffer of
+        65 536 rows with the event columns by name. checkpoint_arrays, checkpoint_values: what a checkpoint has of each
+        disc, and of the whole.
+        """
+        check_output(path, force)
+        path = Path(path)
+        try:
+            file = h5py.File(path, "w" if force else "x", **schema.FILE_OPTIONS, **schema.PAGES)
+        except OSError as error:
+            if not isinstance(error, FileExistsError):
+                path.unlink(missing_ok=True)
+            raise storage_error(path, error) from error
+        try:
+            schema.write_header(file, gas, walls, scene_text, seed, command, compression)
+            columns = (event_columns if events else (), checkpoint_arrays, checkpoint_values, observables)
+            schema.create_tables(file, len(gas), *columns, compression)
+            file.flush()
+            commit = Commit.read(file)
+            tables = open_tables(file, commit, commit.rows)
+            file.swmr_mode = True
+            lock(file.id.get_vfd_handle())
+        except (OSError, RuntimeError) as error:
+            abandon(file)
+            path.unlink()
+            raise storage_error(path, error) from error
+        self._start(path, file, tables, commit.sequence, fsync, make_batch)
+
+    @classmethod
+    def resume(
+        cls,
+        path: str | os.PathLike[str],
+        checkpoint: int = -1,
+        fsync: bool = False,
+        make_batch: Callable[[], Any] = empty_batch,
+    ) -> Self:
+        """Continue a log after one of its checkpoints; later rows, checkpoints and samples are cut off.
+
+        checkpoint: index into `Log.checkpoints`. Raises LogError (exit code 2) where there is none, or where another
+        process still writes the file.
+        """
+        from idealgas.log.recovery import reopen
+
+        writer = cls.__new__(cls)
+        writer._start(Path(path), *reopen(path, checkpoint), fsync, make_batch)
+        return writer
+
+    def _start(
+        self,
+        path: Path,
+        file: h5py.File,
+        tables: dict[str, Table],
+        sequence: int,
+        fsync: bool,
+        make_batch: Callable[[], Any],
+    ) -> None:
+        self.path, self._file, self._tables, self._sequence, self._fsync = path, file, tables, sequence, fsync
+        self._events = tables.get("events")
+        self._flushed = self.rows = self._events.stored if self._events else 0
+        self._due = math.inf
+        self._free: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        for _ in range(BUFFERS if self._events else 0):
+            self._free.put(make_batch())
+        self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)
+        self._error: Exception | None = None
+        self._thread = threading.Thread(target=self._run, name="log writer", daemon=True)
+        self._thread.start()
+
+    # ── the caller's side ──
+
+    def batch(self) -> EventBatch:
+        """A buffer to fill, of 65 536 rows; waits while all four are in use."""
+        batch = self._free.get()
+        self._raise()
+        return batch
+
+    def write(self, batch: EventBatch, rows: int) -> None:
+        """Hand over the first `rows` rows of a buffer got from `batch`, not to be touched any more."""
+        assert self._events is not None, "this log keeps no events"
+        self.rows += rows
+        data = [getattr(batch, path.partition("/")[2]) for path in self._events.columns]
+        self._put(_Rows(self._events, rows, data, batch))
+
+    def checkpoint(
+        self, time: float, epoch: int, arrays: Mapping[str, np.ndarray], values: Mapping[str, float] | None = None
+    ) -> None:
+        """The state after the rows written so far; names as declared. The arrays are copied.
+
+        Comes after the sample of the same instant: a resumed log goes on after its checkpoint.
+        """
+        given = {"time": time, "row": self.rows, "epoch": epoch, **arrays, **(values or {})}
+        self._put_row("checkpoints", given)
+
+    def observe(self, time: float, epoch: int, values: Mapping[str, float]) -> None:
+        """One sample of every observable."""
+        self._put_row("observables", {"time": time, "step": epoch, **values})
+
+    def close(self, summary: Mapping[str, Any] | None = None) -> None:
+        """Store what is left and close the file; without a summary (JSON values) the run counts as interrupted.
+
+        The summary's `end_time` is the time up to which the log is complete.
+        """
+        if not self._thread.is_alive():
+            return
+        if summary is not None:
+            self._queue.put(self._summary_rows(summary))
+        self._queue.put(_END)
+        self._thread.join()
+        if self._error is None:
+            try:
+                self._file.close()
+            except (OSError, RuntimeError) as error:
+                self._error = error
+        else:
+            abandon(self._file)
+        self._raise()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        try:
+            self.close()
+        except LogError:
+            if error is None:
+                raise
+
+    def _summary_rows(self, summary: Mapping[str, Any]) -> _Rows:
+        names, values = list(summary), [json.dumps(value) for value in summary.values()]
+        sizes = [np.dtype(column.dtype).itemsize for column in schema.SUMMARY_COLUMNS]
+        if not summary or max(map(len, names)) > sizes[0] or max(map(len, values)) > sizes[1]:
+            raise ValueError("a summary has at least one entry, and short ones")
+        return _Rows(self._tables["summary"], len(summary), [np.array(names, "S"), np.array(values, "S")])
+
+    def _put_row(self, name: str, given: Mapping[str, Any]) -> None:
+        table = self._tables[name]
+        data = []
+        for path, column in table.columns.items():
+            words = path.split("/")
+            entry = given[words[1] if words[-1] == "value" else words[-1]]
+            data.append(np.array(entry, column.dtype).reshape(1, *column.chunk[1:]))
+        self._put(_Rows(table, 1, data))
+
+    def _put(self, item: _Rows) -> None:
+        self._raise()
+        self._queue.put(item)
+
+    def _raise(self) -> None:
+        if self._error is not None:
+            raise storage_error(self.path, self._error) from self._error
+
+    # ── the thread's side ──
+
+    def _run(self) -> None:
+        item: object = None
+        while item is not _END:
+            try:
+                wait = None if self._due == math.inf else max(0.0, self._due - time.monotonic())
+                item = self._queue.get(timeout=wait)
+            except queue.Empty:
+                item = None
+            if self._error is None:
+                try:
+                    self._store(item)
+                except Exception as error:
+                    self._error, self._due = error, math.inf
+            if isinstance(item, _Rows) and item.buffer is not None:
+                self._free.put(item.buffer)
+
+    def _store(self, item: object) -> None:
+        """Take one item's rows, if there is one, and commit when it is time."""
+        if isinstance(item, _Rows):
+            item.table.append(item.rows, item.data)
+            self._due = min(self._due, time.monotonic() + FLUSH_SECONDS)
+        if item is _END:
+            for _ in range(2):  # both slots of the record say how it ended
+                self._commit(tails=True, last=True)
+        elif time.monotonic() >= self._due:
+            self._commit(tails=True)
+        elif self._events and self._events.whole - self._flushed >= FLUSH_ROWS:
+            self._commit(tails=False)
+
+    def _commit(self, tails: bool, last: bool = False) -> None:
+        """Commit all rows, or, without `tails`, of the events those in full chunks."""
+        for table in self._tables.values():
+            if tails or table is not self._events:
+                table.store_tail(last)
+        self._sequence += 1
+        commit_tables(self._file, self._tables, self._sequence, self._fsync)
+        if self._events:
+            self._flushed = self._events.whole
+        self._due = math.inf if tails else time.monotonic() + FLUSH_SECONDS

@@ -1,0 +1,62 @@
+"""A writer killed at a random moment: what a reader saw before is there after, and the log can be gone on with."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from log_samples import check, write_rows
+
+from idealgas.events import BLOCK
+from idealgas.log import LogError, LogWriter, open_log, recover
+
+SAMPLES = Path(__file__).parents[1] / "log_samples.py"
+IN_CI, BY_HAND = 6, 100
+
+
+def rows_in(path: Path) -> int:
+    """Rows committed now, 0 before the file is there."""
+    try:
+        with open_log(path) as log:
+            return len(log)
+    except LogError:
+        return 0
+
+
+@pytest.mark.parametrize(
+    "case", [*range(IN_CI), *(pytest.param(case, marks=pytest.mark.long) for case in range(IN_CI, BY_HAND))]
+)
+def test_nothing_committed_is_lost(case, tmp_path):
+    random = np.random.default_rng(case)
+    path = tmp_path / "run.h5"
+    batch = [] if case % 3 == 0 else [str(random.integers(1, 20_000))]
+    child = subprocess.Popen([sys.executable, SAMPLES, path, ("gzip", "none")[case % 2], *batch])
+    try:
+        while not rows_in(path):
+            assert child.poll() is None
+            time.sleep(0.01)
+        end = time.monotonic() + random.uniform(0, 1)
+        seen = 0
+        while time.monotonic() < end:
+            seen = rows_in(path)
+    finally:
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+    with open_log(path) as log:
+        held = check(log)
+        assert held >= seen
+        checkpoints = len(log.checkpoints)
+    if case % 2:
+        assert recover(path) == held
+        with open_log(path) as log:
+            assert check(log) == held
+    with LogWriter.resume(path, int(random.integers(checkpoints))) as writer:
+        stop = writer.rows + int(random.integers(2 * BLOCK))
+        write_rows(writer, stop)
+        writer.close({"end_time": stop * 2.0**-10})
+    with open_log(path) as log:
+        assert check(log) == stop
+        assert log.complete
