@@ -47,7 +47,7 @@ def bench(numbers: list[float], fractions: list[float], collisions: int, repeats
         click.echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
         return
     table = Table("N", "φ", "log", "M collisions/s", "slowest – fastest", "log / no log")
-    without = {}
+    without: dict[tuple[int, float], float] = {}
     for row in found.rows:
         without.setdefault((row.N, row.phi), row.collisions_per_s)
         share = f"{row.collisions_per_s / without[row.N, row.phi]:.2f}" if row.log else ""

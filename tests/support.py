@@ -4,7 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
     position = np.array(position, float)
     n = len(position)
     return Gas(
-        box=box,
+        box=(float(box[0]), float(box[1])),
         position=position,
         velocity=np.array(np.broadcast_to(velocity, (n, 2)), float),
         radius=np.array(np.broadcast_to(radius, n), float),
@@ -32,20 +32,24 @@ def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
     )
 
 
-def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK, on_epoch: Callable[[Simulation], None] | None = None):
-    """Run to the stop and yield the event rows; `on_epoch` sees the simulation at the start of every further epoch."""
+def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> Iterator[EventBatch]:
+    """Run to the stop and yield the event rows, at most `rows` at a time."""
     while not simulation.finished(stop):
         batch = empty_batch(rows)
         yield batch.rows(0, simulation.advance(stop, batch))
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
-            if on_epoch is not None:
-                on_epoch(simulation)
 
 
 def record(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
     """Run to the stop and return all event rows."""
-    return EventBatch(*(np.concatenate(columns) for columns in zip(*batches(simulation, stop, rows), strict=True)))
+    columns = zip(*batches(simulation, stop, rows), strict=True)
+    return EventBatch(*(None if parts[0] is None else np.concatenate(parts) for parts in columns))
+
+
+def same_rows(a: EventBatch, b: EventBatch) -> bool:
+    """Whether two logs are equal, float for float."""
+    return all(np.array_equal(x, y) for x, y in zip(a, b, strict=True) if x is not None or y is not None)
 
 
 def idealgas(*arguments: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:

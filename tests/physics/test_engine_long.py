@@ -1,0 +1,132 @@
+"""A million collisions: every contact is one, nothing drifts, and rates and speeds are those of theory.
+
+Standard errors come from blocks of time and allow for their correlation. Agreement is asked for within 4 of them: a
+correct program fails that for 1 seed in 16 000.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy import stats
+from support import batches
+
+from idealgas.analysis import theory
+from idealgas.analysis.statistics import ensemble_inefficiency, mean
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.gas import Gas, make_gas
+from idealgas.scene import Box, Header, Run, Scene, Species
+
+N = 1000
+COLLISIONS = 1_000_000
+BLOCKS = 256
+FRAME = 4 * N  # rows between two looks at the speeds, about 4 collisions a disc
+
+dense_and_thin = pytest.mark.parametrize("phi", [0.01, 0.1, 0.3])
+
+
+class Record(NamedTuple):
+    """What is kept of a run; contact is |r_ij|/σ - 1 at worst, speeds is (frames, N)."""
+
+    gas: Gas
+    end: float
+    contact: float
+    drift: float
+    overlap: float
+    epochs: int
+    collision_times: np.ndarray
+    speeds: np.ndarray
+
+
+def gas_at(phi, number=N, seed=7):
+    radius = (phi * 100 / (np.pi * number)) ** 0.5
+    species = Species(name="gas", count=number, radius=radius, temperature=1.0)
+    return make_gas(Scene(scene=Header(seed=seed), box=Box(size=(10.0, 10.0)), species=(species,), run=Run(events=1)))
+
+
+@cache
+def run(phi):
+    """A million collisions from Gaussian velocities, looked at one by one."""
+    gas = gas_at(phi)
+    simulation = Simulation(gas, EventDriven())
+    sigma, energy = 2 * gas.radius[0], gas.kinetic_energy
+    contact, drift, overlap = 0.0, 0.0, simulation.overlap
+    times, speeds = [], []
+    for rows in batches(simulation, Stop(disc_collisions=COLLISIONS), FRAME):
+        first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
+        distance = np.hypot(*(rows.position[first] - rows.position[first + 1]).T)
+        contact = max(contact, np.abs(distance / sigma - 1).max(initial=0.0))
+        state = simulation.gas_now()
+        drift = max(drift, abs(state.kinetic_energy / energy - 1))
+        overlap = max(overlap, simulation.overlap)
+        times.append(rows.time[first])
+        speeds.append(np.hypot(*state.velocity.T))
+    end = simulation.last_event_time
+    return Record(gas, end, contact, drift, overlap, simulation.epoch, np.concatenate(times), np.array(speeds))
+
+
+@dense_and_thin
+def test_every_collision_is_a_contact(phi):
+    """To 1e-12 of a diameter; clocks are rounded by u times the way flown in an epoch, up to 6000 diameters here."""
+    found = run(phi)
+    assert len(found.collision_times) == COLLISIONS
+    assert found.contact <= 1e-12
+    assert found.overlap <= 1e-12
+
+
+@dense_and_thin
+def test_energy_does_not_drift(phi):
+    """A collision changes the energy by rounding, u or so of two discs' share: 1e6 of them stay far below 1e-12."""
+    found = run(phi)
+    assert found.drift <= 1e-12
+    assert found.epochs >= 10
+
+
+@dense_and_thin
+def test_collision_rate(phi):
+    """Enskog's rate with what a closed box of N discs changes: see `theory.box_contacts` and `finite_speed_factor`."""
+    found = run(phi)
+    start = found.end / 8
+    counts, edges = np.histogram(found.collision_times, BLOCKS, (start, found.end))
+    contacts = theory.box_contacts(found.gas.radius[:1], [N], found.gas.box)[0, 0]
+    expected = contacts * theory.mean_relative_speed(found.gas.temperature, 1.0, dof=2 * N)
+    rate = mean(2 / N * counts / np.diff(edges), theory=expected)
+    assert rate.standard_error < 2e-3 * expected
+    assert abs(rate.deviation) <= 4
+
+
+@dense_and_thin
+def test_speeds(phi):
+    """Kolmogorov and Smirnov, p > 0.001, against fixed total energy: P(speed > v) = (1 - m v²/2E)^(N - 1).
+
+    Samples of a disc are thinned by their statistical inefficiency, at least two frames apart.
+    """
+    found = run(phi)
+    speeds = found.speeds[len(found.speeds) // 8 :]
+    spacing = 2 * int(np.ceil(ensemble_inefficiency(speeds)))
+    assert spacing <= 10
+    samples = speeds[::spacing].ravel()
+    assert len(samples) >= 30_000
+    energy = found.gas.kinetic_energy
+    test = stats.kstest(samples, lambda v: 1 - np.maximum(1 - v**2 / (2 * energy), 0) ** (N - 1))
+    assert test.pvalue > 0.001
+
+
+@pytest.mark.long
+def test_a_hundred_million_collisions():
+    """Energy is a random walk of rounding errors, u a step and shared by N discs: 1e-12 is far."""
+    gas = gas_at(0.1)
+    simulation = Simulation(gas, EventDriven())
+    stop = Stop(disc_collisions=100_000_000)
+    worst, overlap = 0.0, 0.0
+    while not simulation.finished(stop):
+        simulation.advance(stop, None)
+        if not simulation.finished(stop):
+            simulation.next_epoch()
+            worst = max(worst, abs(simulation.gas.kinetic_energy / gas.kinetic_energy - 1))
+            overlap = max(overlap, simulation.overlap)
+    print(f"energy drift {worst:.1e}, deepest overlap {overlap:.1e} in {simulation.epoch} epochs")
+    assert worst <= 1e-12
+    assert overlap <= 1e-12
