@@ -14,7 +14,8 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
     import time
 
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bars
 
     columns = (
         BarColumn(),
@@ -24,7 +25,7 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
     )
     console = Console(stderr=True)
     started = time.perf_counter()
-    with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
+    with Bars(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
         task = bar.add_task("run", total=1.0, rate=0.0, time=0.0)
 
         def show(progress: "Progress") -> None:

@@ -54,8 +54,8 @@ def njit(function: Callable) -> Any:
 
 
 def inline(function: Callable) -> Any:
-    """Compile a small part that LLVM pastes into the entry points that call it."""
-    return numba.njit(function, forceinline=True, **_OPTIONS)
+    """Compile a small part that LLVM pastes into the entry points that call it; C has no need to."""
+    return numba.njit(function, forceinline=True, no_cfunc_wrapper=True, **_OPTIONS)
 
 
 def borrowed(arrays):

@@ -22,8 +22,8 @@ class EventBatch(NamedTuple):
     """Rows of the event log, in order of time; a pair collision is two rows, the smaller id first.
 
     time: (n,) f8, time. disc: (n,) u4, id. partner: (n,) i4, the other disc's id, or -1 - k for wall k.
-    kind: (n,) u1, a `Kind`. position, velocity: (n, 2) f8, length and length/time, after the event. Only with the effect:
-    angular_velocity: (n,) f8, 1/time, after the event. image: (n, 2) i4, box lengths that unwrap the position.
+    kind: (n,) u1, a `Kind`. position, velocity: (n, 2) f8, length and length/time, after the event. With the effect
+    only: angular_velocity: (n,) f8, 1/time, after the event. image: (n, 2) i4, box lengths that unwrap the position.
     """
 
     time: np.ndarray
@@ -37,7 +37,7 @@ class EventBatch(NamedTuple):
 
     def rows(self, start: int, stop: int) -> "EventBatch":
         """View of some of the rows."""
-        return EventBatch(*(None if column is None else column[start:stop] for column in self))
+        return EventBatch(*(None if column is None else column[start:stop] for column in self))  # type: ignore[arg-type]
 
 
 def empty_batch(rows: int = BLOCK, rotating: bool = False, periodic: bool = False) -> EventBatch:

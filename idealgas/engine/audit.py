@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import borrowed, inline, njit
-from idealgas.engine.neighbours import gather
+from idealgas.engine.neighbours import gather_block
 from idealgas.gas import Gas
 
 U = np.uintp
@@ -49,7 +49,7 @@ def deepest_overlap(record, ids, agenda, periodic):
     deepest = 0.0
     for i in range(record.shape[0]):
         disc = record[U(i)]
-        count = gather(agenda, np.int64(disc.column) - 1, np.int64(disc.row) - 1, 3, 3, periodic)
+        count = gather_block(agenda, disc, periodic)
         for k in range(count):
             j = agenda.candidates[U(k)]
             while j >= 0:

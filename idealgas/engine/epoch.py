@@ -2,29 +2,37 @@
 
 import math
 
+import numpy as np
+
 from idealgas.gas import Gas
 
-EVENTS_PER_DISC = 64
+EVENTS_PER_DISC = 64  # at most; half of it at least
 FEWEST_EVENTS = 1024  # of an epoch of few discs
 
 
-def epoch_length(gas: Gas, extra_speed: float = 0.0) -> float:
-    """A power of two of time in which about 64 events a disc happen; infinite if nothing moves.
-
-    extra_speed: length/time, what gravity or a piston may add to the mean speed of the discs.
-
-    A pure function of the gas: sums are exactly rounded, so neither the order of memory nor the processor has a say.
-    The rate is a kinetic-theory estimate of collisions with discs and with the sides.
-    """
+def encounters_per_length(gas: Gas) -> float:
+    """Encounters of all discs with discs and sides per length that each moves: a kinetic-theory estimate, 1/length."""
     n = len(gas)
-    mean_speed = math.fsum(math.hypot(vx, vy) for vx, vy in gas.velocity.tolist()) / n + extra_speed
-    if mean_speed == 0.0:
-        return math.inf
     largest_radius = float(gas.radius.max())
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
     phi = min(math.pi * math.fsum((gas.radius**2).tolist()) / gas.area, 0.7)
     contact_value = (1.0 - 7.0 * phi / 16.0) / (1.0 - phi) ** 2
     pairs = math.sqrt(2.0) * mean_diameter * (n - 1) / gas.area * contact_value
-    sides = sum(2.0 / (math.pi * (length - 2.0 * largest_radius)) for length in gas.box)
-    rate = n * mean_speed * (pairs + sides)
-    return 2.0 ** math.floor(math.log2(max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate))
+    room = [length - 2.0 * largest_radius for length in gas.box]
+    sides = sum(2.0 / (math.pi * length) for length in room if length > 0.0)
+    return n * (pairs + sides)
+
+
+def epoch_length(velocity: np.ndarray, encounters: float, extra_speed: float = 0.0) -> float:
+    """A power of two of time in which 32 to 64 events a disc happen; infinite if nothing moves.
+
+    velocity: (N, 2). encounters: see `encounters_per_length`. extra_speed: length/time, what gravity or a piston may
+    add to the mean speed. The sum of the speeds is exactly rounded, so neither the order of memory nor the processor
+    has a say in it.
+    """
+    n = len(velocity)
+    speeds = np.sqrt(velocity[:, 0] ** 2 + velocity[:, 1] ** 2)
+    mean_speed = math.fsum(speeds.tolist()) / n + extra_speed
+    if mean_speed * encounters == 0.0:
+        return math.inf
+    return 2.0 ** math.floor(math.log2(max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / (mean_speed * encounters)))

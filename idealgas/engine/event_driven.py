@@ -13,8 +13,8 @@ from idealgas.engine.cells import cell_index, cell_of, discs_per_cell, enter, ma
 from idealgas.engine.effects import Effects
 from idealgas.engine.exits import change_cell, predict_exit
 from idealgas.engine.neighbours import extend_contact, predict_contact
-from idealgas.engine.piston_leaf import offer_to_piston, predict_piston
-from idealgas.engine.records import Limits, add_to_counters, make_discs
+from idealgas.engine.piston_leaf import is_piston, offer_to_piston, predict_piston
+from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
 from idealgas.engine.schedule import SIDE_OF_BOX, clear, contact_is_next, next_disc, schedule, segment_of
@@ -69,6 +69,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
     stale = 0
     rows = 0
     now = counters[0].time
+    still = 0
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
@@ -79,9 +80,9 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
         if time > until:
             reached = True
             break
-        other = -1
-        if i == ids.shape[0]:
-            i = prediction.partner
+        other = np.int64(-1)
+        if is_piston(i, ids, effects.piston):
+            i = np.int64(prediction.partner)
             if not at_contact:
                 resolve_stop(time, effects.piston)
             if not at_contact or record[U(i)].count != prediction.partner_count:
@@ -92,7 +93,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
             predict_piston(record, ids, agenda, effects.piston, effects.gravity)
             rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
         elif at_contact and prediction.partner >= 0:
-            other = prediction.partner
+            other = np.int64(prediction.partner)
             if record[U(other)].count != prediction.partner_count:
                 stale += 1
                 predict_contact(record, ids, agenda, i, time, effects)
@@ -119,8 +120,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
         if other >= 0:
             predict(record, ids, agenda, other, time, effects)
         events += 1
-        if time < now:
-            raise ValueError("time ran backwards")
+        still = check_clock(time, now, still, record.shape[0])
         now = time
     add_to_counters(counters[0], events, collisions, crossings, stale, now)
     return rows, reached

@@ -26,23 +26,32 @@ def place(index, count, joined):
 
 
 @inline
-def gather(agenda, column, row, across, down, periodic):
-    """Put the first discs of a block of cells among the candidates; return how many."""
+def gather_line(agenda, count, column, row, along_y, periodic):
+    """Put the first discs of three cells in a row or column, from (column, row) on, behind `count` candidates."""
     cells = agenda.cells
-    count = 0
-    for y in range(down):
-        for x in range(across):
-            if periodic is not None:
-                c, image_x = place(column + x, cells.columns, periodic.x)
-                r, image_y = place(row + y, cells.rows, periodic.y)
-                note_image(agenda.images, count, image_x, image_y)
-            else:
-                c = column + x
-                r = row + y
-            j = cells.head[U(r * cells.columns + c)]
-            agenda.candidates[U(count)] = j
-            count += 1 if j >= 0 else 0
+    stride = cells.columns if along_y else 1
+    cell = row * cells.columns + column
+    for step in range(3):
+        if periodic is not None:
+            c, image_x = place(column + (0 if along_y else step), cells.columns, periodic.x)
+            r, image_y = place(row + (step if along_y else 0), cells.rows, periodic.y)
+            cell = r * cells.columns + c
+            note_image(agenda.images, count, image_x, image_y)
+        j = cells.head[U(cell)]
+        agenda.candidates[U(count)] = j
+        count += 1 if j >= 0 else 0
+        cell += stride
     return count
+
+
+@inline
+def gather_block(agenda, disc, periodic):
+    """Make the first discs of a disc's own and the eight cells around it the candidates; return how many."""
+    column = np.int64(disc.column) - 1
+    row = np.int64(disc.row) - 1
+    count = gather_line(agenda, 0, column, row, False, periodic)
+    count = gather_line(agenda, count, column, row + 1, False, periodic)
+    return gather_line(agenda, count, column, row + 2, False, periodic)
 
 
 @inline
@@ -54,10 +63,9 @@ def images_to(agenda, k, ids, i, j, periodic):
 
 
 @inline
-def store_contact(agenda, record, ids, i, k, time, periodic):
-    """Make candidate k the partner of disc i's contact."""
+def store_contact(agenda, record, ids, i, j, k, time, periodic):
+    """Make disc j, candidate k, the partner of disc i's contact."""
     prediction = agenda.prediction[U(i)]
-    j = agenda.candidates[U(k)]
     prediction.contact = time
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
@@ -76,6 +84,7 @@ def test_candidates(record, ids, agenda, count, i, now, effects):
     candidates = agenda.candidates
     disc = record[U(i)]
     best = agenda.prediction[U(i)].contact
+    partner = -1
     chosen = -1
     tied = False
     k = 0
@@ -90,12 +99,13 @@ def test_candidates(record, ids, agenda, count, i, now, effects):
         tied |= time == best
         hit = time < best
         best = time if hit else best
+        partner = j if hit else partner
         chosen = k if hit else chosen
         k += 1
     if tied | (best <= now):
         test_carefully(record, ids, agenda, count, i, effects)
-    elif chosen >= 0:
-        store_contact(agenda, record, ids, i, chosen, best, effects.periodic)
+    elif partner >= 0:
+        store_contact(agenda, record, ids, i, partner, chosen, best, effects.periodic)
 
 
 @njit
@@ -114,7 +124,7 @@ def test_carefully(record, ids, agenda, count, i, effects):
         if time == prediction.contact:
             earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))
         if earlier:
-            store_contact(agenda, record, ids, i, k, time, effects.periodic)
+            store_contact(agenda, record, ids, i, j, k, time, effects.periodic)
 
 
 @inline
@@ -143,7 +153,7 @@ def predict_contact(record, ids, agenda, i, now, effects):
     prediction.contact = NO_CONTACT
     prediction.partner = -1
     disc = record[U(i)]
-    count = gather(agenda, np.int64(disc.column) - 1, np.int64(disc.row) - 1, 3, 3, effects.periodic)
+    count = gather_block(agenda, disc, effects.periodic)
     test_candidates(record, ids, agenda, count, i, now, effects)
     test_segments(record, ids, agenda, i, effects.segments, effects)
 
@@ -156,7 +166,6 @@ def extend_contact(record, ids, agenda, i, exit_code, now, effects):
     along_y = exit_code >= 2
     column = np.int64(disc.column) + (-1 if along_y else forward)
     row = np.int64(disc.row) + (forward if along_y else -1)
-    across = 3 if along_y else 1
-    count = gather(agenda, column, row, across, 4 - across, effects.periodic)
+    count = gather_line(agenda, 0, column, row, not along_y, effects.periodic)
     test_candidates(record, ids, agenda, count, i, now, effects)
     test_segments(record, ids, agenda, i, effects.segments, effects)

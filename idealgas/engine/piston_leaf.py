@@ -11,6 +11,14 @@ U = np.uintp
 
 
 @inline
+def is_piston(i, ids, piston):
+    """Whether a leaf is the piston's."""
+    if piston is not None:
+        return i == ids.shape[0]
+    return False
+
+
+@inline
 def keep_if_earlier(record, ids, prediction, j, time, side):
     """Make disc j the piston's next if it is; return whether."""
     earlier = time < prediction.contact

@@ -1,6 +1,6 @@
 """The arrays the engines work on: one 64-byte record a disc, in an order of memory that is not the order of ids."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,8 @@ DISC = np.dtype(
     align=True,
 )  # fmt: skip
 
+MOST_AT_ONCE = 100_000  # events a disc at one instant, far beyond what any pile-up of discs needs
+
 COUNTERS = np.dtype(
     [
         ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),
@@ -28,7 +30,7 @@ COUNTERS = np.dtype(
 )  # fmt: skip
 
 
-def aligned(n: int, dtype: np.dtype, boundary: int = 64) -> np.ndarray:
+def aligned(n: int, dtype: np.dtype, boundary: int = 64) -> Any:
     """Zeroed array on a cache-line boundary; a structured one as a record array."""
     raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
     start = -raw.ctypes.data % boundary
@@ -47,7 +49,7 @@ class Limits(NamedTuple):
 class Discs(NamedTuple):
     """record: (N,) DISC. id: (N,) u4, the id of the disc at each place. box: (Lx, Ly)."""
 
-    record: np.ndarray
+    record: np.recarray
     id: np.ndarray
     box: tuple[float, float]
 
@@ -61,6 +63,18 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
     ids = aligned(len(gas), np.dtype("u4"))
     ids[:] = order
     return Discs(record, ids, gas.box)
+
+
+@inline
+def check_clock(time, now, still, n):
+    """How many events in a row have happened at one instant. ValueError if time runs backwards or does not run on."""
+    if time < now:
+        raise ValueError("time ran backwards")
+    if time > now:
+        return 0
+    if still > MOST_AT_ONCE * n:
+        raise ValueError("the clock stands still: a disc collides without end at one instant")
+    return still + 1
 
 
 @inline

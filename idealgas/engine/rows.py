@@ -54,8 +54,8 @@ def write_pair(batch, row, time, record, ids, i, j, effects):
     """Two discs met: the row of the smaller id comes first."""
     if batch is not None:
         a, b = (i, j) if ids[np.uintp(i)] < ids[np.uintp(j)] else (j, i)
-        a_id = ids[np.uintp(a)]
-        b_id = ids[np.uintp(b)]
+        a_id = np.int64(ids[np.uintp(a)])
+        b_id = np.int64(ids[np.uintp(b)])
         write_row(batch, row, time, a_id, b_id, DISC, record[np.uintp(a)], effects)
         write_row(batch, row + 1, time, b_id, a_id, DISC, record[np.uintp(b)], effects)
         return 2
@@ -66,7 +66,7 @@ def write_pair(batch, row, time, record, ids, i, j, effects):
 def write_side_hit(batch, row, time, own, side, disc, effects):
     """A disc met a side of the box."""
     if batch is not None:
-        write_row(batch, row, time, own, -1 - side, WALL, disc, effects)
+        write_row(batch, row, time, np.int64(own), -1 - side, WALL, disc, effects)
         return 1
     return 0
 
@@ -76,7 +76,7 @@ def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
     """A disc met a wall segment."""
     if batch is not None:
         kind = WALL_END if at_end else WALL
-        write_row(batch, row, time, own, -1 - FIRST_SEGMENT - segment, kind, disc, effects)
+        write_row(batch, row, time, np.int64(own), -1 - FIRST_SEGMENT - segment, kind, disc, effects)
         return 1
     return 0
 
@@ -85,6 +85,6 @@ def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
 def write_piston_hit(batch, row, time, own, piston, disc, effects):
     """A disc met the piston."""
     if batch is not None and piston is not None:
-        write_row(batch, row, time, own, -1 - piston[0].side, PISTON, disc, effects)
+        write_row(batch, row, time, np.int64(own), -1 - piston[0].side, PISTON, disc, effects)
         return 1
     return 0

@@ -140,53 +140,73 @@ def first_of_tied(tree, group, key, predictions, ids):
 
 
 @inline
+def first_of_eight(tree, group, predictions, ids):
+    """Earliest key of a group of nodes and the node that has it."""
+    key = tree.key
+    k0 = key[U(group)]
+    k1 = key[U(group + 1)]
+    k2 = key[U(group + 2)]
+    k3 = key[U(group + 3)]
+    k4 = key[U(group + 4)]
+    k5 = key[U(group + 5)]
+    k6 = key[U(group + 6)]
+    k7 = key[U(group + 7)]
+    n0 = 1 if k1 < k0 else 0
+    n1 = 3 if k3 < k2 else 2
+    n2 = 5 if k5 < k4 else 4
+    n3 = 7 if k7 < k6 else 6
+    tied = (k0 == k1) | (k2 == k3) | (k4 == k5) | (k6 == k7)
+    k0 = min(k0, k1)
+    k2 = min(k2, k3)
+    k4 = min(k4, k5)
+    k6 = min(k6, k7)
+    n0 = n1 if k2 < k0 else n0
+    n2 = n3 if k6 < k4 else n2
+    tied |= (k0 == k2) | (k4 == k6)
+    k0 = min(k0, k2)
+    k4 = min(k4, k6)
+    node = group + (n2 if k4 < k0 else n0)
+    tied |= k0 == k4
+    earliest = min(k0, k4)
+    if tied and earliest < NO_CONTACT_KEY:
+        node = first_of_tied(tree, group, earliest, predictions, ids)
+    return earliest, node
+
+
+@inline
 def schedule(tree, predictions, ids, i):
-    """Enter disc i's next time."""
+    """Enter disc i's next time.
+
+    A group whose winner is another node needs no search: either the changed node beats it or nothing changes.
+    """
     _, key, winner, start = tree
     prediction = predictions[U(i)]
     tree.time[U(i)] = min(prediction.contact, prediction.exit)
-    place = i
+    earliest = key[U(i)]
+    first = np.int64(i)
+    node = np.int64(i)
     base = 0
+    shift = 0
     for level in range(1, start.shape[0]):
-        place >>= 3
-        group = base + (place << 3)
-        k0 = key[U(group)]
-        k1 = key[U(group + 1)]
-        k2 = key[U(group + 2)]
-        k3 = key[U(group + 3)]
-        k4 = key[U(group + 4)]
-        k5 = key[U(group + 5)]
-        k6 = key[U(group + 6)]
-        k7 = key[U(group + 7)]
-        n0 = 1 if k1 < k0 else 0
-        n1 = 3 if k3 < k2 else 2
-        n2 = 5 if k5 < k4 else 4
-        n3 = 7 if k7 < k6 else 6
-        tied = (k0 == k1) | (k2 == k3) | (k4 == k5) | (k6 == k7)
-        k0 = min(k0, k1)
-        k2 = min(k2, k3)
-        k4 = min(k4, k5)
-        k6 = min(k6, k7)
-        n0 = n1 if k2 < k0 else n0
-        n2 = n3 if k6 < k4 else n2
-        tied |= (k0 == k2) | (k4 == k6)
-        k0 = min(k0, k2)
-        k4 = min(k4, k6)
-        node = group + (n2 if k4 < k0 else n0)
-        tied |= k0 == k4
-        earliest = min(k0, k4)
-        if tied and earliest < NO_CONTACT_KEY:
-            node = first_of_tied(tree, group, earliest, predictions, ids)
-        first = winner[U(node)]
+        group = node & ~7
+        place = (node - base) >> 3
         base = start[U(level)]
         parent = base + place
-        if key[U(parent)] == earliest and winner[U(parent)] == first and first != i:
-            return
+        if winner[U(parent)] >> shift != i >> shift and earliest != key[U(parent)]:
+            if earliest > key[U(parent)]:
+                return
+        else:
+            earliest, best = first_of_eight(tree, group, predictions, ids)
+            first = np.int64(winner[U(best)])
+            if key[U(parent)] == earliest and winner[U(parent)] == first and first != i:
+                return
         key[U(parent)] = earliest
         winner[U(parent)] = first
+        node = parent
+        shift += 3
 
 
 @inline
 def next_disc(tree):
     """Place of the disc whose event is next."""
-    return tree.winner[U(tree.start[U(tree.start.shape[0] - 1)])]
+    return np.int64(tree.winner[U(tree.start[U(tree.start.shape[0] - 1)])])

@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.engine.audit import Audit, audit
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.effects import Effects, begin_epoch, copy_of, end_epoch, speed_beyond, time_of_next_gate
-from idealgas.engine.epoch import epoch_length
+from idealgas.engine.epoch import encounters_per_length, epoch_length
 from idealgas.engine.event_driven import EventDriven
 from idealgas.engine.records import COUNTERS, Discs, Limits, synchronise
 from idealgas.events import EventBatch
@@ -27,7 +27,9 @@ class Method(Protocol):
 
     def start(self, gas: Gas, effects: Effects) -> None: ...
 
-    def advance(self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray) -> int: ...
+    def advance(
+        self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    ) -> tuple[int, bool]: ...
 
     def deepest_overlap(self) -> float: ...
 
@@ -68,12 +70,14 @@ class Simulation:
     totals: Totals = field(default_factory=Totals)
 
     def __post_init__(self) -> None:
+        self._encounters = encounters_per_length(self.gas)
         self._begin()
 
     def _begin(self) -> None:
         begin_epoch(self.effects, self.time)
         until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
-        self.length = min(epoch_length(self.gas, speed_beyond(self.gas, self.effects)), until_gate)
+        extra_speed = speed_beyond(self.gas, self.effects)
+        self.length = min(epoch_length(self.gas.velocity, self._encounters, extra_speed), until_gate)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
@@ -118,7 +122,7 @@ class Simulation:
         return self.time + float(self._counters[0].time)
 
     def gas_now(self) -> Gas:
-        """The gas where the last call of `advance` left it: at its time limit, or at the last event before another limit."""
+        """The gas where the last call of `advance` left it: at its time limit, or at the last event."""
         return self._synchronised(self._local_now, copy_of(self.effects.periodic))
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:

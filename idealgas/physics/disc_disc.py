@@ -36,8 +36,8 @@ def relative_motion(a, b, gravity, periodic, images):
 
 
 @inline
-def touch_delay(x, y, vx, vy, reach):
-    """Delay until (x, y), moving with (vx, vy), comes within reach of the origin; 0 if it is and approaches.
+def touch(x, y, vx, vy, reach):
+    """Whether (x, y), moving with (vx, vy), comes within reach of the origin, and after what delay; 0 if it is there.
 
     The root c/(√D - b) of the distance equation has no cancellation for small c, and D = v²S² - (v × r)² keeps its
     digits in a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). Free of branches.
@@ -47,15 +47,15 @@ def touch_delay(x, y, vx, vy, reach):
     cross = vx * y - vy * x
     discriminant = (vx * vx + vy * vy) * (reach * reach) - cross * cross
     delay = max(gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) - approach)
-    return delay if (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0)) else NEVER
+    return (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0)), delay
 
 
 @inline
 def first_touch(a, b, gravity, periodic, images):
     """Time at which approaching discs touch, or of the later record if they touch or overlap by then; else NEVER."""
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-    delay = touch_delay(x, y, vx, vy, a.r + b.r)
-    return time + delay if delay < NEVER else NEVER
+    meets, delay = touch(x, y, vx, vy, a.r + b.r)
+    return time + delay if meets else NEVER
 
 
 @inline

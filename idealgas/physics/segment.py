@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.disc_disc import touch_delay
+from idealgas.physics.disc_disc import touch
 from idealgas.physics.polynomial import first_descent
 from idealgas.physics.restitution import wall_rebound
 
@@ -80,6 +80,13 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
 
 
 @inline
+def straight_end_delay(x, y, disc):
+    """Delay until a disc in straight flight, at (x, y) from an end of the wall, meets it."""
+    meets, delay = touch(x, y, disc.vx, disc.vy, disc.r)
+    return delay if meets else NEVER
+
+
+@inline
 def accelerated_end_delay(x, y, vx, vy, r, gravity):
     """Delay until a disc at (x, y) on a parabola meets the origin: the first descent of |r(t)|² - R² through zero."""
     return first_descent(
@@ -143,8 +150,8 @@ def segment_contact(disc, own, segments, k, gravity, restitution):
         delay = min(delay, accelerated_end_delay(far_x, far_y, disc.vx, disc.vy, disc.r, gravity))
     else:
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
-        delay = min(delay, touch_delay(x, y, disc.vx, disc.vy, disc.r))
-        delay = min(delay, touch_delay(far_x, far_y, disc.vx, disc.vy, disc.r))
+        delay = min(delay, straight_end_delay(x, y, disc))
+        delay = min(delay, straight_end_delay(far_x, far_y, disc))
         if delay == 0.0:
             nx, ny, _ = segment_normal(disc, segments, k)
             if not reflection_changes(disc, own, nx, ny, restitution):

@@ -1,8 +1,8 @@
 """Thermal walls: a disc leaves with the velocity of a gas at the wall's temperature that streams through its surface.
 
 Normal speed density (m v/T) exp(-m v²/2T), tangential velocity and spin Gaussian. The random numbers are a pure
-function of the seed, the disc and the number of its emissions (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so neither
-the order of discs in memory nor a resumed run changes them.
+function of the seed, the disc and the number of its emissions (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so
+neither the order of discs in memory nor a resumed run changes them.
 """
 
 import math
