@@ -11,6 +11,7 @@ from idealgas.errors import UserError
 if TYPE_CHECKING:
     from idealgas.analysis.statistics import Estimate
     from idealgas.analysis.window import Window
+    from idealgas.log import Log
 
 PICTURES = (".png", ".pdf", ".svg")
 
@@ -18,6 +19,17 @@ PICTURES = (".png", ".pdf", ".svg")
 def log_argument(command: Callable) -> Callable:
     """`RUN.h5` as `path`."""
     return click.argument("path", metavar="RUN.h5")(command)
+
+
+def open_log(path: str) -> "Log":
+    """A log to read from; tells of one that was not closed, in one line."""
+    from idealgas import log
+
+    opened = log.open_log(path)
+    if opened.unclosed:
+        state = "is being written" if opened.live else "its writer died; `idealgas resume` would go on with it"
+        click.echo(f"{path}: {state}; read up to t = {opened.end_time:g}, {len(opened):,} event rows", err=True)
+    return opened
 
 
 def window_options(command: Callable) -> Callable:
@@ -43,14 +55,14 @@ plot_option = click.option(
 
 
 @contextmanager
-def reading() -> Iterator[Callable[[int, int], None]]:
-    """Yield progress(rows done, rows in all), shown as a bar on a terminal and nowhere else."""
+def reading(what: str = "events") -> Iterator[Callable[[int, int], None]]:
+    """Yield progress(done, in all) of what is read, shown as a bar on a terminal and nowhere else."""
     from rich.console import Console
     from rich.progress import Progress
 
     console = Console(stderr=True)
     with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task("reading events", total=None)
+        task = bar.add_task(f"reading {what}", total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 

@@ -25,11 +25,14 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
     )
     console = Console(stderr=True)
     started = time.perf_counter()
+    first: list[int] = []  # a run that was resumed does not begin at no events
     with Bars(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
         task = bar.add_task("run", total=1.0, rate=0.0, time=0.0)
 
         def show(progress: "Progress") -> None:
-            rate = progress.events / (time.perf_counter() - started)
+            if not first:
+                first.append(progress.events)
+            rate = (progress.events - first[0]) / (time.perf_counter() - started)
             bar.update(task, completed=progress.share, rate=rate, time=progress.time)
 
         yield show

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from idealgas.analysis.forecast import Forecast
+    from idealgas.scene import Scene
 
 
 @click.command()
@@ -30,13 +31,27 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
     expected = forecast(scene, make_gas(scene))
     if as_json:
-        tables = scene.model_dump(mode="json", exclude_none=True)
-        click.echo(json.dumps({"scene": tables, "effects": scene.effects, **asdict(expected)}, indent=2))
+        tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
+        effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
+        click.echo(json.dumps({"scene": tables, **effects, **asdict(expected)}, indent=2))
         return
     click.echo(dump_scene(scene))
     console = Console()
-    console.print(_species_table(expected), _gas_table(expected))
+    console.print(_species_table(expected), _walls_table(scene), _gas_table(expected))
+    if expected.beyond:
+        click.echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     click.echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
+    click.echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
+
+
+def _absent(scene: "Scene") -> tuple[str, ...]:
+    from idealgas.scene import EFFECTS
+
+    return tuple(name for name in EFFECTS if name not in scene.effects)
+
+
+def _number(value: float | None, digits: str = ".5g") -> str:
+    return "not known" if value is None else f"{value:{digits}}"
 
 
 def _species_table(expected: "Forecast") -> "Table":
@@ -47,7 +62,18 @@ def _species_table(expected: "Forecast") -> "Table":
         table.add_column(head, justify="right")
     for s in expected.species:
         values = (s.radius, s.mass, s.packing_fraction, s.temperature, s.collision_rate)
-        table.add_row(s.name, str(s.number), *(f"{value:.5g}" for value in values))
+        table.add_row(s.name, str(s.number), *map(_number, values))
+    return table
+
+
+def _walls_table(scene: "Scene") -> "Table":
+    from rich.table import Table
+
+    from idealgas.scene.walls import number_walls
+
+    table = Table("wall", "name", "from", "to", "what it does", title="Walls", title_justify="left")
+    for k, wall in enumerate(number_walls(scene)):
+        table.add_row(str(k), wall.name, *(f"({x:.6g}, {y:.6g})" for x, y in (wall.start, wall.end)), wall.action)
     return table
 
 
@@ -59,12 +85,12 @@ def _gas_table(expected: "Forecast") -> "Table":
     table.add_column(justify="right")
     table.add_row("discs N", f"{expected.number}")
     table.add_row("packing fraction φ", f"{expected.packing_fraction:.5g}")
-    table.add_row("temperature T", f"{expected.temperature:.5g}")
-    table.add_row("collisions per disc and time Γ", f"{expected.collision_rate:.5g}")
-    table.add_row("pair collisions per time", f"{expected.pair_collision_rate:.5g}")
-    table.add_row("wall hits per time", f"{expected.wall_hit_rate:.5g}")
-    table.add_row("end of the run, time", f"{expected.duration:.5g}")
-    table.add_row("events", f"{expected.events:,.0f}")
-    table.add_row("rows in the log", f"{expected.rows:,.0f}")
-    table.add_row("size of the log", decimal(int(expected.bytes)))
+    table.add_row("temperature T", _number(expected.temperature))
+    table.add_row("collisions per disc and time Γ", _number(expected.collision_rate))
+    table.add_row("pair collisions per time", _number(expected.pair_collision_rate))
+    table.add_row("wall hits per time", _number(expected.wall_hit_rate))
+    table.add_row("end of the run, time", _number(expected.duration))
+    table.add_row("events", _number(expected.events, ",.0f"))
+    table.add_row("rows in the log", _number(expected.rows, ",.0f"))
+    table.add_row("size of the log", "not known" if expected.bytes is None else decimal(int(expected.bytes)))
     return table

@@ -2,31 +2,38 @@
 
 import click
 
-from ._analysis import plot_option, print_estimates, print_json, reading, window_options
+from ._analysis import open_log, plot_option, print_estimates, print_json, reading, window_options
 from ._options import json_option
 
 
 @click.command()
-@click.argument("paths", metavar="RUN.h5...", nargs=-1, required=True)
+@click.argument("paths", metavar="RUN.h5|DIR...", nargs=-1, required=True)
 @window_options
 @plot_option
 @json_option
 def heat_capacity(
     paths: tuple[str, ...], start: float | None, end: float | None, plot: str | None, as_json: bool
 ) -> None:
-    """Measure the heat capacity at constant area.
+    """Measure the heat capacity by every route that the logs allow.
 
-    Several logs of different temperatures give the slope dE/dT; one log gives E/T. The thermometer is the pressure on
-    the walls, which knows nothing of the energy.
+    Logs of several temperatures give the slope dE/dT. One log gives E/T by the pressure on the walls of a closed box,
+    Var(E)/T² in a heat bath, and with spin, gravity or a piston the fluctuations of the kinetic energy. A folder is
+    that of a sweep with the analysis "heat-capacity".
     """
-    from contextlib import ExitStack
+    import os
 
-    from idealgas.analysis.heat_capacity import heat_capacity as measure
-    from idealgas.log import open_log
+    from idealgas.analysis.heat_capacity import heat_capacity as put_together
+    from idealgas.analysis.heat_capacity import measure_heat
+    from idealgas.study.results import heat_measurements
 
-    with ExitStack() as stack:
-        logs = [stack.enter_context(open_log(path)) for path in paths]
-        result = measure(logs, start, end, stack.enter_context(reading()))
+    measured = []
+    for path in paths:
+        if os.path.isdir(path):
+            measured += heat_measurements(path)
+            continue
+        with open_log(path) as log, reading() as progress:
+            measured.append(measure_heat(log, start, end, progress))
+    result = put_together(measured)
     if plot:
         from idealgas.analysis.figures import heat_capacity_figure, save
 
@@ -34,9 +41,10 @@ def heat_capacity(
     if as_json:
         print_json(result.as_dict())
         return
-    print_estimates(
-        "Temperature by wall pressure, theory E/N", [(point.path, point.temperature) for point in result.points]
-    )
-    of = "" if result.number is None else f", N = {result.number}"
-    print_estimates(f"Heat capacity per disc{of}", [(f"{result.route} /N", result.per_disc)])
-    click.echo(result.explanation)
+    if len(result.logs) <= 12:
+        rows = [(f"{m.path}: E/N", m.energy) for m in result.logs]
+        rows += [(f"{m.path}: T by {m.thermometer}", m.temperature) for m in result.logs]
+        print_estimates("Logs", rows)
+    print_estimates("C per disc, and γ", [(f"{route.name}, {route.kind}", route.value) for route in result.routes])
+    for name, why in result.refused.items():
+        click.echo(f"no {name}: {why}")

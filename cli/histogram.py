@@ -2,7 +2,16 @@
 
 import click
 
-from ._analysis import describe, log_argument, plot_option, print_estimates, print_json, reading, window_options
+from ._analysis import (
+    describe,
+    log_argument,
+    open_log,
+    plot_option,
+    print_estimates,
+    print_json,
+    reading,
+    window_options,
+)
 from ._options import json_option
 
 QUANTITIES = ("speed", "vx", "vy", "energy", "free-path", "free-time", "wait")
@@ -23,7 +32,6 @@ def histogram(
     Kolmogorov-Smirnov tests take decorrelated samples.
     """
     from idealgas.analysis.histogram import histogram as measure
-    from idealgas.log import open_log
 
     with open_log(path) as log, reading() as progress:
         result = measure(log, quantity, start, end, progress)

@@ -4,7 +4,7 @@ from typing import Any
 
 import click
 
-from ._analysis import log_argument, print_json
+from ._analysis import log_argument, open_log, print_json
 from ._options import json_option
 
 
@@ -16,7 +16,6 @@ def info(path: str, as_json: bool) -> None:
     from rich.console import Console
 
     from idealgas.analysis.info import info as describe_log
-    from idealgas.log import open_log
 
     with open_log(path) as log:
         found = describe_log(log)

@@ -2,7 +2,16 @@
 
 import click
 
-from ._analysis import describe, log_argument, plot_option, print_estimates, print_json, reading, window_options
+from ._analysis import (
+    describe,
+    log_argument,
+    open_log,
+    plot_option,
+    print_estimates,
+    print_json,
+    reading,
+    window_options,
+)
 from ._options import json_option
 
 
@@ -14,7 +23,6 @@ from ._options import json_option
 def temperature(path: str, start: float | None, end: float | None, plot: str | None, as_json: bool) -> None:
     """Measure the temperature of every degree of freedom and species; by equipartition all are E/N."""
     from idealgas.analysis.temperature import temperature as measure
-    from idealgas.log import open_log
 
     with open_log(path) as log, reading() as progress:
         result = measure(log, start, end, progress)

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.resting import resting_faults
 from idealgas.scene import Scene, SceneError, Species
-from idealgas.scene.checks import Fault
+from idealgas.scene.fault import Fault
+from idealgas.scene.geometry import room
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,8 @@ def make_gas(scene: Scene) -> Gas:
     """Discs of a scene at time 0: the explicit ones have the first ids, then each species in the order of the file.
 
     Every species of the gas has one radius and one mass: explicit discs are the species "disc", or, if they differ,
-    "disc 1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed.
+    "disc 1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or rest where gravity or
+    a piston presses them.
     """
     kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
     count = [len(scene.disc), *(s.count for s in scene.species)]
@@ -61,7 +64,7 @@ def make_gas(scene: Scene) -> Gas:
     explicit = np.array([kinds.index((disc.radius, disc.mass)) for disc in scene.disc], np.uint16)
     names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
     radius = np.concatenate(([disc.radius for disc in scene.disc], radius))
-    return Gas(
+    gas = Gas(
         box=scene.box.size,
         position=_positions(scene, radius),
         velocity=np.concatenate(
@@ -77,6 +80,9 @@ def make_gas(scene: Scene) -> Gas:
         ),
         species_names=(*names, *(s.name for s in scene.species)),
     )
+    if faults := list(resting_faults(scene, gas)):
+        raise SceneError(scene.report(faults))
+    return gas
 
 
 def stream(seed: int, use: str) -> np.random.Generator:
@@ -103,9 +109,11 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """(N, 2): explicit discs, then lattices, one for all species of the same region, then discs at random."""
     from idealgas import placement  # compiled code, which a reader of logs does not need
 
-    box = scene.box.size
+    box = scene.box
+    space = room(box, scene.piston)
+    walls = np.array([(*w.start, *w.end) for w in scene.wall if w.there_at_start]).reshape(-1, 4)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    grid = placement.make_grid(box, radius)
+    grid = placement.make_grid(box.size, radius, box.joined, walls)
     random = stream(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
     if scene.disc:
@@ -114,12 +122,14 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
     lattices: dict[tuple[float, ...], list[int]] = {}
     at_random: list[int] = []
     for k, s in enumerate(scene.species):
-        x0, y0, x1, y1 = region = s.region or (0.0, 0.0, *box)
+        x0, y0, x1, y1 = region = s.region or space
         bounds[ids[k + 1]] = x0 + s.radius, y0 + s.radius, x1 - s.radius, y1 - s.radius
         if s.placement == "lattice":
             lattices.setdefault(region, []).append(k)
         else:
             at_random.append(k)
+            for axis in (a for a in range(2) if box.joined[a] and s.region is None):
+                bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
     for members in lattices.values():
         chosen = np.concatenate([ids[k + 1] for k in members])
         if len(members) > 1:

@@ -1,4 +1,4 @@
-"""Where discs are put: on a lattice, or at random without overlap.
+"""Where discs are put: on a lattice, or at random without overlap, and clear of the walls.
 
 Random placement is sequential addition, the largest discs first. Whenever a place is refused, one of the discs placed
 so far makes a Metropolis step: the gas stays close to equilibrium and does not jam at the packing fraction 0.547
@@ -22,19 +22,58 @@ LEAST_PATIENCE = 3_000_000
 class Grid(NamedTuple):
     """Cells no smaller than the largest diameter, each with a linked list of the discs whose centres it holds.
 
-    first: (columns, rows) i4. next: (N,) i4. Both end with -1. size: (2,) f8, of a cell.
+    first: (columns, rows) i4. next: (N,) i4. Both end with -1. size: (2,) f8, of a cell. period: (2,) f8, box lengths
+    along which opposite sides are joined, else 0. wall: (W, 4) f8, both ends of every wall, images included; those that
+    a disc of cell (c, r) may touch are wall_item[k] with k from wall_start[c * rows + r] to before the next one.
     """
 
     first: np.ndarray
     next: np.ndarray
     size: np.ndarray
+    period: np.ndarray
+    wall: np.ndarray
+    wall_start: np.ndarray
+    wall_item: np.ndarray
 
 
-def make_grid(box: tuple[float, float], radius: np.ndarray) -> Grid:
-    """An empty grid with about one disc a cell."""
-    side = max(2 * float(radius.max()), math.sqrt(box[0] * box[1] / len(radius)))
+def make_grid(
+    box: tuple[float, float],
+    radius: np.ndarray,
+    joined: tuple[bool, bool] = (False, False),
+    walls: np.ndarray | None = None,
+) -> Grid:
+    """An empty grid with about one disc a cell. joined: along which axes. walls: (W, 4), both ends of each."""
+    largest = float(radius.max())
+    side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
     shape = [max(int(length / side), 1) for length in box]
-    return Grid(np.full(shape, -1, np.int32), np.full(len(radius), -1, np.int32), np.array(box) / shape)
+    size, period = np.array(box) / shape, np.where(joined, box, 0.0)
+    images = _images(np.empty((0, 4)) if walls is None else walls, period)
+    near = [_cells_near(wall, shape, size, largest) for wall in images]
+    cell = np.concatenate([*near, np.empty(0, np.int64)])
+    item = np.repeat(np.arange(len(images)), [len(cells) for cells in near])
+    order = np.argsort(cell, kind="stable")
+    start = np.searchsorted(cell[order], np.arange(shape[0] * shape[1] + 1))
+    first, behind = np.full(shape, -1, np.int32), np.full(len(radius), -1, np.int32)
+    return Grid(first, behind, size, period, images, start, item[order])
+
+
+def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
+    """Walls and their images next to the box, where sides are joined."""
+    shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
+    return np.concatenate([walls + np.array((dx, dy, dx, dy)) for dx in shifts[0] for dy in shifts[1]])
+
+
+def _cells_near(wall: np.ndarray, shape: list[int], size: np.ndarray, reach: float) -> np.ndarray:
+    """Indices of the cells of which some point may lie within reach of a wall."""
+    ends = wall.reshape(2, 2)
+    along = ends[1] - ends[0]
+    low, high = ends.min(axis=0) - reach, ends.max(axis=0) + reach
+    ranges = [np.arange(*np.clip((low[a] // size[a], high[a] // size[a] + 1), 0, shape[a]).astype(int)) for a in (0, 1)]
+    column, row = (axis.ravel() for axis in np.meshgrid(*ranges))
+    centre = (np.column_stack((column, row)) + 0.5) * size - ends[0]
+    foot = np.clip(centre @ along / (along @ along), 0.0, 1.0)[:, None] * along
+    near = np.hypot(*(centre - foot).T) <= (reach + np.hypot(*size) / 2) * (1 + 1e-9)
+    return (column * shape[1] + row)[near]
 
 
 @inline
@@ -63,19 +102,49 @@ def _remove(grid, position, i):
 
 
 @inline
+def _around(index, count, period):
+    """The range of an index and its neighbours, before they are taken round joined sides."""
+    return (index - 1, index + 2) if period > 0.0 else (max(index - 1, 0), min(index + 2, count))
+
+
+@inline
+def _distance(a, b, period):
+    """Difference of two coordinates, through joined sides if that is shorter."""
+    return a - b - period * round((a - b) / period) if period > 0.0 else a - b
+
+
+@inline
 def _is_free(grid, position, radius, x, y, reach, i):
-    """Whether a disc of radius `reach` at (x, y) would overlap none of the grid but, perhaps, disc i."""
+    """Whether a disc of radius `reach` at (x, y) would overlap no wall and, but for disc i, none of the grid."""
+    columns, rows = grid.first.shape
     column, row = _cell(grid, x, y)
-    for c in range(max(column - 1, 0), min(column + 2, grid.first.shape[0])):
-        for r in range(max(row - 1, 0), min(row + 2, grid.first.shape[1])):
-            k = grid.first[c, r]
+    for c in range(*_around(column, columns, grid.period[0])):
+        for r in range(*_around(row, rows, grid.period[1])):
+            k = grid.first[c % columns, r % rows]
             while k >= 0:
-                dx = x - position[k, 0]
-                dy = y - position[k, 1]
+                dx = _distance(x, position[k, 0], grid.period[0])
+                dy = _distance(y, position[k, 1], grid.period[1])
                 contact = reach + radius[k]
                 if k != i and dx * dx + dy * dy < contact * contact:
                     return False
                 k = grid.next[k]
+    return _is_clear(grid, column * rows + row, x, y, reach)
+
+
+@inline
+def _is_clear(grid, cell, x, y, reach):
+    """Whether a disc of radius `reach` at (x, y), in a cell, would overlap no wall."""
+    for k in range(grid.wall_start[cell], grid.wall_start[cell + 1]):
+        wall = grid.wall[grid.wall_item[k]]
+        along_x = wall[2] - wall[0]
+        along_y = wall[3] - wall[1]
+        dx = x - wall[0]
+        dy = y - wall[1]
+        share = min(max((dx * along_x + dy * along_y) / (along_x * along_x + along_y * along_y), 0.0), 1.0)
+        dx -= share * along_x
+        dy -= share * along_y
+        if dx * dx + dy * dy < reach * reach:
+            return False
     return True
 
 

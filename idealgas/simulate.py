@@ -3,18 +3,41 @@
 import math
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from idealgas.columns import (
+    boundary_of,
+    by_name,
+    disc_constants,
+    disc_state,
+    event_columns,
+    observed,
+    restore,
+    snapshot_state,
+    walls_of,
+    whole_state,
+)
+from idealgas.effects import make_effects
+from idealgas.energy import Energy, energy_of, is_conserved
 from idealgas.engine.audit import Audit
-from idealgas.engine.simulation import LATEST, METHODS, Simulation, Stop
-from idealgas.gas import make_gas
-from idealgas.log import Column, LogWriter, box_walls
-from idealgas.scene import Scene, dump_scene
+from idealgas.engine.effects import Effects
+from idealgas.engine.monte_carlo import MonteCarlo
+from idealgas.engine.simulation import LATEST, METHODS, TRAJECTORY, Method, Simulation, Stop, Totals
+from idealgas.events import empty_batch
+from idealgas.gas import Gas, make_gas
+from idealgas.log import Checkpoint, Column, Log, LogError, LogWriter, open_log
+from idealgas.scene import Scene, dump_scene, parse_scene
+from idealgas.scene.defaults import reference_speed
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
+TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
 
-TOTALS = (Column("events", "i8"), Column("disc_collisions", "i8"), Column("wall_hits", "i8"))
+TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
 OBSERVABLES = (
     Column("kinetic_energy", "f8", unit="energy"),
     Column("momentum", "f8", (2,), "mass length/time"),
@@ -28,9 +51,10 @@ OBSERVABLES = (
 class Summary:
     """What a run came to.
 
-    completed: whether it reached its end. end_time: time. energy_drift: relative. deepest_overlap: in units of the sum
-    of the radii; farthest_outside: in units of a diameter (both at the starts of epochs and at the end). seconds: wall
-    time, start-up and compilation not counted.
+    completed: whether it reached its end. end_time: time. trials: of pairs, by Monte Carlo. energy_change: of the
+    discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
+    discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
+    starts of epochs and at the end). seconds: wall time, start-up and compilation not counted.
     """
 
     completed: bool
@@ -38,9 +62,11 @@ class Summary:
     events: int
     disc_collisions: int
     wall_hits: int
+    trials: int
     rows: int
     epochs: int
-    energy_drift: float
+    energy_change: float
+    energy_drift: float | None
     deepest_overlap: float
     farthest_outside: float
     seconds: float
@@ -55,6 +81,10 @@ class Progress:
     events: int
 
 
+STOP_RULES = ("until", "events", "collisions_per_disc", "trials")
+"""Keys of [run] that say where it ends: all that may change when a log is gone on with."""
+
+
 def stop_of(scene: Scene, n: int) -> Stop:
     """Where the scene of n discs ends."""
     run = scene.run
@@ -65,7 +95,18 @@ def stop_of(scene: Scene, n: int) -> Stop:
         stop = stop._replace(events=run.events)
     if run.collisions_per_disc is not None:
         stop = stop._replace(disc_collisions=math.ceil(run.collisions_per_disc * n / 2))
+    if run.trials is not None:
+        stop = stop._replace(trials=run.trials)
     return stop
+
+
+def make_method(scene: Scene, start: Gas) -> Method:
+    """The method a scene calls for; start: its discs at time 0."""
+    run = scene.run
+    if run.method != "monte_carlo":
+        return METHODS[run.method]()
+    v_ref = reference_speed(run, float(np.hypot(*start.velocity.T).max()))
+    return MonteCarlo(scene.scene.seed, v_ref, one_sided=run.impact == "one_sided")
 
 
 def simulate(
@@ -84,43 +125,183 @@ def simulate(
     cannot be written.
     """
     gas = make_gas(scene)
+    effects = make_effects(scene, gas)
+    method = make_method(scene, gas)
     with LogWriter(
         path,
         gas,
         scene_text=dump_scene(scene),
         seed=scene.scene.seed,
         command=command,
-        walls=box_walls(gas.box),
+        trajectory=TRAJECTORY,
+        walls=walls_of(scene),
+        boundary=boundary_of(scene),
+        gravity=scene.gravity.acceleration if scene.gravity else (0.0, 0.0),
         events=scene.log.events,
         compression=scene.log.compression,
+        fsync=scene.log.fsync,
         force=force,
-        checkpoint_values=TOTALS,
-        observables=OBSERVABLES,
+        disc_columns=disc_constants(effects),
+        event_columns=event_columns(effects, method.homogeneous),
+        make_batch=batch_maker(effects, method),
+        checkpoint_arrays=tuple(disc_state(gas, effects, method.homogeneous)),
+        checkpoint_values=(*TOTALS, *whole_state(effects)),
+        observables=(*OBSERVABLES, *observed(gas, effects)),
+        snapshot_arrays=tuple(snapshot_state(gas, effects, method.homogeneous)) if scene.log.snapshot_every else (),
     ) as log:
-        run = _Run(scene, Simulation(gas, METHODS[scene.run.method]()), log)
+        run = _Run(scene, Simulation(gas, method, effects), log, _Past(energy_of(gas, effects)))
         return run.to_the_end(on_progress, interrupted)
+
+
+def resume(
+    path: str | os.PathLike[str],
+    overrides: Sequence[str] = (),
+    *,
+    command: str = "",
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+    interrupted: Callable[[], bool] = lambda: False,
+) -> Summary:
+    """Go on with a log from its last checkpoint, to a log that is bit for bit that of a run without a break.
+
+    overrides: `run.until=...` and the other STOP_RULES, to end later than the log's scene says. A log that is at its
+    end stays as it is. Raises SceneError for a wrong override; LogError if another process writes the log, if the
+    program or a change of the scene would make it go on otherwise than it began, or if it goes beyond the end asked
+    for.
+    """
+    with open_log(path) as log:
+        if log.live:
+            raise LogError(f"{log.path}: another process writes this file")
+        scene = _scene_to_go_on_with(log, overrides)
+        if log.complete and scene == log.scene:
+            return Summary(**log.summary)
+        last = log.checkpoints[-1] if len(log.checkpoints) else None
+        _check_end(log, last, stop_of(scene, len(log.discs)))
+        _check_laws(log, last, _simulation_at(log, last, scene))
+        simulation = _simulation_at(log, last, scene)
+        past = _past_of(log, last, scene)
+    with LogWriter.resume(
+        path,
+        None if last is None else -1,
+        fsync=scene.log.fsync,
+        make_batch=batch_maker(simulation.effects, simulation.method),
+        scene_text=dump_scene(scene),
+        command=command,
+    ) as writer:
+        return _Run(scene, simulation, writer, past).to_the_end(on_progress, interrupted)
+
+
+def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
+    """`empty_batch` for a run with these effects by this method."""
+    return partial(
+        empty_batch,
+        rotating=effects.rotation is not None,
+        periodic=effects.periodic is not None,
+        homogeneous=method.homogeneous,
+    )
+
+
+def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
+    if (made_with := log.attributes.get("trajectory")) != TRAJECTORY:
+        versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
+        raise LogError(f"{log.path}: cannot be resumed: {versions}")
+    scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides)
+    run = log.scene.run.model_copy(update={rule: getattr(scene.run, rule) for rule in STOP_RULES})
+    expected = log.scene.model_copy(update={"run": run})
+    changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]
+    if changed:
+        tables = " and ".join(f"[{name}]" for name in changed)
+        raise LogError(f"{log.path}: cannot be resumed with another {tables}: only {', '.join(STOP_RULES)} may change")
+    return scene
+
+
+def _check_end(log: Log, last: Checkpoint | None, stop: Stop) -> None:
+    """Raise LogError where a run would have to end before the log does."""
+    if last is None:
+        return
+    end_time = log.end_time if log.complete else last.time
+    counts = log.summary if log.complete else last.values
+    events, collisions, trials = (int(counts[name]) for name in ("events", "disc_collisions", "trials"))
+    if end_time > stop.time or events >= stop.events or collisions >= stop.disc_collisions or trials >= stop.trials:
+        so_far = f"t = {end_time:g}, {events} events"
+        raise LogError(f"{log.path}: goes on to {so_far} already, not before the end that is asked for")
+
+
+def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Simulation:
+    """The simulation of a scene as it was at a checkpoint, or at its start."""
+    start = log.discs
+    effects = make_effects(scene, start)
+    method = make_method(scene, start)
+    if checkpoint is None:
+        return Simulation(start, method, effects)
+    gas = restore(start, effects, checkpoint)
+    totals = Totals(**{column.name: int(checkpoint.values[column.name]) for column in TOTALS})
+    return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, totals)
+
+
+def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
+    """Raise LogError unless the discs go on from the last checkpoint as they did."""
+    first = 0 if last is None else last.row
+    batch = batch_maker(simulation.effects, simulation.method)(TRIAL_ROWS + 2)
+    rows = min(simulation.advance(Stop(), batch, TRIAL_ROWS), len(log) - first)
+    for stored in log.chunks(None, first, first + rows):
+        again, batch = batch.rows(0, len(stored.time)), batch.rows(len(stored.time), TRIAL_ROWS + 2)
+        for name in log.columns:
+            differs = (getattr(again, name) != getattr(stored, name)).reshape(len(stored.time), -1).any(axis=1)
+            if differs.any():
+                row = first + int(differs.argmax())
+                why = f"{name} in event row {row} comes out differently with this program on this machine"
+                raise LogError(f"{log.path}: cannot be resumed: {why}")
+        first += len(stored.time)
+
+
+class _Past(NamedTuple):
+    """What a run has behind it: energy at time 0, largest overlap and reach outside, snapshots, whether it began."""
+
+    start_energy: Energy
+    overlap: float = 0.0
+    outside: float = 0.0
+    snapshots: int = 0
+    begun: bool = False
+
+
+def _past_of(log: Log, last: Checkpoint | None, scene: Scene) -> _Past:
+    if last is None:
+        return _Past(energy_of(log.discs, make_effects(scene, log.discs)))
+    effects = make_effects(scene, log.discs)
+    gas = restore(log.discs, effects, log.checkpoints[0])
+    deepest = {
+        name: float(values[times <= last.time].max())
+        for name, (times, values) in log.observables.items()
+        if name in ("overlap", "outside")
+    }
+    snapshots = int(log.snapshot_times.searchsorted(last.time, "right"))
+    return _Past(energy_of(gas, effects), **deepest, snapshots=snapshots, begun=True)
 
 
 class _Run:
     """A simulation and its log on the way to a stop."""
 
-    def __init__(self, scene: Scene, simulation: Simulation, log: LogWriter) -> None:
+    def __init__(self, scene: Scene, simulation: Simulation, log: LogWriter, past: _Past) -> None:
         self._scene = scene
         self._simulation = simulation
         self._log = log
         self._stop = stop_of(scene, len(simulation.gas))
-        self._start_energy = simulation.gas.kinetic_energy
-        self._overlap = self._outside = 0.0
+        self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
 
     def to_the_end(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
         simulation, stop = self._simulation, self._stop
-        self._checkpoint()
+        if not self._begun:
+            if self._scene.log.snapshot_every:
+                self._snapshot()
+            self._checkpoint()
         self._slice(0)  # compiles, before the clock starts
         started = time.perf_counter()
         slice_events = 4096
         while not simulation.finished(stop):
             before = time.perf_counter()
             self._slice(slice_events)
+            if simulation.paused:
+                self._snapshot()
             if simulation.epoch_over and not simulation.finished(stop):
                 simulation.next_epoch()
                 self._checkpoint()
@@ -128,7 +309,7 @@ class _Run:
             if interrupted():
                 break
             taken = time.perf_counter() - before
-            if taken < SHORTEST_SLICE:
+            if taken < SHORTEST_SLICE and not simulation.paused:
                 slice_events *= 2
             elif taken > LONGEST_SLICE:
                 slice_events = max(slice_events // 2, 1)
@@ -139,41 +320,58 @@ class _Run:
     def _slice(self, events: int) -> None:
         """Advance by at most so many events and hand their rows to the log."""
         if not self._scene.log.events:
-            self._simulation.advance(self._stop, None, events)
+            self._simulation.advance(self._stop, None, events, self._next_snapshot)
             return
         batch = self._log.batch()
-        rows = self._simulation.advance(self._stop, batch, events)
+        rows = self._simulation.advance(self._stop, batch, events, self._next_snapshot)
         self._log.write(batch, rows)
+
+    @property
+    def _next_snapshot(self) -> float:
+        every = self._scene.log.snapshot_every
+        return self._snapshots * every if every else LATEST
+
+    def _snapshot(self) -> None:
+        """Store a copy of the discs as they are now."""
+        gas, effects = self._simulation.state_now()
+        state = by_name(snapshot_state(gas, effects, self._simulation.method.homogeneous))
+        self._log.snapshot(self._next_snapshot, self._snapshots, state)
+        self._snapshots += 1
 
     def _checkpoint(self) -> None:
         """At the start of an epoch: audit, and store the state from which everything else can be rebuilt."""
         simulation = self._simulation
-        self._observe(simulation.time, simulation.audit())
+        self._observe(simulation.time, simulation.gas, simulation.audit())
         if simulation.epoch % self._scene.log.checkpoint_every == 0:
-            state = {"position": simulation.gas.position, "velocity": simulation.gas.velocity}
-            self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals))
+            state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.homogeneous))
+            values = asdict(simulation.totals) | by_name(whole_state(simulation.effects))
+            self._log.checkpoint(simulation.time, simulation.epoch, state, values)
 
-    def _observe(self, time: float, audit: Audit) -> None:
+    def _observe(self, time: float, gas: Gas, audit: Audit) -> None:
         self._overlap = max(self._overlap, audit.overlap)
         self._outside = max(self._outside, audit.outside)
-        self._log.observe(time, self._simulation.epoch, audit._asdict() | asdict(self._simulation.so_far))
+        simulation = self._simulation
+        sample = by_name(observed(gas, simulation.effects, time - simulation.time))
+        self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.so_far) | sample)
 
     def _finish(self, seconds: float) -> Summary:
         """Audit the state at the end; the run may be continued from its last checkpoint as if it had not ended."""
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.last_event_time
-        audit = simulation.audit_now()
-        self._observe(end_time, audit)
+        gas = simulation.gas_now()
+        self._observe(end_time, gas, simulation.audit_now())
+        start, end = self._start_energy, energy_of(gas, simulation.effects, end_time - simulation.time)
+        drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
         totals = simulation.so_far
-        drift = audit.kinetic_energy / self._start_energy - 1.0 if self._start_energy > 0 else 0.0
         return Summary(
             completed=simulation.finished(stop),
             end_time=end_time,
             **asdict(totals),
             rows=2 * totals.disc_collisions + totals.wall_hits,
             epochs=simulation.epoch + 1,
-            energy_drift=drift,
+            energy_change=end.gas - start.gas,
+            energy_drift=drift if is_conserved(simulation.effects) else None,
             deepest_overlap=self._overlap,
             farthest_outside=self._outside,
             seconds=seconds,
@@ -182,5 +380,5 @@ class _Run:
     def _progress(self) -> Progress:
         done, stop = self._simulation.so_far, self._stop
         now = self._simulation.last_event_time
-        shares = (now / stop.time, done.events / stop.events, done.disc_collisions / stop.disc_collisions)
-        return Progress(max(shares), now, done.events)
+        counted = (done.events / stop.events, done.disc_collisions / stop.disc_collisions, done.trials / stop.trials)
+        return Progress(max(now / stop.time, *counted), now, done.events)

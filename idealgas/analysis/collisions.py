@@ -7,6 +7,7 @@ import numpy as np
 
 from idealgas.analysis import theory
 from idealgas.analysis.composition import Composition
+from idealgas.analysis.ensemble import Ensemble
 from idealgas.analysis.flights import Moments
 from idealgas.analysis.impacts import Impacts
 from idealgas.analysis.statistics import Estimate, estimate, mean, ratio
@@ -41,15 +42,26 @@ class FreePath:
         return {"species": self.species, **values}
 
 
-def expected_rates(discs: Composition, box: tuple[float, float], temperature: float) -> np.ndarray:
-    """Γ_ij (S, S) by theory for all discs of a closed box; not a number where the fluid freezes.
+def expected_rates(
+    discs: Composition,
+    box: tuple[float, float],
+    equilibrium: Ensemble,
+    joined: tuple[bool, bool] = (False, False),
+    has_positions: bool = True,
+) -> np.ndarray:
+    """Γ_ij (S, S) by theory for all discs of a box, or of a gas without one; not a number where the fluid freezes.
+
+    joined: which axes of the box are periodic.
 
     The contacts that the pressure comes from (`theory.box_compressibility`), met at relative speeds that a fixed total
     energy makes a little larger than Maxwell and Boltzmann's.
     """
-    contacts = theory.box_contacts(discs.radius, discs.number, box)
+    if has_positions:
+        contacts = theory.box_contacts(discs.radius, discs.number, box, joined)
+    else:
+        contacts = theory.homogeneous_contacts(discs.radius, discs.number, box)
     reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
-    speed = np.sqrt(np.pi * temperature / (2 * reduced)) * theory.finite_speed_factor(2 * discs.number.sum())
+    speed = np.sqrt(np.pi * equilibrium.temperature / (2 * reduced)) * theory.finite_speed_factor(equilibrium.dof)
     return contacts * speed
 
 
@@ -69,7 +81,7 @@ def collision_rates(
 
 
 def free_paths(
-    discs: Composition, expected: np.ndarray, temperature: float, window: Window, moments: Moments, impacts: Impacts
+    discs: Composition, expected: np.ndarray, equilibrium: Ensemble, window: Window, moments: Moments, impacts: Impacts
 ) -> tuple[FreePath, ...]:
     """Mean free path λ = ⟨v⟩/Γ and time 1/Γ of each species. expected: as `expected_rates` gives them."""
     counts = window.of(impacts.collisions)
@@ -77,7 +89,7 @@ def free_paths(
     for i, (name, mass, number) in enumerate(zip(discs.name, discs.mass, discs.number, strict=True)):
         own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
         speeds = window.of(moments.flights)[:, i, 0] / number
-        speed = theory.mean_speed(temperature, mass, 2 * discs.number.sum())
+        speed = theory.mean_speed(equilibrium.of_species[i], mass, equilibrium.dof)
         free_time = np.inf if expected[i].sum() == 0 else 1 / expected[i].sum()
         paths.append(
             FreePath(

@@ -7,6 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from idealgas.analysis import theory
+from idealgas.analysis.equation_of_state import EquationOfState
 from idealgas.analysis.heat_capacity import HeatCapacity
 from idealgas.analysis.histogram import Histogram
 from idealgas.analysis.pressure import Pressure
@@ -29,10 +31,10 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> None:
         raise failure from error
 
 
-def panels(number: int) -> tuple[Figure, list[Axes]]:
-    """A figure of `number` panels below one another."""
-    figure = Figure(figsize=(7.0, 1.2 + 3.0 * number), layout="constrained")
-    axes = [figure.add_subplot(number, 1, k + 1) for k in range(number)]
+def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Axes]]:
+    """A figure of panels below one another, or in several columns, row by row."""
+    figure = Figure(figsize=(1.5 + 5.5 * columns, 1.2 + 3.0 * rows), layout="constrained")
+    axes = [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
     for ax in axes:
         ax.grid(color="#dddddd", linewidth=0.6)
         ax.set_axisbelow(True)
@@ -67,7 +69,8 @@ def temperature_figure(result: Temperature) -> Figure:
     edges = result.window.edges
     for entry, colour in zip(result.species, _repeated(COLOURS), strict=False):
         ax.stairs(entry.history, edges, baseline=None, color=colour, label=f"{entry.species} (N = {entry.number})")
-    ax.axhline(result.expected, color=GREY, linestyle="--", label="E/N")
+    if result.expected is not None:
+        ax.axhline(result.expected, color=GREY, linestyle="--", label="E/N")
     if result.window.first:
         ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
     ax.set_xlabel("t (time)")
@@ -94,20 +97,49 @@ def pressure_figure(result: Pressure) -> Figure:
     return figure
 
 
+def equation_of_state_figure(result: EquationOfState) -> Figure:
+    """Z against φ with the theories, and below what is left when the resummed series is taken away."""
+    figure, (above, below) = panels(2)
+    phi = np.array([state.packing_fraction for state in result.states])
+    z = np.array([state.infinite.value for state in result.states])
+    error = np.array([state.infinite.standard_error for state in result.states])
+    best = theory.compressibility(phi)
+    x = np.linspace(1e-9, 1.05 * phi.max(), 400)
+    curves = (
+        ("virial series, resummed", theory.compressibility, "-", COLOURS[1]),
+        ("virial series to B10", theory.virial_series, "--", COLOURS[2]),
+        ("Henderson 1975", theory.henderson_compressibility, ":", COLOURS[3]),
+    )
+    above.axhline(1.0, color=GREY, label="ideal gas")
+    for name, function, style, colour in curves:
+        above.plot(x, function(x), style, color=colour, label=name)
+        below.plot(x, 1e3 * (function(x) / theory.compressibility(x) - 1), style, color=colour)
+    above.errorbar(phi, z, error, fmt="o", ms=4, color=COLOURS[0], label="measured")
+    below.errorbar(phi, 1e3 * (z / best - 1), 1e3 * error / best, fmt="o", ms=4, color=COLOURS[0], capsize=3)
+    largest = 1e3 * float((np.abs(z / best - 1) + 3 * error / best).max())
+    below.set_ylim(-largest, largest)
+    above.set_ylabel("Z = PA/NT (no unit), N → ∞")
+    below.set_ylabel("deviation (‰ of Z)")
+    below.set_xlabel("packing fraction φ (no unit)")
+    above.legend(frameon=False)
+    return figure
+
+
 def heat_capacity_figure(result: HeatCapacity) -> Figure:
-    """Energy per disc against the temperature that the walls feel, the fit, and E = NT."""
+    """C per disc (and γ) by every route with its error bar, and the theory beside it."""
     figure, (ax,) = panels(1)
-    temperature = np.array([point.temperature.value for point in result.points])
-    error = [point.temperature.standard_error for point in result.points]
-    energy = np.array([point.energy for point in result.points])
-    x = np.array([0.0, 1.1 * temperature.max()])
-    ax.plot(x, x, "--", color=GREY, label="E/N = T")
-    fit = f"{result.route} = ({result.per_disc.value:.4g} ± {result.per_disc.standard_error:.2g}) N"
-    ax.plot(x, result.intercept + result.per_disc.value * x, color=COLOURS[1], label=fit)
-    ax.errorbar(temperature, energy, xerr=error, fmt="o", color=COLOURS[0], capsize=3, label="logs")
-    ax.set_xlabel("temperature by wall pressure (energy, k_B = 1)")
-    ax.set_ylabel("energy per disc (energy)")
+    routes = result.routes[::-1]
+    for k, route in enumerate(routes):
+        ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
+        if route.value.theory is not None:
+            ax.plot([route.value.theory] * 2, [k - 0.35, k + 0.35], color=COLOURS[1])
+    ax.set_yticks(range(len(routes)), [f"{route.name}\n({route.kind})" for route in routes], fontsize="small")
+    ax.plot([], [], "o", color=COLOURS[0], label="measured")
+    ax.plot([], [], color=COLOURS[1], label="theory")
+    ax.set_xlabel("C/N, and γ (no unit, k_B = 1)")
+    ax.set_ylabel("route")
     ax.legend(frameon=False)
+    figure.set_figheight(1.5 + 0.55 * len(routes))
     return figure
 
 

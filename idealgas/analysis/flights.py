@@ -27,6 +27,10 @@ class Moments:
 
     columns = ("time", "disc", "partner", "velocity")
 
+    def __init__(self, gravity: tuple[float, float] = (0.0, 0.0)) -> None:
+        """gravity: length/time²; flights are parabolas."""
+        self.gravity = gravity
+
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         self.edges = edges
         self.flights = np.zeros((len(edges) - 1, len(gas.species_names), 4))
@@ -37,44 +41,67 @@ class Moments:
 
     def add(self, rows: Any) -> None:
         self._block = _add_moments(
-            rows.time, rows.disc, rows.partner, rows.velocity,
+            rows.time, rows.disc, rows.partner, rows.velocity, self.gravity,
             self._species, self._mass, self._tracks, self.edges, self._block, self.flights, self.events,
         )  # fmt: skip
 
     def finish(self) -> None:
-        _finish_moments(self._species, self._mass, self._tracks, self.edges, self.flights)
+        _finish_moments(self.gravity, self._species, self._mass, self._tracks, self.edges, self.flights)
 
 
 @inline
-def _spend_moments(track, species, mass, until, edges, block, flights):
-    vx, vy = track[VX], track[VY]
-    square = vx * vx + vy * vy
-    speed = math.sqrt(square)
-    energy = mass * square  # twice
+def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
+    falls = gravity[0] != 0.0 or gravity[1] != 0.0
     since = track[T]
     k = block_back(edges, block, since)
     while True:
         stop = until if k == block else edges[k + 1]
         weight = stop - since
+        vx = track[VX] + gravity[0] * (since - track[T])
+        vy = track[VY] + gravity[1] * (since - track[T])
         sums = flights[k, species]
-        sums[0] += weight * speed
-        sums[1] += mass * weight * vx * vx
-        sums[2] += mass * weight * vy * vy
-        sums[3] += weight * energy * energy
+        if falls:
+            _add_fall(sums, mass, vx, vy, gravity[0], gravity[1], weight)
+        else:
+            square = vx * vx + vy * vy
+            energy = mass * square  # twice
+            sums[0] += weight * math.sqrt(square)
+            sums[1] += mass * weight * vx * vx
+            sums[2] += mass * weight * vy * vy
+            sums[3] += weight * energy * energy
         if k == block:
             break
         since = stop
         k += 1
 
 
+@inline
+def _add_fall(sums, mass, vx, vy, gx, gy, t):
+    """The integrals over a parabola of duration t that starts at velocity (vx, vy)."""
+    a, b, c = gx * gx + gy * gy, vx * gx + vy * gy, vx * vx + vy * vy  # v² = a s² + 2 b s + c
+    across = abs(vx * gy - vy * gx) / a
+    sums[0] += math.sqrt(a) * (_half_arc(t + b / a, across) - _half_arc(b / a, across))
+    sums[1] += mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0))
+    sums[2] += mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0))
+    power = c * c + t * (2.0 * b * c + t * ((4.0 * b * b + 2.0 * a * c) / 3.0 + t * (a * b + t * a * a / 5.0)))
+    sums[3] += mass * mass * t * power
+
+
+@inline
+def _half_arc(u, k):
+    """∫₀ᵘ √(s² + k²) ds."""
+    root = math.sqrt(u * u + k * k)
+    return 0.5 * (u * root + (k * k * math.asinh(u / k) if k > 0.0 else 0.0))
+
+
 @njit
-def _add_moments(time, disc, partner, velocity, species, mass, tracks, edges, block, flights, events):
+def _add_moments(time, disc, partner, velocity, gravity, species, mass, tracks, edges, block, flights, events):
     for row in range(time.shape[0]):
         i = np.uintp(disc[row])
         now = time[row]
         block = block_at(edges, block, now)
         track = tracks[i]
-        _spend_moments(track, species[i], mass[i], now, edges, block, flights)
+        _spend_moments(track, gravity, species[i], mass[i], now, edges, block, flights)
         track[T] = now
         track[VX] = velocity[row, 0]
         track[VY] = velocity[row, 1]
@@ -86,9 +113,9 @@ def _add_moments(time, disc, partner, velocity, species, mass, tracks, edges, bl
 
 
 @njit
-def _finish_moments(species, mass, tracks, edges, flights):
+def _finish_moments(gravity, species, mass, tracks, edges, flights):
     for i in range(tracks.shape[0]):
-        _spend_moments(tracks[i], species[i], mass[i], edges[-1], edges, edges.shape[0] - 2, flights)
+        _spend_moments(tracks[i], gravity, species[i], mass[i], edges[-1], edges, edges.shape[0] - 2, flights)
 
 
 class VelocityHistogram:

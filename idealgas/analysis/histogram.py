@@ -14,6 +14,7 @@ from scipy import stats
 from idealgas.analysis import laws
 from idealgas.analysis.collisions import expected_rates
 from idealgas.analysis.composition import composition
+from idealgas.analysis.ensemble import ensemble
 from idealgas.analysis.flights import VELOCITY_QUANTITIES, VelocityHistogram
 from idealgas.analysis.intervals import FreeFlights, Waits
 from idealgas.analysis.statistics import Estimate, ensemble_inefficiency, mean, ratio
@@ -21,6 +22,7 @@ from idealgas.analysis.window import Window, measure
 from idealgas.errors import UserError
 from idealgas.gas import Gas
 from idealgas.log import Log
+from idealgas.scene import EFFECTS
 
 QUANTITIES = {
     "speed": "length/time",
@@ -32,6 +34,9 @@ QUANTITIES = {
     "wait": "time",
 }
 """What there are distributions of, and its unit."""
+
+UNIFORM = ("periodic sides", "rotation", "thermal walls")
+"""Effects that leave the gas uniform, its flights straight and its laws known."""
 
 BINS = 120
 SAMPLED = 256  # discs of a species whose velocities are tested, at most
@@ -141,17 +146,17 @@ def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) ->
 
 
 def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
-    gas, discs = log.discs, composition(log.discs)
-    thermal = np.sqrt(gas.temperature / discs.mass)
-    high = np.full(len(thermal), 12 * gas.temperature) if quantity == "energy" else 5 * thermal
+    gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
+    thermal = np.sqrt(equilibrium.temperature / discs.mass)
+    high = np.full(len(thermal), 12 * equilibrium.temperature) if quantity == "energy" else 5 * thermal
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [_some_discs(gas, s) for s in range(len(thermal))]
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members))
-    window = measure(log, [tally], start, end, progress)
+    window = measure(log, [tally], start, end, progress, (*UNIFORM, "wall segments"))
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
-        possible = velocity_laws(quantity, gas.temperature, discs.mass[s], 2 * len(gas))
+        possible = velocity_laws(quantity, equilibrium.of_species[s], discs.mass[s], equilibrium.dof)
         spacing = int(np.ceil(ensemble_inefficiency(snapshots)))
         last_law = list(possible.values())[-1]
         found.append(
@@ -178,21 +183,22 @@ def _some_discs(gas: Gas, species: int) -> np.ndarray:
 
 
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
-    gas, discs = log.discs, composition(log.discs)
-    rates = expected_rates(discs, gas.box, gas.temperature)
+    gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
+    temperature = equilibrium.temperature
+    rates = expected_rates(discs, gas.box, equilibrium, log.joined, log.has_positions)
     rate = rates.sum(axis=1)
     if not (rate > 0).all():
         raise UserError(f"{log.path}: no law of free flights for this gas")
     path = quantity == "free-path"
     high = 10 / rate
     if path:
-        high *= np.sqrt(np.pi * gas.temperature / (2 * discs.mass))
+        high *= np.sqrt(np.pi * temperature / (2 * discs.mass))
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress)
+    window = measure(log, [tally], start, end, progress, UNIFORM)
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
     law = laws.FreePathLaw if path else laws.FreeTimeLaw
-    dilute = [law(gas.temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s])) for s in range(len(rate))]
+    dilute = [law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s])) for s in range(len(rate))]
     return window, [
         _intervals(name, tally, s, blocks, high[s], {"dilute gas": dilute[s]}, dilute[s].mean)
         for s, name in enumerate(discs.name)
@@ -202,7 +208,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
 def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
     longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # rows: pairs count twice
     tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress)
+    window = measure(log, [tally], start, end, progress, EFFECTS)
     blocks = slice(window.first, len(tally.counts))
     with np.errstate(invalid="ignore"):
         law = laws.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())

@@ -14,6 +14,7 @@ import numpy as np
 from idealgas.analysis import theory
 from idealgas.analysis.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths
 from idealgas.analysis.composition import Composition, composition
+from idealgas.analysis.ensemble import ensemble
 from idealgas.analysis.flights import Moments
 from idealgas.analysis.impacts import Impacts
 from idealgas.analysis.statistics import Estimate, mean
@@ -28,6 +29,9 @@ OUTWARD = np.array([(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)])
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
 """Names of the routes that theory is checked against."""
+
+EFFECTS = ("periodic sides", "rotation", "thermal walls")
+"""With these the gas is uniform, at a temperature known beforehand."""
 
 TOLERANCE = 4.0
 """Standard errors that measurement and theory may differ by."""
@@ -90,35 +94,36 @@ def pressure(
     progress: Callable[[int, int], None] | None = None,
 ) -> Pressure:
     """Measure the pressure of a log between two times, by default from detected equilibrium to the end."""
-    moments, impacts = Moments(), Impacts()
-    window = measure(log, [moments, impacts], start, end, progress)
-    gas, discs = log.discs, composition(log.discs)
-    if not gas.temperature > 0:
+    equilibrium = ensemble(log)
+    if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    expected = expected_rates(discs, gas.box, gas.temperature)
-    theories = hard_disc_theories(discs, gas)
+    moments, impacts = Moments(), Impacts(len(log.walls), log.joined)
+    window = measure(log, [moments, impacts], start, end, progress, allowed=EFFECTS)
+    gas, discs = log.discs, composition(log.discs)
+    expected = expected_rates(discs, gas.box, equilibrium, log.joined)
+    theories = hard_disc_theories(discs, gas, log.joined)
     return Pressure(
         window=window,
         number=len(gas),
         area=gas.area,
-        temperature=gas.temperature,
+        temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(discs, gas, theories.get(IN_BOX), window, impacts),
+        routes=_routes(discs, gas, equilibrium.temperature, log.joined, theories.get(IN_BOX), window, impacts),
         theories=theories,
         collision_rates=collision_rates(discs, expected, window, impacts),
-        free_paths=free_paths(discs, expected, gas.temperature, window, moments, impacts),
+        free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
     )
 
 
 IN_BOX = "hard discs, this box and N"
 
 
-def hard_disc_theories(discs: Composition, gas: Gas) -> dict[str, float]:
+def hard_disc_theories(discs: Composition, gas: Gas, joined: tuple[bool, bool] = (False, False)) -> dict[str, float]:
     """Z at the gas's packing fraction: of an ideal gas, and where they apply of hard discs."""
     phi = gas.packing_fraction
     if phi > theory.FREEZING:
         return {"ideal gas": 1.0}
-    in_box = theory.box_compressibility(discs.radius, discs.number, gas.box)
+    in_box = theory.box_compressibility(discs.radius, discs.number, gas.box, joined)
     if len(discs.name) > 1:
         mixture = theory.mixture_compressibility(discs.radius, discs.number, gas.area)
         return {"ideal gas": 1.0, IN_BOX: in_box, "hard discs, Jenkins & Mancini 1987": mixture}
@@ -131,20 +136,29 @@ def hard_disc_theories(discs: Composition, gas: Gas) -> dict[str, float]:
     }
 
 
-def _routes(discs: Composition, gas: Gas, in_box: float | None, window: Window, impacts: Impacts) -> tuple[Route, ...]:
-    energy = gas.kinetic_energy
-    push = (window.of(impacts.impulse) * OUTWARD).sum(axis=2).T
-    length = np.array([gas.box[1], gas.box[1], gas.box[0], gas.box[0]])
-    at_wall = None
-    if in_box is not None and np.ptp(discs.radius) == 0:
-        reach_x, reach_y = (side - 2 * discs.radius[0] for side in gas.box)
-        at_wall = in_box * 2 * gas.area / (reach_x * gas.box[1] + reach_y * gas.box[0])
+def _routes(
+    discs: Composition,
+    gas: Gas,
+    temperature: float,
+    joined: tuple[bool, bool],
+    in_box: float | None,
+    window: Window,
+    impacts: Impacts,
+) -> tuple[Route, ...]:
+    ideal = len(gas) * temperature / gas.area
+    sides = [k for k in range(len(BOX_SIDES)) if not joined[k // 2]]
+    push = (window.of(impacts.impulse[:, : len(BOX_SIDES)]) * OUTWARD).sum(axis=2).T
+    length = [gas.box[1 - k // 2] for k in range(len(BOX_SIDES))]
+    at_wall: dict[int, float] = {}
+    if in_box is not None and np.ptp(discs.radius) == 0:  # walls act on centres, which reach a radius less far
+        at_wall = {k: in_box * gas.box[k // 2] / (gas.box[k // 2] - 2 * discs.radius[0]) for k in sides}
     series: dict[str, tuple[np.ndarray, float | None]] = {
-        f"{name} wall": (push[k] / length[k], at_wall) for k, name in enumerate(BOX_SIDES)
+        f"{BOX_SIDES[k]} wall": (push[k] / length[k], at_wall.get(k)) for k in sides
     }
-    series["all walls"] = (push.sum(axis=0) / length.sum(), at_wall)
-    series[WALLS] = (window.of(impacts.wall_virial) / (2 * gas.area), in_box)
-    series[PAIRS] = ((energy + window.of(impacts.pair_virial) / 2) / gas.area, in_box)
-    return tuple(
-        Route(name, mean(p), mean(p * gas.area / energy, theory=expected)) for name, (p, expected) in series.items()
-    )
+    if sides:
+        perimeter = sum(length[k] for k in sides)
+        at_walls = sum(at_wall[k] * length[k] for k in sides) / perimeter if at_wall else None
+        series["all walls"] = (push[sides].sum(axis=0) / perimeter, at_walls)
+        series[WALLS] = (window.of(impacts.wall_virial) / (len(sides) / 2 * gas.area), in_box)
+    series[PAIRS] = (ideal + window.of(impacts.pair_virial) / (2 * gas.area), in_box)
+    return tuple(Route(name, mean(p), mean(p / ideal, theory=expected)) for name, (p, expected) in series.items())

@@ -7,7 +7,7 @@ independent (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007)) and where equ
 
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -16,6 +16,9 @@ from scipy import stats
 
 logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
 from pymbar import timeseries  # noqa: E402
+
+ENOUGH_REPLICATES = 20
+"""Independent runs from which the spread among them tells the error; with fewer their own errors do."""
 
 LONG_BLOCKS = 32
 """Blocks that errors of anticorrelated series are taken from."""
@@ -41,6 +44,17 @@ class Estimate:
         """Confidence interval by Student's t."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
+
+    @classmethod
+    def from_dict(cls, found: Mapping[str, float | None]) -> "Estimate":
+        """What `as_dict` was made from."""
+        value, error, samples = (found[name] for name in ("value", "standard_error", "independent_samples"))
+        return cls(
+            math.nan if value is None else value,
+            math.nan if error is None else error,
+            math.inf if samples is None else samples,
+            found["theory"],
+        )
 
     def as_dict(self) -> dict[str, float | None]:
         """For JSON, which has no word for what is not a number."""
@@ -144,3 +158,18 @@ def bootstrap(
     picks = np.random.default_rng(seed).integers(n, size=(resamples, n))
     spread = np.std([function(replicates[pick]) for pick in picks], ddof=1)
     return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), theory)
+
+
+def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
+    """Mean of the same quantity over independent runs: with enough of them by bootstrap, else by their own errors."""
+    values, theory = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
+    if len(values) >= ENOUGH_REPLICATES:
+        return bootstrap(values, theory=theory)
+    error = math.sqrt(sum(r.standard_error**2 for r in replicates)) / len(values)
+    return Estimate(float(values.mean()), error, float(sum(r.independent_samples for r in replicates)), theory)
+
+
+def mean_theory(theories: Sequence[float | None]) -> float | None:
+    """Mean of what theory says of each run; None if it is silent on one."""
+    known = [theory for theory in theories if theory is not None]
+    return sum(known) / len(known) if len(known) == len(theories) else None

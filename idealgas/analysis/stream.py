@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from idealgas._jit import inline
+from idealgas.analysis.ensemble import drift
 from idealgas.gas import Gas
 from idealgas.log import Log
 
@@ -38,9 +39,13 @@ def stream(
     tallies: Iterable[Tally],
     progress: Callable[[int, int], None] | None = None,
 ) -> None:
-    """Feed the events after edges[0] up to edges[-1] to the tallies; progress(rows done, rows in all)."""
+    """Feed the events after edges[0] up to edges[-1] to the tallies; progress(rows done, rows in all).
+
+    Velocities are relative to the centre of mass where that moves on for ever.
+    """
+    frame = drift(log)
     state = log.state_at(edges[0])
-    gas = replace(log.discs, position=state.position, velocity=state.velocity)
+    gas = replace(log.discs, position=state.position, velocity=state.velocity - frame)
     tallies = list(tallies)
     columns = tuple(dict.fromkeys(name for tally in tallies for name in tally.columns))
     for tally in tallies:
@@ -48,6 +53,8 @@ def stream(
     first, last = log.row_at(edges[0], "right"), log.row_at(edges[-1], "right")
     done = 0
     for rows in log.chunks(columns, first, last):
+        if frame.any() and "velocity" in columns:
+            rows = rows._replace(velocity=rows.velocity - frame)
         for tally in tallies:
             tally.add(rows)
         done += len(rows[0])

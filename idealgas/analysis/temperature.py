@@ -7,15 +7,17 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.composition import composition
+from idealgas.analysis.ensemble import known_ensemble
 from idealgas.analysis.flights import Moments
 from idealgas.analysis.statistics import Estimate, mean
 from idealgas.analysis.window import Window, measure
 from idealgas.log import Log
+from idealgas.scene import EFFECTS
 
 
 @dataclass(frozen=True)
 class SpeciesTemperature:
-    """Mean of m vx², m vy² and m v²/2 of the discs of one species, k_B = 1, beside E/N.
+    """Mean of m vx², m vy² and m v²/2 of the discs of one species, k_B = 1, beside what equipartition gives them.
 
     history: (B,), m v²/2 in every block that was read, those before the window included.
     """
@@ -35,10 +37,10 @@ class SpeciesTemperature:
 
 @dataclass(frozen=True)
 class Temperature:
-    """Temperatures by species, the last of them that of all discs; expected: E/N."""
+    """Temperatures by species, the last of them that of all discs; expected: its E/N if that is known beforehand."""
 
     window: Window
-    expected: float
+    expected: float | None
     species: tuple[SpeciesTemperature, ...]
 
     def as_dict(self) -> dict[str, Any]:
@@ -58,13 +60,18 @@ def temperature(
     progress: Callable[[int, int], None] | None = None,
 ) -> Temperature:
     """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
-    moments = Moments()
-    window = measure(log, [moments], start, end, progress)
+    moments = Moments(log.gravity)
+    window = measure(log, [moments], start, end, progress, allowed=EFFECTS)
     discs = composition(log.discs)
-    expected = log.discs.temperature
+    equilibrium = known_ensemble(log)
+    shares: list[float] | list[None] = [None] * len(discs.name)
+    expected = None
+    if equilibrium is not None:
+        shares = equilibrium.of_species.tolist()
+        expected = float(discs.number @ equilibrium.of_species / discs.number.sum())
     sums = moments.flights[:, :, 1:3] / window.width
 
-    def entry(name: str, number: int, directions: np.ndarray) -> SpeciesTemperature:
+    def entry(name: str, number: int, expected: float | None, directions: np.ndarray) -> SpeciesTemperature:
         """directions: (B, 2), sums of m vx² and m vy²."""
         x, y = directions[window.first :].T / number
         history = directions.sum(axis=1) / (2 * number)
@@ -73,7 +80,7 @@ def temperature(
         )
 
     entries = [
-        entry(name, int(number), sums[:, s])
+        entry(name, int(number), shares[s], sums[:, s])
         for s, (name, number) in enumerate(zip(discs.name, discs.number, strict=True))
     ]
-    return Temperature(window, expected, (*entries, entry("all discs", len(log.discs), sums.sum(axis=1))))
+    return Temperature(window, expected, (*entries, entry("all discs", len(log.discs), expected, sums.sum(axis=1))))

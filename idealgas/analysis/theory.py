@@ -79,26 +79,30 @@ def mixture_compressibility(radius: ArrayLike, number: ArrayLike, area: float) -
 # a closed box with reflecting walls
 
 
-def confinement(radius: ArrayLike, box: tuple[float, float]) -> np.ndarray:
+def confinement(radius: ArrayLike, box: tuple[float, float], joined: tuple[bool, bool] = (False, False)) -> np.ndarray:
     """How much oftener discs i and j touch in a box than in a part of the plane of its size, (S, S).
 
     Walls hold the centres within (Lx - 2R)(Ly - 2R), which crowds them, and take partners away, which does the
     opposite. For two discs alone it is exact: the part of the contact circle that stays inside, averaged. In a gas it
     is so to first order in the density; in simulations Z - 1 follows it within 1e-3 up to φ = 0.5 in boxes of nine
-    diameters or more, and within 1.5 % at φ = 0.3 in one of five.
+    diameters or more, and within 1.5 % at φ = 0.3 in one of five. Joined sides are no walls.
     """
     radius = np.asarray(radius, float)
     own, other = radius[:, None, None], radius[:, None]
     angle = (np.arange(4096) + 0.5) / 4096 * 2 * math.pi
     share = np.ones(())
-    for side, component in zip(box, (np.cos(angle), np.sin(angle)), strict=True):
+    for side, periodic, component in zip(box, joined, (np.cos(angle), np.sin(angle)), strict=True):
+        if periodic:
+            continue
         a, b = side - 2 * own, side - 2 * other  # lengths that the centres reach
         inside = np.clip((a + b) / 2 - (own + other) * np.abs(component), 0.0, np.minimum(a, b))
         share = share * inside * side / (a * b)
-    return share.mean(axis=2)
+    return np.broadcast_to(share, (len(radius), len(radius), len(angle))).mean(axis=2)
 
 
-def box_contacts(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:
+def box_contacts(
+    radius: ArrayLike, number: ArrayLike, box: tuple[float, float], joined: tuple[bool, bool] = (False, False)
+) -> np.ndarray:
     """2 σ_ij n_j χ_ij of discs in a closed box, (S, S): their collision rate per relative speed.
 
     No disc meets itself, walls confine the discs, and equal discs have the better χ = (Z - 1)/2φ. Not a number beyond
@@ -112,15 +116,25 @@ def box_contacts(radius: ArrayLike, number: ArrayLike, box: tuple[float, float])
     sigma = radius[:, None] + radius
     if len(radius) == 1:
         chi = (compressibility(phi, number[0]) - 1) / (2 * phi)
-        return 2 * sigma * number / area * chi * confinement(radius, box)
+        return 2 * sigma * number / area * chi * confinement(radius, box, joined)
     contacts = 2 * sigma * number / area * mixture_contact_value(radius, number, area)
-    return (contacts - np.diag(np.diag(contacts) / number)) * confinement(radius, box)
+    return (contacts - np.diag(np.diag(contacts) / number)) * confinement(radius, box, joined)
 
 
-def box_compressibility(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> float:
+def homogeneous_contacts(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:
+    """2 σ_ij n_j χ of discs without positions, (S, S): no disc meets itself, and χ is Henderson's for all."""
+    radius, number = np.asarray(radius, float), np.asarray(number, float)
+    area = box[0] * box[1]
+    chi = contact_value(math.pi * (number * radius**2).sum() / area)
+    return 2 * (radius[:, None] + radius) * (number - np.eye(len(number))) / area * chi
+
+
+def box_compressibility(
+    radius: ArrayLike, number: ArrayLike, box: tuple[float, float], joined: tuple[bool, bool] = (False, False)
+) -> float:
     """Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij of discs in a closed box: what both virials tend to."""
     radius, number = np.asarray(radius, float), np.asarray(number, float)
-    contacts = box_contacts(radius, number, box)
+    contacts = box_contacts(radius, number, box, joined)
     return float(1 + math.pi / 4 * (number[:, None] * (radius[:, None] + radius) * contacts).sum() / number.sum())
 
 
@@ -177,3 +191,25 @@ def mean_free_path(diameter: float, number_density: float, packing_fraction: flo
 def effusion_flux(number_density: float, temperature: float, mass: float) -> float:
     """Discs that cross unit length of a slit per time, one way: n⟨v⟩/π. A reflecting wall is hit at this rate too."""
     return number_density * mean_speed(temperature, mass) / math.pi
+
+
+def enskog_diffusion(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
+    """Self-diffusion D = T/mΓ = √(T/πm)/(2σnχ), Enskog's theory in its first approximation.
+
+    Velocities are forgotten like exp(-Γt) in it: Gass, J. Chem. Phys. 54, 1898 (1971).
+    """
+    return math.sqrt(temperature / (math.pi * mass)) / (2 * diameter * number_density * chi)
+
+
+def enskog_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
+    """Shear viscosity η₀ (1/χ + y + 0.8729 χy²), y = πnσ²/2, η₀ = 1.022 √(mT/π)/2σ: Gass, ibid."""
+    y = math.pi * number_density * diameter**2 / 2
+    dilute = 1.022 * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
+    return dilute * (1 / chi + y + 0.8729 * chi * y * y)
+
+
+def long_time_tail(time: ArrayLike, number_density: float, diffusion: float, kinematic_viscosity: float) -> np.ndarray:
+    """⟨v(0)·v(t)⟩/⟨v²⟩ → 1/(8πn(D + ν)t): Alder & Wainwright, Phys. Rev. A 1, 18 (1970); Ernst, Hauge & van Leeuwen,
+    Phys. Rev. Lett. 25, 1254 (1970).
+    """
+    return 1 / (8 * math.pi * number_density * (diffusion + kinematic_viscosity) * np.asarray(time, float))

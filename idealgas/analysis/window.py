@@ -1,6 +1,6 @@
 """Which part of a log an analysis uses: a given window of time, or what follows detected equilibration."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,18 +58,22 @@ def measure(
     start: float | None = None,
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
+    allowed: Collection[str] = (),
 ) -> Window:
     """Stream the log between start and end into the tallies; without a start, from detected equilibrium on.
 
     The detection looks at the kurtosis of the velocities, the energy of each species and the numbers of events,
-    per block. UserError when there is nothing in the window, or if the scene has effects.
+    per block. allowed: effects that the analysis knows how to deal with. UserError when there is nothing in the window,
+    or if the scene has other effects.
     """
+    if strange := [name for name in log.scene.effects if name not in allowed]:
+        raise UserError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
     edges = block_edges(log, start, end)
     if start is not None:
         stream(log, edges, tallies, progress)
         return Window(edges, 0, detected=False)
     present = [tally for tally in tallies if isinstance(tally, Moments)]
-    moments = present[0] if present else Moments()
+    moments = present[0] if present else Moments(log.gravity)
     stream(log, edges, tallies if present else [*tallies, moments], progress)
     return Window(edges, equilibration(*stationary_series(moments)), detected=True)
 
@@ -78,8 +82,6 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
     """Edges of equal blocks, no shorter than the time between events of one disc unless that leaves too few."""
     if not log.has_events:
         raise UserError(f"{log.path}: has no events (made with log.events = false)")
-    if log.scene.effects:  # the tallies take flights for straight and sides for reflecting
-        raise UserError(f"{log.path}: cannot be analysed yet: its discs feel {', '.join(log.scene.effects)}")
     first = log.start_time if start is None else start
     last = log.end_time if end is None else end
     covered = f"the log covers t = {log.start_time:g} to {log.end_time:g}"
@@ -97,5 +99,5 @@ def stationary_series(moments: Moments) -> list[np.ndarray]:
     """Block series that stand still in equilibrium and move before."""
     energy = moments.flights[:, :, 1] + moments.flights[:, :, 2]
     fourth = moments.flights[:, :, 3].sum(axis=1)
-    shares = [energy[:, s] for s in range(energy.shape[1])] if energy.shape[1] > 1 else []
+    shares = [share for share in energy.T if np.ptp(share) > 1e-9 * share.max()]  # not those that only rounding moves
     return [fourth, *shares, *moments.events.T.astype(float)]

@@ -180,6 +180,8 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
 class BruteForce:
     """The method as an object: what an epoch needs between its start and its end."""
 
+    homogeneous = False
+
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""
         self.discs = make_discs(gas, np.arange(len(gas)))
@@ -190,7 +192,7 @@ class BruteForce:
     ) -> tuple[int, bool]:
         """See `advance_events`."""
         record, ids, box = self.discs
-        return advance_events(record, ids, box, self._effects, *limits, epoch_start, batch, counters)
+        return advance_events(record, ids, box, self._effects, *limits[:3], epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""

@@ -129,6 +129,8 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
 class EventDriven:
     """The method as an object: what an epoch needs between its start and its end."""
 
+    homogeneous = False
+
     def __init__(self, filling: float | None = None) -> None:
         """filling: discs per cell, chosen by packing fraction if not given; it changes the speed and nothing else."""
         self._filling = filling
@@ -151,7 +153,7 @@ class EventDriven:
     ) -> tuple[int, bool]:
         """See `advance_events`."""
         record, ids, _ = self.discs
-        return advance_events(record, ids, self._agenda, self._effects, *limits, epoch_start, batch, counters)
+        return advance_events(record, ids, self._agenda, self._effects, *limits[:3], epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""

@@ -26,6 +26,7 @@ COUNTERS = np.dtype(
     [
         ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),
         ("crossings", "i8"), ("stale", "i8"), ("time", "f8"),  # local time of the last event
+        ("trials", "i8"), ("trial_time", "f8"),  # of Monte Carlo: since time 0; local time of the last one
     ]
 )  # fmt: skip
 
@@ -39,11 +40,12 @@ def aligned(n: int, dtype: np.dtype, boundary: int = 64) -> Any:
 
 
 class Limits(NamedTuple):
-    """until: local time. events, collisions: how many more of them."""
+    """until: local time. events, collisions, trials: how many more of them."""
 
     until: float
     events: int
     collisions: int
+    trials: int
 
 
 class Discs(NamedTuple):

@@ -19,6 +19,14 @@ def batch_capacity(batch):
 
 
 @inline
+def write_position(column, row, disc):
+    """Where the disc is, if it is anywhere."""
+    if column is not None:
+        column[row, 0] = disc.x
+        column[row, 1] = disc.y
+
+
+@inline
 def write_spin(column, row, own, rotation):
     """The angular velocity, where there is one."""
     if rotation is not None:
@@ -41,8 +49,7 @@ def write_row(batch, row, time, own, partner, kind, disc, effects):
     batch.disc[u] = own
     batch.partner[u] = partner
     batch.kind[u] = kind
-    batch.position[u, 0] = disc.x
-    batch.position[u, 1] = disc.y
+    write_position(batch.position, u, disc)
     batch.velocity[u, 0] = disc.vx
     batch.velocity[u, 1] = disc.vy
     write_spin(batch.angular_velocity, u, own, effects.rotation)
@@ -60,6 +67,14 @@ def write_pair(batch, row, time, record, ids, i, j, effects):
         write_row(batch, row + 1, time, b_id, a_id, DISC, record[np.uintp(b)], effects)
         return 2
     return 0
+
+
+@inline
+def write_trial(batch, row, trial):
+    """The number of a Monte Carlo trial, into both rows of a pair."""
+    if batch is not None:
+        batch.trial[np.uintp(row)] = trial
+        batch.trial[np.uintp(row + 1)] = trial
 
 
 @inline

@@ -1,5 +1,6 @@
 """A gas on its way through the epochs of its run."""
 
+import copy
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
@@ -18,12 +19,15 @@ from idealgas.physics.periodic import Periodic
 
 UNLIMITED = 1 << 62
 LATEST = 0.25 * NEVER
+TRAJECTORY = 1
+"""Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
 
 
 class Method(Protocol):
-    """What the epochs ask of an event-by-event method."""
+    """What the epochs ask of a method. homogeneous: its discs have no positions; those of the gas stay as they are."""
 
     discs: Discs
+    homogeneous: bool
 
     def start(self, gas: Gas, effects: Effects) -> None: ...
 
@@ -38,20 +42,22 @@ METHODS: dict[str, type[Method]] = {"event_driven": EventDriven, "brute_force": 
 
 
 class Stop(NamedTuple):
-    """Where a run ends, whichever comes first. time: time. events, disc_collisions: numbers since time 0."""
+    """Where a run ends, whichever comes first. time: time. events, disc_collisions, trials: numbers since time 0."""
 
     time: float = LATEST
     events: int = UNLIMITED
     disc_collisions: int = UNLIMITED
+    trials: int = UNLIMITED
 
 
 @dataclass
 class Totals:
-    """What happened since time 0, up to the start of the epoch."""
+    """What happened since time 0, up to the start of the epoch. trials: of pairs, by Monte Carlo."""
 
     events: int = 0
     disc_collisions: int = 0
     wall_hits: int = 0
+    trials: int = 0
 
 
 @dataclass
@@ -81,28 +87,34 @@ class Simulation:
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
-        self.epoch_over = False
+        self._counters[0].trials = self.totals.trials
+        self.epoch_over = self.paused = False
         self._local_now = 0.0
 
-    def advance(self, stop: Stop, batch: EventBatch | None, events: int = UNLIMITED) -> int:
+    def advance(self, stop: Stop, batch: EventBatch | None, events: int = UNLIMITED, pause: float = LATEST) -> int:
         """Process events until the epoch is over, the stop is reached or the batch is full; return the rows filled.
 
-        events: a further limit for this call.
+        events: a further limit for this call. pause: time at which to return with `paused` set, unless it is later
+        than the end of the epoch or the stop; it changes no event.
         """
         done = self.so_far
+        end = min(self.length, stop.time - self.time, LATEST)
+        until_pause = min(pause - self.time, self.length) if pause <= self.time + self.length else LATEST
         limits = Limits(
-            min(self.length, stop.time - self.time, LATEST),
+            min(end, until_pause),
             min(stop.events - done.events, events),
             stop.disc_collisions - done.disc_collisions,
+            stop.trials - done.trials,
         )
-        rows, self.epoch_over = self.method.advance(limits, self.time, batch, self._counters)
-        self._local_now = limits.until if self.epoch_over else float(self._counters[0].time)
+        rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
+        self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
+        self._local_now = limits.until if arrived else float(self._counters[0].time)
         return rows
 
     def finished(self, stop: Stop) -> bool:
         """Whether the stop is reached."""
         done = self.so_far
-        if done.events >= stop.events or done.disc_collisions >= stop.disc_collisions:
+        if done.events >= stop.events or done.disc_collisions >= stop.disc_collisions or done.trials >= stop.trials:
             return True
         return self.epoch_over and self.length >= stop.time - self.time
 
@@ -114,6 +126,7 @@ class Simulation:
             self.totals.events + int(counter.events),
             self.totals.disc_collisions + int(counter.disc_collisions),
             self.totals.wall_hits + int(counter.wall_hits),
+            int(counter.trials),
         )
 
     @property
@@ -122,8 +135,13 @@ class Simulation:
         return self.time + float(self._counters[0].time)
 
     def gas_now(self) -> Gas:
-        """The gas where the last call of `advance` left it: at its time limit, or at the last event."""
-        return self._synchronised(self._local_now, copy_of(self.effects.periodic))
+        """The gas where the last call of `advance` left it: at its time limit, or at the last event before."""
+        return self.state_now()[0]
+
+    def state_now(self) -> tuple[Gas, Effects]:
+        """The same with the effects there; the gas and its images are copies."""
+        periodic = copy_of(self.effects.periodic)
+        return self._synchronised(self._local_now, periodic), self.effects._replace(periodic=periodic)
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
         """The gas at a local time; the records stay as they are."""
@@ -133,6 +151,8 @@ class Simulation:
         position, velocity = np.empty((2, len(record), 2))
         position[ids] = np.column_stack((record.x, record.y))
         velocity[ids] = np.column_stack((record.vx, record.vy))
+        if self.method.homogeneous:
+            position = self.gas.position
         return replace(self.gas, position=position, velocity=velocity)
 
     def next_epoch(self) -> None:
@@ -150,6 +170,6 @@ class Simulation:
     def audit_now(self) -> Audit:
         """What must hold, where the last call of `advance` left the gas."""
         gas = self.gas_now()
-        method = type(self.method)()
+        method = copy.copy(self.method)
         method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
         return audit(gas, method.deepest_overlap())

@@ -30,6 +30,26 @@ def storage_error(path: Path, error: Exception) -> LogError:
     return LogError(f"{path}: cannot be written: {reason}", exit_code=1)
 
 
+def give_name(part: Path, path: Path, force: bool, fsync: bool) -> None:
+    """Let a file that is whole appear under its name, in one step, and without `force` never in place of another."""
+    try:
+        if force:
+            part.replace(path)
+        else:
+            os.link(part, path)
+            part.unlink()
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        if path.exists() and not force:
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST)) from None
+        part.replace(path)
+    if fsync:
+        folder = os.open(path.parent, os.O_RDONLY)
+        os.fsync(folder)
+        os.close(folder)
+
+
 def check_output(path: str | os.PathLike[str], force: bool = False) -> None:
     """Raise LogError if a log cannot be made here: it exists (unless `force`), or its folder cannot be written to."""
     path = Path(path)

@@ -1,9 +1,14 @@
 """Reading a log: whole chunks, in bounded memory, whether its writer ended, died or still lives.
 
+    from idealgas import open_log
+
     with open_log("run.h5") as log:
         print(log.discs.temperature, len(log), log.end_time, log.summary)
         for block in log.chunks(("time", "disc", "velocity"), log.row_at(50.0)):
             print(block.time[-1], (block.velocity**2).sum(axis=1).mean())
+        for hits in log.events(disc=0, t0=10.0, t1=20.0):
+            print(hits.time, hits.partner)
+        print(log.state_at(12.5).position)
         for state in log.frames(np.linspace(0, log.end_time, 100)):
             print(state.time, state.position.mean(axis=0))
 
@@ -24,7 +29,7 @@ import json
 import os
 from collections import namedtuple
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -33,7 +38,7 @@ import numpy as np
 from idealgas.events import BLOCK, EventBatch, Kind
 from idealgas.gas import Gas
 from idealgas.log.errors import LogError
-from idealgas.log.replay import Checkpoints, LogState, Replay
+from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.schema import DISC_COLUMNS, Wall
 from idealgas.log.source import Source
 from idealgas.log.superblock import is_locked
@@ -51,7 +56,8 @@ class Log:
     """A log open for reading; a context manager.
 
     path: the file. unclosed: its writer died or still lives. complete: the run came to its end. has_events: events were
-    kept. box: (Lx, Ly). start_time. len() is the number of event rows that hold, at a whole event.
+    kept. box: (Lx, Ly). gravity: length/time². joined: which axes are periodic. start_time. len() is the number of
+    event rows that hold, at a whole event.
     """
 
     start_time = 0.0
@@ -61,6 +67,8 @@ class Log:
         self.path = source.path
         self.unclosed = source.unclosed
         self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
+        self.gravity: tuple[float, float] = tuple(source.fixed("gravity").tolist())
+        self.joined = tuple(word == b"periodic" for word in source.attribute("box", "boundary").tolist())
         self._update()
 
     @property
@@ -87,7 +95,7 @@ class Log:
             if kind == Kind.DISC and disc < partner:  # the first row of a pair, whose second did not get here
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
-        for name in ("checkpoints", "observables", "summary", "end_time"):
+        for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time"):
             self.__dict__.pop(name, None)
 
     def close(self) -> None:
@@ -106,9 +114,17 @@ class Log:
     # ── what was known before the run ──
 
     @cached_property
+    def runs(self) -> list[tuple[str, str]]:
+        """Scene (resolved, TOML) and command of each run that wrote into the file; they differ in where it ends."""
+        texts = (
+            [text.decode() for text in self._source.column(f"runs/{name}").tolist()] for name in ("scene", "command")
+        )
+        return list(zip(*texts, strict=True))
+
+    @property
     def scene_text(self) -> str:
-        """The resolved scene, TOML."""
-        return self._source.texts("scene")[0]
+        """The resolved scene of the last run, TOML."""
+        return self.runs[-1][0]
 
     @cached_property
     def scene(self) -> "Scene":
@@ -117,14 +133,17 @@ class Log:
 
         return parse_scene(self.scene_text, name=f"{self.path}: scene")
 
-    @cached_property
+    @property
     def command(self) -> str:
-        """The command that made the log."""
-        return self._source.texts("command")[0]
+        """The command of the last run."""
+        return self.runs[-1][1]
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """format, format_version, seed, created (UTC), and the versions of the programs that made it."""
+        """format, format_version, seed, created (UTC), and the versions of the programs that made it.
+
+        trajectory: version of the laws that moved the discs.
+        """
         return self._source.attributes("/") | self._source.attributes("versions")
 
     @cached_property
@@ -157,6 +176,12 @@ class Log:
         }
 
     @cached_property
+    def snapshot_times(self) -> np.ndarray:
+        """Times of the snapshots, which lie as H5MD in `particles/discs`."""
+        times = next((name for name in self._source.names("particles") if name.endswith("/time")), None)
+        return self._source.column(f"particles/{times}") if times else np.empty(0)
+
+    @cached_property
     def summary(self) -> dict[str, Any]:
         """What the run told of itself at its end; empty if it did not come there."""
         names, values = (self._source.column(f"summary/{name}").tolist() for name in ("name", "value"))
@@ -175,6 +200,11 @@ class Log:
         return max(last)
 
     @property
+    def has_positions(self) -> bool:
+        """Whether the method knows where the discs are; their positions in `frames` are not numbers if it does not."""
+        return "position" in self._source.names("checkpoints")
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """Names of the event columns."""
         return tuple(self._source.names("events"))
@@ -182,10 +212,12 @@ class Log:
     def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
         """Event rows from `start` up to `stop`, in blocks of at most 65 536 cut at multiples of that.
 
-        A block is an EventBatch, or a named tuple of the columns asked for.
+        A block is an EventBatch, or a named tuple of the columns asked for. Raises LogError for one that is not there.
         """
-        block: Any = EventBatch if columns is None else namedtuple("Rows", columns)
+        block: Any = partial(EventBatch, position=None) if columns is None else namedtuple("Rows", columns)
         names = self.columns if columns is None else columns
+        if self.has_events and (missing := [name for name in names if name not in self.columns]):
+            raise LogError(f"{self.path}: its events have no {' and no '.join(missing)} ({self.scene.run.method})")
         stop = len(self) if stop is None else min(stop, len(self))
         for first in range(start // BLOCK * BLOCK, stop, BLOCK) if start < stop else ():
             some = slice(max(start - first, 0), stop - first)
@@ -227,23 +259,36 @@ class Log:
     def frames(self, times: Iterable[float]) -> Iterator[LogState]:
         """All discs at times that do not decrease, in one pass. Raises LogError at one that the log does not cover."""
         replay: Replay | None = None
+        base = -1
         earliest = self.start_time
         for time in times:
             if not earliest <= time <= self.end_time:
                 raise LogError(f"{self.path}: no state at time {time:g} (got up to {self.end_time:g}, asked in order)")
             earliest = time
             nearest = int(self.checkpoints.times.searchsorted(time, "right")) - 1
-            if replay is None or (nearest >= 0 and self.checkpoints.rows[nearest] > replay.row):
-                replay = self._replay(nearest)
-            for block in self.chunks(("time", "disc", "position", "velocity"), replay.row, self.row_at(time, "right")):
+            if not self.has_events and (nearest < 0 or self.checkpoints.times[nearest] != time):
+                raise LogError(f"{self.path}: no state at time {time:g}: without events only at checkpoints")
+            if replay is None or nearest > base:
+                replay, base = self._replay(nearest), nearest
+            for block in self.chunks(("time", "disc", *replay.state), replay.row, self.row_at(time, "right")):
                 replay.follow(block)
             yield replay.at(time)
 
     def _replay(self, checkpoint: int) -> Replay:
-        if checkpoint < 0:
-            return Replay(self.start_time, 0, self.discs.position, self.discs.velocity)
-        start = self.checkpoints[checkpoint]
-        return Replay(start.time, start.row, start.position, start.velocity)
+        start = self.checkpoints[checkpoint] if checkpoint >= 0 else self._start
+        return Replay(start, self.columns, self.box, self.joined, self.gravity)
+
+    @property
+    def _start(self) -> Checkpoint:
+        """The start state, as a checkpoint would have it."""
+        arrays = {"velocity": self.discs.velocity}
+        if self.has_positions:
+            arrays["position"] = self.discs.position
+        if "image" in self.columns:
+            arrays["image"] = np.zeros((len(self.discs), 2), np.int32)
+        if "angular_velocity" in self.columns:
+            arrays["angular_velocity"] = self._source.fixed("discs/angular_velocity")
+        return Checkpoint(self.start_time, 0, 0, arrays, {})
 
     def _times(self, first: int) -> np.ndarray:
         return self._source.chunk("events/time", first)[: len(self) - first]

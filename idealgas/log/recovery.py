@@ -44,17 +44,22 @@ def _recover(path: Path) -> int:
     return rows
 
 
-def reopen(path: str | os.PathLike[str], checkpoint: int) -> tuple[h5py.File, dict[str, Table], int]:
-    """A log to go on with after one of its checkpoints: file, tables, and the number of its last commit."""
+def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, Table], int]:
+    """A log to go on with after one of its checkpoints, or from its start: file, tables, number of its last commit."""
     path = Path(path)
     with open_log(path) as log:
-        try:
-            start = log.checkpoints[checkpoint]
-        except IndexError:
-            raise LogError(f"{path}: no checkpoint {checkpoint} among {len(log.checkpoints)}") from None
-        held = {"events": start.row, "checkpoints": range(len(log.checkpoints))[checkpoint] + 1}
-        for times, _ in log.observables.values():
-            held["observables"] = int(times.searchsorted(start.time, "right"))
+        held = {"runs": log.commit.rows["runs"]}
+        if checkpoint is not None:
+            try:
+                index = range(len(log.checkpoints))[checkpoint]
+            except IndexError:
+                raise LogError(f"{path}: no checkpoint {checkpoint} among {len(log.checkpoints)}") from None
+            time, row = log.checkpoints.times[index], log.checkpoints.rows[index]
+            held |= {"events": int(row), "checkpoints": index + 1}
+            held["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
+            for times, _ in log.observables.values():  # the first sample of an instant is a checkpoint's, not an end's
+                first, after = (int(times.searchsorted(time, side)) for side in ("left", "right"))  # type: ignore[call-overload]
+                held["observables"] = min(first + 1, after)
         keep = {table: held.get(table, 0) for table in log.commit.rows}
     return _cut(path, keep)
 

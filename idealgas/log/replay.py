@@ -10,11 +10,17 @@ from idealgas.log.source import Source
 
 
 class LogState(NamedTuple):
-    """All discs at one time. position, velocity: (N, 2), in order of id."""
+    """All discs at one time, in order of id.
+
+    position, velocity: (N, 2); positions that nobody knows are not numbers. image: (N, 2), how many boxes to add to a
+    position to unwrap it; angular_velocity: (N,); None without periodic sides, or rotation.
+    """
 
     time: float
     position: np.ndarray
     velocity: np.ndarray
+    image: np.ndarray | None = None
+    angular_velocity: np.ndarray | None = None
 
 
 class Checkpoint(NamedTuple):
@@ -72,21 +78,45 @@ class Checkpoints(Sequence[Checkpoint]):
 
 
 class Replay:
-    """Records of all discs, each as its last event left it; moves on through the event rows."""
+    """Records of all discs, each as its last event left it; moves on through the event rows.
 
-    def __init__(self, time: float, row: int, position: np.ndarray, velocity: np.ndarray) -> None:
-        self.row = row
-        self._time = np.full(len(position), time)
-        self._position, self._velocity = position.copy(), velocity.copy()
+    state: the columns of a record beside its time.
+    """
+
+    def __init__(
+        self,
+        start: Checkpoint,
+        columns: Sequence[str],
+        box: tuple[float, float],
+        joined: Sequence[bool],
+        gravity: tuple[float, float],
+    ) -> None:
+        self.row = start.row
+        self._record = {name: start.arrays[name].copy() for name in LogState._fields[1:] if name in start.arrays}
+        self._record.setdefault("position", np.full_like(start.velocity, np.nan))
+        self.state = tuple(name for name in self._record if name in columns)
+        self._time = np.full(len(start.velocity), start.time)
+        self._box, self._joined, self._gravity = box, joined, gravity
 
     def follow(self, block: Any) -> None:
         """Take the next event rows; of several rows of a disc the last one stays."""
         self._time[block.disc] = block.time
-        self._position[block.disc] = block.position
-        self._velocity[block.disc] = block.velocity
+        for name in self.state:
+            self._record[name][block.disc] = getattr(block, name)
         self.row += len(block.time)
 
     def at(self, time: float) -> LogState:
         """All discs in free flight to a time between this row and the next."""
-        flight = (time - self._time)[:, None] * self._velocity
-        return LogState(time, self._position + flight, self._velocity.copy())
+        now = {name: values.copy() for name, values in self._record.items()}
+        position, velocity = now["position"], now["velocity"]
+        dt = time - self._time
+        for axis, pull in enumerate(self._gravity):  # in the order in which the engine moves a disc
+            position[:, axis] += velocity[:, axis] * dt
+            if any(self._gravity):
+                position[:, axis] += 0.5 * pull * dt * dt
+                velocity[:, axis] += pull * dt
+            if self._joined[axis]:
+                boxes = np.floor(position[:, axis] / self._box[axis])
+                position[:, axis] -= boxes * self._box[axis]
+                now["image"][:, axis] += boxes.astype(np.int32)
+        return LogState(time, **now)

@@ -1,14 +1,15 @@
 """The layout of a log: every dataset with its type, unit and chunk, and the making of an empty file.
 
-Rows come in tables, a dataset for each column: `events`, `checkpoints`, `observables`, and `summary`, whose rows say
-that the run came to its end, and how. How many rows of each hold is in the commit record (`commit.py`), nowhere else.
+Rows come in tables, a dataset for each column: `runs`, whose last row has the scene that the log is of; `events`;
+`checkpoints`; `observables`; the snapshots in `particles`; and `summary`, whose rows say that the run came to its end,
+and how. How many rows of each hold is in the commit record (`commit.py`), nowhere else.
 """
 
 import importlib.metadata
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -57,7 +58,7 @@ CHECKPOINT_COLUMNS = (Column("time", "f8", (), "time"), Column("row", "i8"), Col
 CHECKPOINT_ARRAYS = (Column("position", "f8", (2,), "length"), Column("velocity", "f8", (2,), "length/time"))
 """What a checkpoint has of each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
-"""Shared by all observables; the step is the number of epochs."""
+"""Shared by all observables, whose step is the number of epochs, and by all that snapshots have of a disc."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """One row for each thing that a run tells of itself at its end; the values are JSON."""
 DISC_COLUMNS = (
@@ -68,11 +69,14 @@ DISC_COLUMNS = (
     Column("species", "u2"),
 )
 
-CHECKPOINT_ENTRIES = 4096
-"""A chunk of checkpoints holds about as many disc records, and at least one checkpoint."""
+DISC_RECORDS = 4096
+"""A chunk of checkpoints or snapshots holds about as many disc records, and at least one state."""
 SAMPLES = 1024
 SUMMARY_ROWS = 64
 """Rows of `observables` and of `summary` in a chunk."""
+SCENE_SLACK = 256
+COMMAND_SIZE = 1024
+"""Bytes by which the text of a scene may grow as its run gets a new end, and of a command."""
 
 
 def box_walls(box: tuple[float, float]) -> list[Wall]:
@@ -82,10 +86,24 @@ def box_walls(box: tuple[float, float]) -> list[Wall]:
     return [Wall(name, *end) for name, end in zip(BOX_SIDES, ends, strict=True)]
 
 
+class Surroundings(NamedTuple):
+    """What a disc flies in. boundary: of each axis, "none" or "periodic". gravity: length/time²."""
+
+    walls: Sequence[Wall]
+    boundary: tuple[str, str] = ("none", "none")
+    gravity: tuple[float, float] = (0.0, 0.0)
+
+
 def write_header(
-    file: h5py.File, gas: Gas, walls: Sequence[Wall], scene_text: str, seed: int, command: str, compression: str
+    file: h5py.File,
+    gas: Gas,
+    surroundings: Surroundings,
+    disc_columns: Mapping[Column, np.ndarray],
+    seed: int,
+    trajectory: int,
+    compression: str,
 ) -> None:
-    """What is known before the run: versions, scene, discs and walls."""
+    """What is known before the run: versions, box, discs and walls."""
     file.attrs.update(
         {
             "format": np.bytes_(FORMAT),
@@ -97,6 +115,7 @@ def write_header(
     versions = file.create_group("versions").attrs
     versions.update({"idealgas": np.bytes_(idealgas.__version__), "python": np.bytes_(platform.python_version())})
     versions.update({name: np.bytes_(importlib.metadata.version(name)) for name in ("numpy", "numba", "h5py", "isal")})
+    versions["trajectory"] = trajectory
     versions["hdf5"] = np.bytes_(h5py.version.hdf5_version)
     h5md = file.create_group("h5md")
     h5md.attrs["version"] = H5MD_VERSION
@@ -108,11 +127,14 @@ def write_header(
     def store(name: str, data: np.ndarray, unit: str = "") -> None:
         _store(file, name, data, unit, compression)
 
-    store("scene", _text([scene_text]))
-    store("command", _text([command]))
+    walls = surroundings.walls
     store("box", np.array(gas.box, "f8"), "length")
-    for column in DISC_COLUMNS:
-        store(f"discs/{column.name}", np.asarray(getattr(gas, column.name), column.dtype), column.unit)
+    file["box"].attrs["boundary"] = np.array(surroundings.boundary, "S")
+    store("gravity", np.array(surroundings.gravity, "f8"), "length/time^2")
+    store("discs/id", np.arange(len(gas), dtype="u4"))
+    given = {column: getattr(gas, column.name) for column in DISC_COLUMNS} | dict(disc_columns)
+    for column, values in given.items():
+        store(f"discs/{column.name}", np.asarray(values, column.dtype), column.unit)
     store("discs/species_name", _text(gas.species_names))
     store("walls/name", _text([wall.name for wall in walls]))
     store("walls/endpoints", np.array([(wall.start, wall.end) for wall in walls], "f8").reshape(-1, 2, 2), "length")
@@ -125,46 +147,73 @@ def create_tables(
     checkpoint_arrays: Sequence[Column],
     checkpoint_values: Sequence[Column],
     observables: Sequence[Column],
+    snapshot_arrays: Sequence[Column],
+    text_sizes: Mapping[str, int],
     compression: str,
 ) -> None:
-    """Empty tables and the commit record, which lists the tables' datasets. A table without columns does not exist."""
+    """Empty tables and the commit record, which lists the tables' datasets. A table without columns does not exist.
+
+    text_sizes: bytes of each text in a row of `runs`.
+    """
     paths: list[str] = []
 
     def add(path: str, column: Column, rows: int) -> None:
+        dtype: Any = column.dtype
         if path == "events/kind":
-            column = column._replace(dtype=h5py.enum_dtype({kind.name: kind.value for kind in Kind}, basetype="u1"))
+            dtype = h5py.enum_dtype({kind.name: kind.value for kind in Kind}, basetype="u1")
+        elif path.startswith("runs/"):
+            dtype = h5py.string_dtype("utf-8", text_sizes[column.name])
         dataset = file.create_dataset(
             path,
             shape=(0, *column.shape),
             maxshape=(None, *column.shape),
             chunks=(rows, *column.shape),
-            dtype=column.dtype,
+            dtype=dtype,
             **filters(compression),
         )
         if column.unit:
             dataset.attrs["unit"] = np.bytes_(column.unit)
         paths.append(path)
 
+    def add_elements(group: str, columns: Sequence[Column], rows: int) -> None:
+        """As H5MD has them, with times and steps in common."""
+        first = f"{group}/{columns[0].name}"
+        for shared in SAMPLE_COLUMNS:
+            add(f"{first}/{shared.name}", shared, rows)
+        for column in columns:
+            path = f"{group}/{column.name}"
+            add(f"{path}/value", column, rows)
+            for shared in SAMPLE_COLUMNS if path != first else ():
+                file[f"{path}/{shared.name}"] = file[f"{first}/{shared.name}"]
+
+    for name in text_sizes:
+        add(f"runs/{name}", Column(name, "S"), 1)
     for column in event_columns:
         add(f"events/{column.name}", column, BLOCK)
-    some = max(1, CHECKPOINT_ENTRIES // discs)
+    some = max(1, DISC_RECORDS // discs)
     for column in (*CHECKPOINT_COLUMNS, *checkpoint_values):
         add(f"checkpoints/{column.name}", column, some)
     for column in checkpoint_arrays:
         add(f"checkpoints/{column.name}", column._replace(shape=(discs, *column.shape)), some)
     if observables:
-        first = f"observables/{observables[0].name}"
-        for column in SAMPLE_COLUMNS:
-            add(f"{first}/{column.name}", column, SAMPLES)
-        for column in observables:
-            path = f"observables/{column.name}"
-            add(f"{path}/value", column, SAMPLES)
-            if path != first:
-                for shared in SAMPLE_COLUMNS:
-                    file[f"{path}/{shared.name}"] = file[f"{first}/{shared.name}"]
+        add_elements("observables", observables, SAMPLES)
+    if snapshot_arrays:
+        arrays = [column._replace(shape=(discs, *column.shape)) for column in snapshot_arrays]
+        add_elements("particles/discs", arrays, some)
+        _describe_particles(file)
     for column in SUMMARY_COLUMNS:
         add(f"summary/{column.name}", column, SUMMARY_ROWS)
     Commit.create(file, paths)
+
+
+def _describe_particles(file: h5py.File) -> None:
+    """What H5MD asks for beside the snapshots: the box, and what stays the same, which is there already."""
+    particles = file["particles/discs"]
+    box = particles.create_group("box")
+    box.attrs.update({"dimension": 2, "boundary": file["box"].attrs["boundary"]})
+    box["edges"] = file["box"]
+    for name in ("id", "species", "mass", "radius"):
+        particles[name] = file[f"discs/{name}"]
 
 
 def filters(compression: str) -> dict:

@@ -78,6 +78,10 @@ class Source:
         """A dataset of strings that was stored before the run."""
         return [text.decode() for text in self.fixed(name).tolist()]
 
+    def attribute(self, name: str, attribute: str) -> np.ndarray:
+        """One attribute of a dataset."""
+        return self._read(lambda: np.asarray(self._file[name].attrs[attribute]))
+
     def attributes(self, group: str) -> dict[str, str | int]:
         """Attributes of a group."""
         values = self._read(lambda: {name: value.item() for name, value in self._file[group].attrs.items()})

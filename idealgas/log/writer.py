@@ -17,7 +17,7 @@ from idealgas.events import BLOCK, EventBatch, empty_batch
 from idealgas.gas import Gas
 from idealgas.log import schema
 from idealgas.log.commit import Commit
-from idealgas.log.errors import LogError, check_output, storage_error
+from idealgas.log.errors import LogError, check_output, give_name, storage_error
 from idealgas.log.schema import Column, Wall
 from idealgas.log.superblock import abandon, lock
 from idealgas.log.table import Table, commit_tables, open_tables
@@ -55,63 +55,82 @@ class LogWriter:
         scene_text: str,
         seed: int,
         walls: Sequence[Wall],
+        boundary: tuple[str, str] = ("none", "none"),
+        gravity: tuple[float, float] = (0.0, 0.0),
         command: str = "",
+        trajectory: int = 0,
         events: bool = True,
         compression: str = "gzip",
         fsync: bool = False,
         force: bool = False,
+        disc_columns: Mapping[Column, np.ndarray] | None = None,
         event_columns: Sequence[Column] = schema.EVENT_COLUMNS,
         make_batch: Callable[[], Any] = empty_batch,
         checkpoint_arrays: Sequence[Column] = schema.CHECKPOINT_ARRAYS,
         checkpoint_values: Sequence[Column] = (),
         observables: Sequence[Column] = (),
+        snapshot_arrays: Sequence[Column] = (),
     ) -> None:
         """Make the file with all its datasets. An existing one is replaced only with `force`.
 
-        gas: the start state. walls: wall k of the events. events: whether event rows are kept. make_batch: a buffer of
-        65 536 rows with the event columns by name. checkpoint_arrays, checkpoint_values: what a checkpoint has of each
-        disc, and of the whole.
+        gas: the start state. walls: wall k of the events. boundary: "none" or "periodic" along x and y. gravity:
+        length/time². trajectory: version of the laws that move the discs. events: whether event rows are kept.
+        disc_columns: (N,) further constants and start values. make_batch: a buffer of 65 536 rows with the event
+        columns by name. checkpoint_arrays, checkpoint_values: what a checkpoint has of each disc, and of the whole.
+        snapshot_arrays: what a snapshot has of each disc; without any there are none.
         """
         check_output(path, force)
         path = Path(path)
+        part = path.with_name(f".{path.name}.{os.getpid()}")
+        surroundings = schema.Surroundings(walls, boundary, gravity)
+        sizes = {"scene": len(scene_text.encode()) + schema.SCENE_SLACK, "command": schema.COMMAND_SIZE}
+        columns = (event_columns if events else (), checkpoint_arrays, checkpoint_values, observables, snapshot_arrays)
         try:
-            file = h5py.File(path, "w" if force else "x", **schema.FILE_OPTIONS, **schema.PAGES)
+            file = h5py.File(part, "w", **schema.FILE_OPTIONS, **schema.PAGES)
         except OSError as error:
-            if not isinstance(error, FileExistsError):
-                path.unlink(missing_ok=True)
+            part.unlink(missing_ok=True)
             raise storage_error(path, error) from error
         try:
-            schema.write_header(file, gas, walls, scene_text, seed, command, compression)
-            columns = (event_columns if events else (), checkpoint_arrays, checkpoint_values, observables)
-            schema.create_tables(file, len(gas), *columns, compression)
+            schema.write_header(file, gas, surroundings, disc_columns or {}, seed, trajectory, compression)
+            schema.create_tables(file, len(gas), *columns, sizes, compression)
             file.flush()
             commit = Commit.read(file)
             tables = open_tables(file, commit, commit.rows)
             file.swmr_mode = True
+            tables["runs"].append(1, _texts(tables["runs"], scene_text, command))
+            tables["runs"].store_tail()
+            commit_tables(file, tables, commit.sequence + 1, fsync)
             lock(file.id.get_vfd_handle())
+            give_name(part, path, force, fsync)
         except (OSError, RuntimeError) as error:
             abandon(file)
-            path.unlink()
+            part.unlink(missing_ok=True)
             raise storage_error(path, error) from error
-        self._start(path, file, tables, commit.sequence, fsync, make_batch)
+        self._start(path, file, tables, commit.sequence + 1, fsync, make_batch)
 
     @classmethod
     def resume(
         cls,
         path: str | os.PathLike[str],
-        checkpoint: int = -1,
+        checkpoint: int | None = -1,
         fsync: bool = False,
         make_batch: Callable[[], Any] = empty_batch,
+        scene_text: str | None = None,
+        command: str = "",
     ) -> Self:
-        """Continue a log after one of its checkpoints; later rows, checkpoints and samples are cut off.
+        """Continue a log after one of its checkpoints; later rows, checkpoints, samples and snapshots are cut off.
 
-        checkpoint: index into `Log.checkpoints`. Raises LogError (exit code 2) where there is none, or where another
-        process still writes the file.
+        checkpoint: index into `Log.checkpoints`, None to start over. scene_text: of the run as it goes on, if that is a
+        run of its own. Raises LogError (exit code 2) where there is no such checkpoint, or where another process still
+        writes the file.
         """
         from idealgas.log.recovery import reopen
 
         writer = cls.__new__(cls)
         writer._start(Path(path), *reopen(path, checkpoint), fsync, make_batch)
+        if scene_text is not None:
+            runs = writer._tables["runs"]
+            writer._put(_Rows(runs, 1, _texts(runs, scene_text, command)))
         return writer
 
     def _start(
@@ -164,6 +183,10 @@ class LogWriter:
         """One sample of every observable."""
         self._put_row("observables", {"time": time, "step": epoch, **values})
 
+    def snapshot(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
+        """All discs at a time, by the names declared. The arrays are copied."""
+        self._put_row("particles", {"time": time, "step": step, **arrays})
+
     def close(self, summary: Mapping[str, Any] | None = None) -> None:
         """Store what is left and close the file; without a summary (JSON values) the run counts as interrupted.
 
@@ -206,7 +229,7 @@ class LogWriter:
         data = []
         for path, column in table.columns.items():
             words = path.split("/")
-            entry = given[words[1] if words[-1] == "value" else words[-1]]
+            entry = given[words[-2] if words[-1] == "value" else words[-1]]
             data.append(np.array(entry, column.dtype).reshape(1, *column.chunk[1:]))
         self._put(_Rows(table, 1, data))
 
@@ -237,10 +260,11 @@ class LogWriter:
                 self._free.put(item.buffer)
 
     def _store(self, item: object) -> None:
-        """Take one item's rows, if there is one, and commit when it is time."""
+        """Take one item's rows, if there is one, and commit when it is time, at once what a run can go on from."""
         if isinstance(item, _Rows):
             item.table.append(item.rows, item.data)
-            self._due = min(self._due, time.monotonic() + FLUSH_SECONDS)
+            patience = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
+            self._due = min(self._due, time.monotonic() + patience)
         if item is _END:
             for _ in range(2):  # both slots of the record say how it ended
                 self._commit(tails=True, last=True)
@@ -259,3 +283,12 @@ class LogWriter:
         if self._events:
             self._flushed = self._events.whole
         self._due = math.inf if tails else time.monotonic() + FLUSH_SECONDS
+
+
+def _texts(runs: Table, scene_text: str, command: str) -> list[np.ndarray]:
+    """A row of `runs`. A command may be cut off, a scene not."""
+    scene_size, command_size = (column.dtype.itemsize for column in runs.columns.values())
+    scene, cut = scene_text.encode(), command.encode()[:command_size].decode(errors="ignore").encode()
+    if len(scene) > scene_size:
+        raise ValueError("the scene's text does not fit")
+    return [np.array([scene], f"S{scene_size}"), np.array([cut], f"S{command_size}")]

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Set as AbstractSet
+from typing import TYPE_CHECKING, TypeVar
+
+from idealgas.scene.effect_checks import gravity_faults, restitution_faults, side_faults, spin_faults
+from idealgas.scene.fault import Fault, Key
+from idealgas.scene.geometry import images, room
+from idealgas.scene.method_checks import method_faults
+from idealgas.scene.piston_checks import CLOSE_PACKING, piston_faults
+from idealgas.scene.table import Rectangle
+from idealgas.scene.wall_checks import wall_faults
 
 if TYPE_CHECKING:
-    from idealgas.scene.model import Box, Disc, Run, Species
-
-Key = tuple[str | int, ...]
-"""Path of a key in the document: ("species", 0, "radius")."""
-
-CLOSE_PACKING = math.pi / math.sqrt(12)
-"""Largest packing fraction of equal discs."""
+    from idealgas.scene.model import Box, Disc, Scene, Species
 
 RANDOM_PACKING = 0.65
 """Packing fraction up to which discs are placed at random; see `idealgas.placement`."""
@@ -22,40 +25,42 @@ RESOLUTION = 1e-9
 """Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""
 
 
-class Fault(NamedTuple):
-    """Something wrong: the key to show first, then the others that have a part in it."""
-
-    keys: tuple[Key, ...]
-    wrong: str
-    got: str
-    allowed: str
-
-    def __str__(self) -> str:
-        return f"{dotted(self.keys[0])}: {self.wrong} (got {self.got}; allowed {self.allowed})"
+Item = TypeVar("Item")
 
 
-def dotted(key: Key) -> str:
-    """A key as it is written in messages and in --set."""
-    return ".".join(map(str, key))
+def faults(scene: Scene, unsound: AbstractSet[str] = frozenset()) -> Iterator[Fault]:
+    """Faults between the tables of a scene, and between the keys of one.
 
-
-def faults(
-    box: Box | None, species: Sequence[Species | None], disc: Sequence[Disc | None], run: Run | None
-) -> Iterator[Fault]:
-    """Faults of a scene; a part that is `None` has faults of its own and is left out."""
-    kinds = [(i, s) for i, s in enumerate(species) if s is not None]
-    discs = [(i, d) for i, d in enumerate(disc) if d is not None]
-    if not species and not disc:
+    Tables named in `unsound`, and None in an array of tables, have faults of their own and are left out.
+    """
+    kinds, discs, walls = _sound(scene.species), _sound(scene.disc), _sound(scene.wall)
+    box = None if "box" in unsound else scene.box
+    piston = None if "piston" in unsound else scene.piston
+    if not scene.species and not scene.disc:
         yield Fault((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]]")
     yield from _species_faults(kinds)
-    yield from _overlaps(discs)
+    if "rotation" not in unsound:
+        yield from spin_faults(scene.rotation, kinds, discs)
+    if scene.restitution and not {"restitution", "species", "disc"} & unsound:
+        yield from restitution_faults(scene.restitution, scene.species, scene.disc)
+    yield from _overlaps(discs, box)
     if box is not None:
-        outside = list(_outside(box, kinds, discs))
-        yield from outside
-        if not outside and None not in species and None not in disc:
-            yield from _crowding(box, kinds, discs)
-    if run is not None:
-        yield from _endless(run, species, disc)
+        yield from side_faults(box)
+        yield from wall_faults(box, walls, discs)
+        if scene.gravity and "gravity" not in unsound:
+            yield from gravity_faults(box, scene.gravity)
+        if piston is not None and not unsound:
+            yield from piston_faults(scene, piston)
+        confined = piston is not None and 0 <= piston.start(box.size) <= box.size[piston.axis]
+        yield from _room_faults(box, room(box, piston if confined else None), kinds, discs, unsound)
+    if not {"run", "species", "disc", "gravity", "piston"} & unsound:
+        yield from _endless(scene)
+    if "run" not in unsound:
+        yield from method_faults(scene, unsound)
+
+
+def _sound(items: Sequence[Item | None]) -> list[tuple[int, Item]]:
+    return [(i, item) for i, item in enumerate(items) if item is not None]
 
 
 def _species_faults(kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
@@ -77,57 +82,93 @@ def _species_faults(kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
             yield Fault(keys, "not one velocity for each disc", str(len(s.velocities)), f"{s.count}, as count says")
 
 
-def _overlaps(discs: list[tuple[int, Disc]]) -> Iterator[Fault]:
-    """Explicit discs that overlap an earlier one, found by a sweep along x."""
-    active: list[tuple[int, Disc]] = []
-    for i, d in sorted(discs, key=lambda item: item[1].position[0] - item[1].radius):
-        x, y = d.position
-        active = [(k, a) for k, a in active if a.position[0] + a.radius > x - d.radius]
-        for k, a in active:
-            dx, dy, contact = a.position[0] - x, a.position[1] - y, a.radius + d.radius
-            if dx * dx + dy * dy < contact * contact:
-                low, high = sorted((i, k))
+def _overlaps(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Fault]:
+    """Explicit discs that overlap an earlier one, found by a sweep along x over the discs and their images."""
+    seen: set[tuple[int, int]] = set()
+    active: list[tuple[int, Disc, float, float]] = []
+    placed = [(i, d, x, y) for i, d in discs for x, y in images(d.position, d.radius, box)]
+    for i, d, x, y in sorted(placed, key=lambda item: item[2] - item[1].radius):
+        active = [item for item in active if item[2] + item[1].radius > x - d.radius]
+        for k, a, a_x, a_y in active:
+            dx, dy, contact = a_x - x, a_y - y, a.radius + d.radius
+            low, high = sorted((i, k))
+            if dx * dx + dy * dy < contact * contact and low != high and (low, high) not in seen:
+                seen.add((low, high))
                 keys: tuple[Key, ...] = tuple(("disc", n, key) for key in ("position", "radius") for n in (high, low))
                 distance = f"a distance of {math.hypot(dx, dy)} between centres"
                 yield Fault(keys, f"overlaps disc {low}", distance, f">= {contact}, the sum of the radii")
-        active.append((i, d))
+        active.append((i, d, x, y))
 
 
-def _outside(box: Box, kinds: list[tuple[int, Species]], discs: list[tuple[int, Disc]]) -> Iterator[Fault]:
-    """Discs and regions that are not in the box; discs too large for it, or too small to resolve."""
-    size = ("box", "size")
-    width, height = box.size
-    for i, s in kinds:
-        key: Key = ("species", i, "region")
-        x0, y0, x1, y1 = s.region or (0.0, 0.0, width, height)
-        if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
-            allowed = f"[x0, y0, x1, y1] with 0 <= x0 < x1 <= {width} and 0 <= y0 < y1 <= {height}"
-            yield Fault((key, size), "region not in the box", str(list(s.region or ())), allowed)
-        elif 2 * s.radius > min(x1 - x0, y1 - y0):
-            place = "region" if s.region else "box"
-            allowed = f"<= {min(x1 - x0, y1 - y0) / 2}"
-            yield Fault((("species", i, "radius"), key, size), f"discs wider than the {place}", f"{s.radius}", allowed)
-    for i, d in discs:
-        x, y = d.position
-        r = d.radius
-        if 2 * r > min(width, height):
-            keys: tuple[Key, ...] = (("disc", i, "radius"), size)
-            yield Fault(keys, "disc wider than the box", f"{r}", f"<= {min(width, height) / 2}")
-        elif not (r <= x <= width - r and r <= y <= height - r):
-            keys = (("disc", i, "position"), ("disc", i, "radius"), size)
-            allowed = f"{r} <= x <= {width - r} and {r} <= y <= {height - r}"
-            yield Fault(keys, "disc not in the box", str(list(d.position)), allowed)
-    smallest = RESOLUTION * max(width, height)
+def _room_faults(
+    box: Box,
+    space: Rectangle,
+    kinds: list[tuple[int, Species]],
+    discs: list[tuple[int, Disc]],
+    unsound: AbstractSet[str],
+) -> Iterator[Fault]:
+    """Discs that are outside the space the gas has, too large or too small for it, or too many."""
+    outside = [*_regions_outside(box, space, kinds), *_discs_outside(box, space, discs)]
+    yield from outside
+    smallest = RESOLUTION * max(box.size)
     for table, items in (("species", kinds), ("disc", discs)):
         for i, item in items:
             if item.radius < smallest:
-                keys = ((table, i, "radius"), size)
+                keys = ((table, i, "radius"), ("box", "size"))
                 yield Fault(keys, "too small for the box in double precision", f"{item.radius}", f">= {smallest}")
+    if not outside and not {"species", "disc"} & unsound:
+        yield from _crowding(space, _name_of(box, space), kinds, discs)
 
 
-def _crowding(box: Box, kinds: list[tuple[int, Species]], discs: list[tuple[int, Disc]]) -> Iterator[Fault]:
-    """More discs than a region, or the box, can hold."""
-    whole = (0.0, 0.0, *box.size)
+def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
+    left, bottom, right, top = space
+    place = _name_of(box, space)
+    others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
+    for i, s in kinds:
+        key: Key = ("species", i, "region")
+        x0, y0, x1, y1 = s.region or space
+        if not (left <= x0 < x1 <= right and bottom <= y0 < y1 <= top):
+            allowed = f"[x0, y0, x1, y1] with {left:.17g} <= x0 < x1 <= {right} and {bottom:.17g} <= y0 < y1 <= {top}"
+            yield Fault((key, *others), f"region not in the {place}", str(list(s.region or space)), allowed)
+        elif 2 * s.radius > min(x1 - x0, y1 - y0):
+            keys = (("species", i, "radius"), key, *others)
+            where = "region" if s.region else place
+            yield Fault(keys, f"discs wider than the {where}", f"{s.radius}", f"<= {min(x1 - x0, y1 - y0) / 2}")
+
+
+def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) -> Iterator[Fault]:
+    place = _name_of(box, space)
+    others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
+    widest = min(space[2] - space[0], space[3] - space[1])
+    for i, d in discs:
+        if 2 * d.radius > widest:
+            yield Fault(
+                (("disc", i, "radius"), *others), f"disc wider than the {place}", f"{d.radius}", f"<= {widest / 2}"
+            )
+            continue
+        allowed = []
+        inside = True
+        for axis, name in enumerate("xy"):
+            low, high = space[axis] + d.radius, space[axis + 2] - d.radius
+            if box.joined[axis]:
+                inside &= 0 <= d.position[axis] < box.size[axis]
+                allowed.append(f"0 <= {name} < {box.size[axis]}")
+            else:
+                inside &= low <= d.position[axis] <= high
+                allowed.append(f"{low} <= {name} <= {high}")
+        if not inside:
+            keys = (("disc", i, "position"), ("disc", i, "radius"), *others)
+            yield Fault(keys, f"disc not in the {place}", str(list(d.position)), " and ".join(allowed))
+
+
+def _name_of(box: Box, space: Rectangle) -> str:
+    return "box" if space == (0.0, 0.0, *box.size) else "space before the piston"
+
+
+def _crowding(
+    whole: Rectangle, name: str, kinds: list[tuple[int, Species]], discs: list[tuple[int, Disc]]
+) -> Iterator[Fault]:
+    """More discs than a region, or the whole space of that name, can hold."""
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
         covered = math.pi * sum(s.count * s.radius**2 for _, s in here)
@@ -138,31 +179,34 @@ def _crowding(box: Box, kinds: list[tuple[int, Species]], discs: list[tuple[int,
         if packing > (RANDOM_PACKING if random else CLOSE_PACKING):
             most = max(here, key=lambda item: item[1].count * item[1].radius ** 2)[0]
             others = [("species", i, key) for i, _ in here for key in ("count", "radius", "region", "placement")]
-            place = "box" if region == whole else "region"
+            place = name if region == whole else "region"
             allowed = f"<= {CLOSE_PACKING:.4f} on a lattice, <= {RANDOM_PACKING} at random"
             yield Fault(
-                (("species", most, "count"), *others, ("box", "size")),
+                (("species", most, "count"), *others, ("box", "size"), ("piston", "position")),
                 f"too many discs for the {place}",
                 f"packing fraction {packing:.4g}",
                 allowed,
             )
 
 
-def _endless(run: Run, species: Sequence[Species | None], disc: Sequence[Disc | None]) -> Iterator[Fault]:
+def _endless(scene: Scene) -> Iterator[Fault]:
     """Runs without a stop rule, or with one that is never met."""
+    run = scene.run
     keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
-    if run.until is not None:
+    if run.until is not None or run.trials is not None:
         return
     if run.events is None and run.collisions_per_disc is None:
         yield Fault(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
         return
-    if None in species or None in disc:
-        return
-    kinds = [s for s in species if s is not None]
-    discs = [d for d in disc if d is not None]
-    if not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in kinds) and not any(
-        any(d.velocity) for d in discs
+    alone = sum(s.count for s in scene.species) + len(scene.disc) == 1
+    if (
+        not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in scene.species)
+        and not any(any(d.velocity) for d in scene.disc)
+        and not scene.gravity
+        and not scene.piston
     ):
         yield Fault(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
-    elif run.events is None and sum(s.count for s in kinds) + len(discs) == 1:
+    elif run.events is None and alone:
         yield Fault(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
+    elif alone and all(scene.box.joined) and not scene.wall:
+        yield Fault(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")

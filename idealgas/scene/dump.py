@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 def dump_scene(scene: "Scene") -> str:
     """The resolved scene, all defaults shown: TOML that loads back to an equal scene, every float to the last bit."""
     tables = []
-    for name, value in scene.model_dump(exclude_none=True).items():
+    for name, value in scene.model_dump(by_alias=True, exclude_none=True).items():
         if isinstance(value, Mapping):
             tables.append(_table(f"[{name}]", value))
         else:

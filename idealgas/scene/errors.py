@@ -1,15 +1,16 @@
 """From faults and pydantic's findings to lines for people: `place: table.key: what is wrong (got …; allowed …)`."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from typing import Any, get_args
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from idealgas.errors import UserError
-from idealgas.scene.checks import Fault, Key
 from idealgas.scene.dump import toml_value
+from idealgas.scene.fault import Fault, Key
 from idealgas.scene.model import Scene
 
 _WORDS = {
@@ -36,24 +37,27 @@ class SceneError(UserError, ValueError):
         self.errors = list(errors)
 
 
-def as_faults(findings: Iterable[ErrorDetails]) -> list[Fault]:
-    """Pydantic's findings in the project's words."""
-    return [_fault(finding) for finding in findings]
+def as_faults(findings: Iterable[ErrorDetails], model: type[BaseModel] = Scene) -> list[Fault]:
+    """Pydantic's findings about a document of a model in the project's words."""
+    return [_fault(finding, model) for finding in findings]
 
 
-def _fault(finding: ErrorDetails) -> Fault:
-    key, kind, got = finding["loc"], finding["type"], finding["input"]
+def _fault(finding: ErrorDetails, model: type[BaseModel]) -> Fault:
+    key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # tags of unions
+    kind, got = finding["type"], finding["input"]
     if kind == "extra_forbidden":
-        known = list(_table(key[:-1]).model_fields)
+        known = list(_keys(table_at(key[:-1], model)))
         close = get_close_matches(str(key[-1]), known, n=1)
         wrong = f"unknown {'key' if key[1:] else 'table'}" + (f', did you mean "{close[0]}"?' if close else "")
         return Fault((key,), wrong, str(key[-1]), ", ".join(known))
     if kind == "missing" and isinstance(key[-1], int):
-        return Fault((key[:-1],), "too short", _shown(got), _described(key))
+        return Fault((key[:-1],), "too short", _shown(got), _described(key, model))
     if kind == "missing":
-        return Fault((key,), "missing", "nothing", _described(key))
+        return Fault((key,), "missing", "nothing", _described(key, model))
     if kind in ("tuple_type", "too_long"):
-        return Fault((key,), "too long" if kind == "too_long" else "wrong type", _shown(got), _described(key))
+        return Fault((key,), "too long" if kind == "too_long" else "wrong type", _shown(got), _described(key, model))
+    if key != finding["loc"] and kind == "literal_error":
+        return Fault((key,), "unknown value", _shown(got), _described(key, model))
     wrong, allowed = _WORDS.get(kind, ("wrong value", finding["msg"]))
     return Fault((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
 
@@ -63,19 +67,28 @@ def _shown(value: Any, longest: int = 60) -> str:
     return text if len(text) <= longest else f"{text[:longest]}…"
 
 
-def _described(key: Key) -> str:
+def _described(key: Key, model: type[BaseModel]) -> str:
     """What the model says of a key, or of the array that the key is an element of."""
     while isinstance(key[-1], int):
         key = key[:-1]
-    return _table(key[:-1]).model_fields[str(key[-1])].description or ""
+    return _keys(table_at(key[:-1], model))[str(key[-1])].description or ""
 
 
-def _table(key: Key) -> type[BaseModel]:
+def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
+    """Fields of a table by the keys that set them."""
+    return {field.alias or name: field for name, field in table.model_fields.items()}
+
+
+def table_at(key: Key, model: type[BaseModel] = Scene) -> type[BaseModel]:
     """The model of the table at a key."""
-    model: type[BaseModel] = Scene
     for name in key:
         if isinstance(name, str):
-            annotation = model.model_fields[name].annotation
-            types = (annotation, *get_args(annotation))
-            model = next(t for t in types if isinstance(t, type) and issubclass(t, BaseModel))
+            model = next(t for t in _types_in(_keys(model)[name].annotation) if issubclass(t, BaseModel))
     return model
+
+
+def _types_in(annotation: Any) -> Iterator[type]:
+    if isinstance(annotation, type):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _types_in(part)

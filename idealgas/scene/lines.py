@@ -4,7 +4,7 @@ import re
 import tomllib
 from bisect import bisect_left
 
-from idealgas.scene.checks import Key
+from idealgas.scene.fault import Key
 
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\]|\\.)*"|'[^']*'""")

@@ -9,49 +9,59 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from idealgas.scene.checks import Fault, Key, faults
-from idealgas.scene.errors import SceneError, as_faults
-from idealgas.scene.model import Box, Disc, Run, Scene, Species
+from idealgas.scene.checks import faults
+from idealgas.scene.errors import SceneError, as_faults, table_at
+from idealgas.scene.fault import Fault, Key
+from idealgas.scene.model import Scene
 from idealgas.scene.origin import Origin
 from idealgas.scene.overrides import OverrideError, apply
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
     """Read a scene; an override is `table.key=value`. SceneError if it cannot be read or simulated."""
+    return parse_scene(read_text(path), str(path), overrides)
+
+
+def parse_scene(text: str, name: str = "<scene>", overrides: Sequence[str] = ()) -> Scene:
+    """The same from text; `name` stands for the file in messages."""
+    text = text.replace("\r\n", "\n")
+    document = parse_document(text, name)
+    overridden: dict[Key, str] = {}
+    errors = []
+    for override in overrides:
+        try:
+            overridden[apply(override, document)] = f"--set {override}"
+        except OverrideError as error:
+            errors.append(f"--set {override}: {error}")
+    return make_scene(document, Origin(text, name, overridden), errors)
+
+
+def make_scene(document: dict[str, Any], origin: Origin, errors: Sequence[str] = ()) -> Scene:
+    """The scene of a document; SceneError if there is anything wrong with it, after `errors` found before."""
+    try:
+        scene = Scene.model_validate(document).resolved().from_origin(origin)
+    except ValidationError as error:
+        errors = [*errors, *origin.report(_all_faults(error, document))]
+    if errors:
+        raise SceneError(errors)
+    return scene
+
+
+def read_text(path: str | PathLike[str]) -> str:
+    """Text of a TOML file. SceneError if there is none."""
     try:
         raw = Path(path).read_bytes()
-        text = raw.decode()
+        return raw.decode()
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise SceneError([f"{path}:{line}: not UTF-8 text (got byte 0x{raw[error.start]:02x})"]) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise SceneError([f"{path}: cannot be read ({reason})"]) from None
-    return parse_scene(text, str(path), overrides)
 
 
-def parse_scene(text: str, name: str = "<scene>", overrides: Sequence[str] = ()) -> Scene:
-    """The same from text; `name` stands for the file in messages."""
-    text = text.replace("\r\n", "\n")
-    document = _document(text, name)
-    overridden: dict[Key, str] = {}
-    errors = []
-    for override in overrides:
-        try:
-            overridden[apply(override, document)] = override
-        except OverrideError as error:
-            errors.append(f"--set {override}: {error}")
-    origin = Origin(text, name, overridden)
-    try:
-        scene = Scene.model_validate(document).from_origin(origin)
-    except ValidationError as error:
-        errors += origin.report(_all_faults(error, document))
-    if errors:
-        raise SceneError(errors)
-    return scene
-
-
-def _document(text: str, name: str) -> dict[str, Any]:
+def parse_document(text: str, name: str) -> dict[str, Any]:
+    """A TOML text as plain values. SceneError if it is not TOML."""
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -68,15 +78,27 @@ def _all_faults(error: ValidationError, document: dict[str, Any]) -> list[Fault]
     findings = error.errors(include_url=False)
     if findings[0]["type"] == "faults":
         return findings[0]["ctx"]["faults"]
-    return [
-        *as_faults(findings),
-        *faults(
-            _sound(Box, document.get("box")),
-            _sound_items(Species, document.get("species", [])),
-            _sound_items(Disc, document.get("disc", [])),
-            _sound(Run, document.get("run")),
-        ),
-    ]
+    parts, unsound = _sound_parts(document)
+    return [*as_faults(findings), *faults(parts, unsound)]
+
+
+def _sound_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
+    """What tables of a document are sound, None in the place of the others, and the names of these."""
+    parts: dict[str, Any] = {}
+    unsound = set()
+    for name, field in Scene.model_fields.items():
+        table, value = table_at((name,)), document.get(name)
+        if value is not None and field.default == ():
+            parts[name] = _sound_items(table, value)
+            sound = None not in parts[name]
+        elif value is not None or field.is_required():
+            parts[name] = _sound(table, value)
+            sound = parts[name] is not None
+        else:
+            sound = True
+        if not sound:
+            unsound.add(name)
+    return Scene.model_construct(**parts), unsound
 
 
 def _sound(table: type, value: Any) -> Any:

@@ -6,25 +6,17 @@ An effect is a table of its own: one class here and one field of `Scene`, `None`
 from collections.abc import Sequence
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
-from idealgas.scene.checks import Fault, faults
+from idealgas.scene.checks import faults
+from idealgas.scene.defaults import contact_duration
+from idealgas.scene.effects import Gravity, Piston, Restitution, Rotation, Side, ThermalSide, Wall
+from idealgas.scene.fault import Fault
 from idealgas.scene.origin import Origin
+from idealgas.scene.table import NotNegative, Number, Positive, Table, Vector
 
-LARGEST = 1e30
-"""Bound on every number, so that no product of a few of them overflows."""
-
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-Positive = Annotated[float, Field(gt=0, le=LARGEST)]
-NotNegative = Annotated[float, Field(ge=0, le=LARGEST)]
-Vector = Annotated[tuple[Number, Number], Field(strict=False)]
-
-
-class Table(BaseModel):
-    """A TOML table: no key beyond its own, no value of another type, nothing changed later."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+_SIDE = '"reflecting", "periodic" or { thermal = T }'
 
 
 class Header(Table):
@@ -37,9 +29,23 @@ class Header(Table):
 
 
 class Box(Table):
-    """`[box]`: reflecting sides; the corner at the lower left is the origin."""
+    """`[box]`: the corner at the lower left is the origin."""
 
     size: Annotated[tuple[Positive, Positive], Field(strict=False)] = Field(description="[width, height], length")
+    left: Side = Field(default="reflecting", description=_SIDE)
+    right: Side = Field(default="reflecting", description=_SIDE)
+    bottom: Side = Field(default="reflecting", description=_SIDE)
+    top: Side = Field(default="reflecting", description=_SIDE)
+
+    @property
+    def sides(self) -> tuple[Side, Side, Side, Side]:
+        """Left, right, bottom and top."""
+        return self.left, self.right, self.bottom, self.top
+
+    @property
+    def joined(self) -> tuple[bool, bool]:
+        """Whether left and right, and bottom and top, are joined: periodic."""
+        return self.left == "periodic", self.bottom == "periodic"
 
 
 class Species(Table):
@@ -56,11 +62,16 @@ class Species(Table):
     velocities: Annotated[tuple[Vector, ...], Field(strict=False)] | None = Field(
         default=None, description="length/time; one [vx, vy] for each disc"
     )
+    angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
+    spin_temperature: NotNegative | None = Field(
+        default=None, description="energy; with [rotation]: Gaussian spins, rotational energy count * T/2"
+    )
     placement: Literal["random", "lattice"] = Field(
         default="random", description="how the discs are put into the region"
     )
     region: Annotated[tuple[Number, Number, Number, Number], Field(strict=False)] | None = Field(
-        default=None, description="[x0, y0, x1, y1], length: whole discs lie in it; the box if absent"
+        default=None,
+        description="[x0, y0, x1, y1], length: whole discs lie in it; if absent the box, up to the piston",
     )
 
 
@@ -71,16 +82,28 @@ class Disc(Table):
     velocity: Vector = Field(default=(0.0, 0.0), description="[vx, vy], length/time")
     radius: Positive = Field(description="radius > 0, length")
     mass: Positive = Field(default=1.0, description="mass")
+    angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
 
 
 class Run(Table):
     """`[run]`: the method and when to stop, whichever of the stop rules comes first; at least one is given."""
 
-    method: Literal["event_driven", "brute_force"] = Field(default="event_driven", description="how events are found")
+    method: Literal["event_driven", "brute_force", "monte_carlo"] = Field(
+        default="event_driven", description="how events are found"
+    )
     until: Positive | None = Field(default=None, description="time")
     events: int | None = Field(default=None, ge=1, lt=2**63, description="number of pair collisions and wall hits")
     collisions_per_disc: Positive | None = Field(
         default=None, description="pair collisions a disc takes part in, averaged over all discs (2 * collisions / N)"
+    )
+    trials: int | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
+    v_ref: Positive | None = Field(
+        default=None,
+        description="with monte_carlo: relative speed at which a pair of the largest discs collides for certain; "
+        "if absent 5 times the largest speed at the start",
+    )
+    impact: Literal["symmetric", "one_sided"] | None = Field(
+        default=None, description="with monte_carlo: whether impact parameters have both signs, as if absent, or one"
     )
 
 
@@ -90,6 +113,8 @@ class Log(Table):
     events: bool = Field(default=True, description="every event on record; without, the checkpoints only")
     compression: Literal["gzip", "none"] = Field(default="gzip", description="of the event columns")
     checkpoint_every: int = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
+    snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")
+    fsync: bool = Field(default=False, description="whether what is flushed also survives a loss of power")
 
 
 class Scene(Table):
@@ -99,16 +124,31 @@ class Scene(Table):
     box: Box = Field(description="[box]: size")
     species: Annotated[tuple[Species, ...], Field(strict=False)] = Field(default=(), description="[[species]] tables")
     disc: Annotated[tuple[Disc, ...], Field(strict=False)] = Field(default=(), description="[[disc]] tables")
+    wall: Annotated[tuple[Wall, ...], Field(strict=False)] = Field(default=(), description="[[wall]] tables")
+    gravity: Gravity | None = Field(default=None, description="[gravity]: acceleration")
+    rotation: Rotation | None = Field(default=None, description="[rotation]: inertia, roughness, wall_roughness")
+    restitution: Restitution | None = Field(default=None, description="[restitution]: normal, wall, contact_duration")
+    piston: Piston | None = Field(default=None, description="[piston]: side, position, velocity or mass and pressure")
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
-    log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every")
+    log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if found := list(faults(self.box, self.species, self.disc, self.run)):
+        if found := list(faults(self)):
             raise PydanticCustomError("faults", "{summary}", {"summary": str(found[0]), "faults": found})
         return self
+
+    def resolved(self) -> Self:
+        """This scene with all defaults filled in that follow from other tables."""
+        update: dict[str, Table] = {}
+        if self.piston:
+            update["piston"] = self.piston.model_copy(update={"position": self.piston.start(self.box.size)})
+        if self.restitution and not self.restitution.elastic:
+            duration = contact_duration(self.restitution, self.species, self.disc)
+            update["restitution"] = self.restitution.model_copy(update={"contact_duration": duration})
+        return self.model_copy(update=update)
 
     def from_origin(self, origin: Origin) -> Self:
         """This scene, knowing where it was written."""
@@ -121,6 +161,19 @@ class Scene(Table):
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Names of the tables that add something to smooth elastic discs in a reflecting box."""
-        plain = {"scene", "box", "species", "disc", "run", "log"}
-        return tuple(name for name in type(self).model_fields if name not in plain and getattr(self, name) is not None)
+        """Which of EFFECTS the scene calls for."""
+        thermal = any(isinstance(side, ThermalSide) for side in self.box.sides) or any(w.temperature for w in self.wall)
+        called = (
+            self.gravity,
+            any(self.box.joined),
+            self.wall,
+            self.rotation,
+            self.restitution and not self.restitution.elastic,
+            thermal,
+            self.piston,
+        )
+        return tuple(name for name, call in zip(EFFECTS, called, strict=True) if call)
+
+
+EFFECTS = ("gravity", "periodic sides", "wall segments", "rotation", "restitution", "thermal walls", "piston")
+"""What a scene may add to smooth elastic discs in a reflecting box; no code of the others runs."""

@@ -3,7 +3,7 @@
 import tomllib
 from typing import Any
 
-from idealgas.scene.checks import Key
+from idealgas.scene.fault import Key
 
 
 class OverrideError(ValueError):

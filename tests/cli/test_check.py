@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from idealgas.scene import EFFECTS, load_scene
+
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
 CONFIGS = Path(__file__).parents[2] / "configs"
 
@@ -36,7 +38,35 @@ def test_a_shipped_scene_is_shown_in_full(shipped_scene):
     assert (result.returncode, result.stderr) == (0, "")
     for part in ("[scene]", "[run]", "compression = ", "packing fraction φ", "wall hits per time", "rows in the log"):
         assert part in result.stdout
-    assert result.stdout.endswith("effects: none beyond elastic discs and a reflecting box\n")
+    effects = load_scene(shipped_scene).effects
+    absent = [name for name in EFFECTS if name not in effects]
+    assert result.stdout.splitlines()[-2:] == [
+        f"effects: {', '.join(effects) or 'none beyond elastic discs and a reflecting box'}",
+        f"compiled out: {', '.join(absent)}",
+    ]
+
+
+def test_walls_are_listed_by_their_numbers():
+    shown = check(CONFIGS / "effusion.toml", "--set", "box.left={ thermal = 2 }").stdout
+    lines = [line for line in shown.splitlines() if line.startswith("│")]
+    assert any(all(word in line for word in ("0", "left", "emits at temperature 2")) for line in lines)
+    assert any(all(word in line for word in ("6", "gate", "(10, 4.9)", "reflecting, open from 5")) for line in lines)
+    piston = check(CONFIGS / "piston.toml").stdout
+    assert "piston of mass 20 under pressure 2" in piston
+
+
+def test_what_theory_does_not_know_is_said():
+    shown = check(CONFIGS / "atmosphere.toml").stdout
+    assert "not known: beyond the theory of a uniform gas are gravity\n" in shown
+    found = json.loads(check(CONFIGS / "atmosphere.toml", "--json").stdout)
+    assert (found["effects"], found["beyond"], found["temperature"], found["rows"]) == (
+        ["gravity"],
+        ["gravity"],
+        None,
+        None,
+    )
+    assert found["duration"] == 400
+    assert found["compiled_out"] == [name for name in EFFECTS if name != "gravity"]
 
 
 def test_json():

@@ -1,5 +1,7 @@
 """Discs lie in the box and apart, whatever the species, or the scene is refused."""
 
+import math
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 from idealgas.gas import make_gas
 from idealgas.scene import SceneError, parse_scene
 from idealgas.scene.dump import toml_value
+from idealgas.scene.effects import SIDES
 
 SIDE = 10.0
 
@@ -28,6 +31,39 @@ def scenes(draw):
         tables.append(table | ({"region": region} if draw(st.booleans()) else {}))
     discs = [{"position": [SIDE / 2, SIDE / 2], "radius": draw(st.floats(0.1, 2))}] if draw(st.booleans()) else []
     return f"box.size = [{SIDE}, {SIDE}]\nrun.until = 1\nspecies = {toml_value(tables)}\ndisc = {toml_value(discs)}"
+
+
+ends = st.tuples(st.floats(0.1, 9.9), st.floats(0.1, 9.9))
+walls = st.lists(st.tuples(ends, ends).filter(lambda pair: math.dist(*pair) > 0.1), max_size=6)
+
+
+@given(scenes(), st.integers(0, 100), walls, st.tuples(st.booleans(), st.booleans()))
+def test_discs_are_clear_of_walls_and_of_all_images_of_each_other(text, seed, walls, joined):
+    """Distances are recomputed here from dense points along the walls, and over all nine images."""
+    sides = [f"box.{side}=periodic" for side, on in zip(SIDES, np.repeat(joined, 2), strict=True) if on]
+    tables = [{"from": list(start), "to": list(end)} for start, end in walls]
+    gas, refused = None, []
+    try:
+        gas = make_gas(parse_scene(f"wall = {toml_value(tables)}\n{text}", overrides=[f"scene.seed={seed}", *sides]))
+    except SceneError as refusal:
+        refused = refusal.errors
+    assert all(any(what in error for what in ("too many discs", "no room", "overlaps wall")) for error in refused)
+    if gas is None:
+        return
+    radius = gas.radius[:, None]
+    for axis in range(2):
+        margin = 0.0 if joined[axis] else gas.radius
+        assert (gas.position[:, axis] >= margin).all()
+        assert (gas.position[:, axis] <= SIDE - margin).all()
+    first, second = np.triu_indices(len(gas), 1)
+    for shift in ((x * SIDE, y * SIDE) for x in (-1, 0, 1) for y in (-1, 0, 1)):
+        if all(on or not step for on, step in zip(joined, shift, strict=True)):
+            gap = np.hypot(*(gas.position[first] - gas.position[second] + shift).T)
+            assert (gap >= (gas.radius[first] + gas.radius[second]) * (1 - 1e-12)).all()
+            for start, end in walls:
+                points = np.linspace(start, end, 200)
+                reach = np.hypot(*np.moveaxis(gas.position[:, None] + shift - points, -1, 0))
+                assert (reach >= radius * (1 - 1e-12)).all()
 
 
 @given(scenes(), st.integers(0, 100))

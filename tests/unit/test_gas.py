@@ -130,3 +130,30 @@ def test_random_discs_avoid_lattices_and_explicit_discs_of_any_size():
     reach = gas.radius[:, None] + gas.radius
     overlap = (dx**2).sum(axis=2) < reach**2
     assert overlap.sum() == len(gas)  # every disc with itself
+
+
+def test_discs_of_a_periodic_box_stand_anywhere_in_it():
+    """Centres nearer to the sides than a radius, on all four, and none beyond."""
+    joined = [f"box.{side}=periodic" for side in ("left", "right", "bottom", "top")]
+    position = gas_of(species("a", count=200, radius=0.3, speed=1), overrides=joined).position
+    assert ((position >= 0) & (position < 10)).all()
+    for axis in range(2):
+        assert position[:, axis].min() < 0.3
+        assert position[:, axis].max() > 9.7
+
+
+def test_discs_stand_before_the_piston():
+    for side, low, high in (("right", [0, 0], [4, 10]), ("left", [4, 0], [10, 10]), ("top", [0, 0], [10, 4])):
+        piston = f"piston={{ side = '{side}', position = 4, mass = 1, pressure = 1 }}"
+        for placement in ("random", "lattice"):
+            gas = gas_of(species("a", count=40, radius=0.3, speed=1, placement=f'"{placement}"'), overrides=[piston])
+            assert (gas.position >= np.add(low, 0.3)).all()
+            assert (gas.position <= np.subtract(high, 0.3)).all()
+
+
+def test_a_lattice_leaves_out_sites_on_walls():
+    """Two walls cross the box; what does not fit into the rows between them goes elsewhere."""
+    walls = "wall=[{ from = [0, 5], to = [10, 5] }, { from = [5, 0], to = [5, 10] }]"
+    gas = gas_of(species("a", count=80, radius=0.3, speed=1, placement='"lattice"'), overrides=[walls])
+    assert np.abs(gas.position - 5).min() >= 0.3
+    assert len(np.unique(gas.position, axis=0)) == 80

@@ -13,16 +13,20 @@ ALLOWED = {
     "scene": set(),
     "physics": {"_jit"},
     "placement": {"_jit"},
-    "gas": {"scene", "placement"},
+    "gas": {"scene", "placement", "resting"},
     "engine": {"_jit", "physics", "gas"},
     "log": {"gas", "scene"},
-    "simulate": {"scene", "gas", "engine", "log"},
+    "resting": {"scene", "gas"},
+    "effects": {"scene", "gas", "engine", "physics"},
+    "energy": {"gas", "engine"},
+    "columns": {"scene", "gas", "engine", "energy", "log"},
+    "simulate": {"scene", "gas", "effects", "resting", "energy", "columns", "engine", "log"},
     "analysis": {"_jit", "scene", "gas", "log"},
     "study": {"scene", "gas", "log", "simulate", "analysis"},
     "_jit": set(),
     "errors": set(),
     "events": set(),
-    "": set(),
+    "": {"log"},  # open_log, imported when it is asked for
 }
 
 COMPUTES = {"idealgas", "math", "typing", "collections", "enum", "numpy", "numba"}

@@ -64,6 +64,8 @@ def test_size_of_the_log():
     rows = forecast_of().rows
     assert forecast_of("log.compression=none").bytes == pytest.approx(49 * rows)
     assert forecast_of("log.events=false").bytes == 0
+    turning = forecast_of("log.compression=none", "rotation.roughness=1")
+    assert turning.bytes == pytest.approx((49 + 8) * turning.rows)
 
 
 def test_a_gas_at_rest_has_no_events():
@@ -75,3 +77,47 @@ def test_a_single_disc_only_meets_walls():
     expected = forecast_of("species.count=1")
     assert expected.pair_collision_rate == 0
     assert expected.wall_hit_rate > 0
+
+
+def test_spins_take_a_third_of_the_energy():
+    rough = forecast_of("rotation.roughness=1")
+    assert rough.temperature == pytest.approx(2 / 3, rel=1e-12)
+    spinning = forecast_of("rotation.roughness=1", "species.spin_temperature=2.5")
+    assert spinning.temperature == pytest.approx((2 * 1 + 2.5) / 3, rel=1e-12)
+    given = forecast_of("rotation.roughness=1", "species.angular_velocity=2")
+    assert given.temperature == pytest.approx((2 * 1 + 0.5 * 0.5 * 0.01 * 4) / 3, rel=1e-12)
+
+
+def test_only_walls_are_hit():
+    tall = forecast_of("species.radius=1e-4")
+    joined = forecast_of("species.radius=1e-4", "box.left=periodic", "box.right=periodic")
+    assert joined.wall_hit_rate == pytest.approx(tall.wall_hit_rate * 20 / 60, rel=1e-4)
+    endless = forecast_of(*(f"box.{side}=periodic" for side in ("left", "right", "bottom", "top")))
+    assert endless.wall_hit_rate == 0
+    assert endless.collision_rate == pytest.approx(forecast_of().collision_rate, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("override", "beyond"),
+    [
+        ("gravity.acceleration=[0, -1]", "gravity"),
+        ("wall=[{ from = [1, 1], to = [2, 2] }]", "wall segments"),
+        ("restitution.normal=0.9", "restitution"),
+        ("rotation.roughness=0.5", "rotation"),
+        ("box.top={ thermal = 1 }", "thermal walls"),
+        ("piston={ mass = 1, pressure = 10 }", "piston"),
+    ],
+)
+def test_what_is_beyond_theory_is_not_known(override, beyond):
+    expected = forecast_of(override)
+    assert expected.beyond == (beyond,)
+    unknown = ("temperature", "collision_rate", "pair_collision_rate", "wall_hit_rate", "events", "rows", "bytes")
+    assert all(getattr(expected, name) is None for name in unknown)
+    assert expected.species[0].collision_rate is None
+    assert expected.duration == 3
+    assert forecast_of(override, "run.events=9").duration is None
+
+
+def test_the_packing_fraction_is_that_of_the_space_before_a_piston():
+    expected = forecast_of("piston={ position = 8, mass = 1, pressure = 10 }")
+    assert expected.packing_fraction == pytest.approx(math.pi * 0.1**2 * 1000 / 160, rel=1e-12)

@@ -98,8 +98,8 @@ def test_log_without_events_is_refused(tmp_path):
 
 def test_effects_are_not_ignored(log, monkeypatch):
     monkeypatch.setattr(Scene, "effects", ("gravity",))
-    with pytest.raises(UserError, match="cannot be analysed yet: its discs feel gravity"):
-        temperature(log)
+    with pytest.raises(UserError, match="no answer for a gas with gravity"):
+        pressure(log)
 
 
 def test_gas_at_rest_is_refused(tmp_path):

@@ -1,0 +1,66 @@
+"""What the commands that simulate share: Ctrl-C, a progress bar, and the summary."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from idealgas.simulate import Summary
+
+
+def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
+    """Call `simulate` with what a terminal can give it, and print the summary of the log it wrote.
+
+    from_start: whether all events of the log are of this run.
+    """
+    import json
+    import shlex
+    import signal
+    import sys
+    from dataclasses import asdict
+
+    from ._progress import progress_bar
+
+    asked_to_stop = []
+    signal.signal(signal.SIGINT, lambda *_: asked_to_stop.append(True))
+    with progress_bar() as show:
+        command = shlex.join(["idealgas", *sys.argv[1:]])
+        summary = simulate(command=command, on_progress=show, interrupted=lambda: bool(asked_to_stop))
+    if as_json:
+        click.echo(json.dumps(asdict(summary), indent=2))
+    else:
+        _print(summary, path, from_start)
+    if asked_to_stop:
+        raise SystemExit(130)
+
+
+def _print(summary: "Summary", output: str, from_start: bool) -> None:
+    import os
+
+    from rich.console import Console
+    from rich.filesize import decimal
+    from rich.table import Table
+
+    title = output if summary.completed else f"{output} (interrupted)"
+    table = Table(title=title, title_justify="left", show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
+    table.add_row("events", f"{summary.events:,}")
+    table.add_row("  disc collisions", f"{summary.disc_collisions:,}")
+    table.add_row("  wall hits", f"{summary.wall_hits:,}")
+    if summary.trials:
+        share = summary.disc_collisions / summary.trials
+        table.add_row("trials", f"{summary.trials:,}")
+        table.add_row("  accepted", f"{share:.4f}")
+    table.add_row("simulated time", f"{summary.end_time:.6g}")
+    if summary.energy_drift is None:
+        table.add_row("energy change (not conserved)", f"{summary.energy_change:.6g}")
+    else:
+        table.add_row("energy drift", f"{summary.energy_drift:.1e}")
+    table.add_row("deepest overlap", f"{summary.deepest_overlap:.1e} diameters")
+    table.add_row("wall time", f"{summary.seconds:.2f} s")
+    if from_start:
+        table.add_row("events per second", f"{summary.events / summary.seconds:,.0f}")
+    table.add_row("file size", decimal(os.path.getsize(output)))
+    Console().print(table)

@@ -1,0 +1,64 @@
+"""`idealgas animate`: a log as a film."""
+
+import re
+
+import click
+
+from ._analysis import log_argument, open_log, reading
+
+
+def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d+)x(\d+)", text)
+    if not match or not all(200 <= int(side) <= 8192 for side in match.groups()):
+        raise click.BadParameter(f"WIDTHxHEIGHT in pixels, 200 to 8192 each (got {text!r})")
+    return int(match[1]), int(match[2])
+
+
+@click.command()
+@log_argument
+@click.option("-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif.")
+@click.option("--from", "start", type=float, metavar="T", help="Start, time.  [default: the log's start]")
+@click.option("--to", "end", type=float, metavar="T", help="End, time.  [default: 20 seconds of film]")
+@click.option(
+    "--fps", default=25.0, show_default=True, type=click.FloatRange(1, 120), help="Frames per second of film."
+)
+@click.option(
+    "--speed", type=click.FloatRange(min=0, min_open=True), metavar="X",
+    help="Simulated time per second of film.  [default: a disc crosses the box in 5 s]",
+)  # fmt: skip
+@click.option("--size", default="960x540", show_default=True, callback=_pixels, help="Of a frame, pixels.")
+@click.option(
+    "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species"]),
+    help="What the colour of a disc tells.",
+)  # fmt: skip
+def animate(
+    path: str,
+    output: str,
+    start: float | None,
+    end: float | None,
+    fps: float,
+    speed: float | None,
+    size: tuple[int, int],
+    colour: str,
+) -> None:
+    """Make a film: the discs, exactly where they were at every frame, and beside them their speeds.
+
+    MP4 takes the program ffmpeg; without it the film becomes a GIF.
+    """
+    from idealgas.analysis.film import animate as make
+
+    with open_log(path) as log, reading("frames") as progress:
+        film = make(
+            log,
+            output,
+            start=start,
+            end=end,
+            fps=fps,
+            speed=speed,
+            size=size,
+            by_species=colour == "species",
+            on_frame=progress,
+        )
+    instead = "" if str(film.path) == output else f" instead of {output}, as there is no ffmpeg"
+    window = f"t = {film.start:.6g} to {film.end:.6g}"
+    click.echo(f"{film.path}{instead}: {film.frames} frames, {window}, {film.fps:g} frames per second")

@@ -1,0 +1,33 @@
+"""`idealgas export`: a log for other programs."""
+
+import click
+
+from ._analysis import log_argument, open_log
+
+KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
+
+
+@click.command()
+@log_argument
+@click.option("--format", "kind", type=click.Choice(KINDS), required=True, help="Kind of file.")
+@click.option("--events", is_flag=True, help="All events (csv, parquet).")
+@click.option("--frames", metavar="N|every=DT", help="All discs at N times from start to end, or every DT of time.")
+@click.option("-o", "--output", metavar="OUT", help="The file to write.  [default: RUN with the format's ending]")
+@click.option("--force", is_flag=True, help="Replace the file if it exists.")
+def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:
+    """Write the events of a log, or frames of all discs, into a file that other programs read.
+
+    gsd (HOOMD, OVITO) keeps positions as float32; extxyz (OVITO, ASE) and csv keep every digit; h5md3d (MDAnalysis) is
+    H5MD with a third coordinate, zero.
+    """
+    if events == (frames is not None):
+        raise click.UsageError("one of --events and --frames is needed")
+    from pathlib import Path
+
+    from idealgas.log.export import FORMATS, frame_times
+    from idealgas.log.export import export as write
+
+    with open_log(path) as log:
+        target = output or str(Path(path).with_suffix(FORMATS[kind].ending))
+        number = write(log, kind, target, None if frames is None else frame_times(log, frames).tolist(), force)
+    click.echo(f"{target}: {number:,} {'event rows' if events else 'frames'}")

@@ -1,0 +1,85 @@
+"""`idealgas follow`: watch a run."""
+
+from typing import TYPE_CHECKING
+
+import click
+
+from ._analysis import log_argument
+
+if TYPE_CHECKING:
+    from rich.console import Group
+
+    from idealgas.analysis.glance import Glance
+    from idealgas.log import Log
+
+SECONDS = 1.0  # between two looks
+WIDTH = 50
+
+
+@click.command()
+@log_argument
+@click.option("--once", is_flag=True, help="Show one state and end.")
+def follow(path: str, once: bool) -> None:
+    """Show how far a run has come, while it goes on and until it ends; elsewhere than on a terminal, its end only.
+
+    Pressure and Z are those of the last events, the speeds those of the last state.
+    """
+    import time
+
+    from rich.console import Console
+    from rich.live import Live
+
+    from idealgas.analysis.glance import glance
+    from idealgas.log import open_log
+
+    console = Console()
+    with open_log(path) as log, Live(console=console, auto_refresh=False, transient=True) as screen:
+        seen, looked = glance(log), time.monotonic()
+        rate: float | None = log.summary["events"] / log.summary["seconds"] if log.complete else None
+        while log.live:
+            time.sleep(SECONDS)
+            log.refresh()
+            before, seen = (seen, looked), glance(log)
+            looked = time.monotonic()
+            rate = (seen.events - before[0].events) / (looked - before[1])
+            if once:
+                break
+            if console.is_terminal:
+                screen.update(_view(log, seen, rate), refresh=True)
+        log.refresh()
+        shown = _view(log, seen if once else glance(log), rate)
+    console.print(shown)
+
+
+def _view(log: "Log", seen: "Glance", rate: float | None) -> "Group":
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    state = (
+        "complete" if log.complete else "running" if log.live else "its writer died" if log.unclosed else "interrupted"
+    )
+    table = Table(title=f"{log.path}: {state}", title_justify="left", show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
+    table.add_row("time", f"{seen.time:.6g}")
+    table.add_row("events", f"{seen.events:,}")
+    table.add_row("events per second", "-" if rate is None else f"{rate:,.0f}")
+    table.add_row("temperature", f"{seen.temperature:.6g}")
+    for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility)):
+        table.add_row(name, "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}")
+    table.add_row("KS distance of speeds", "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}")
+    return Group(table, Text(_histogram(seen)))
+
+
+def _histogram(seen: "Glance") -> str:
+    """Bars of the speeds' density, and a mark where Maxwell-Boltzmann's would end."""
+    if seen.density is None:
+        return "nothing moves"
+    highest = max(seen.density.max(), seen.expected.max())
+    lines = ["speeds in units of √(T/m); │ Maxwell-Boltzmann"]
+    for low, density, expected in zip(seen.edges[:-1], seen.density, seen.expected, strict=True):
+        bar = list(("█" * round(WIDTH * density / highest)).ljust(WIDTH + 1))
+        bar[round(WIDTH * expected / highest)] = "│"
+        lines.append(f"{low:4.1f} {''.join(bar).rstrip()}")
+    return "\n".join(lines)

@@ -1,0 +1,21 @@
+"""`idealgas report`: a log as one page."""
+
+import click
+
+from ._analysis import log_argument, open_log, reading
+
+
+@click.command()
+@log_argument
+@click.option("-o", "--output", required=True, metavar="REPORT.html", help="The page to write.")
+@click.option("--from", "start", type=float, metavar="T", help="Start of the player, time.  [default: the log's start]")
+def report(path: str, output: str, start: float | None) -> None:
+    """Write one page with every analysis that applies, and a player that moves the discs.
+
+    The page needs no network and no other file. It has as many events as fit: the player says which part of the run.
+    """
+    from idealgas.analysis.report import write_report
+
+    with open_log(path) as log, reading("analyses") as progress:
+        write_report(log, output, start=start, on_step=progress)
+    click.echo(output)

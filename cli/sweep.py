@@ -1,0 +1,100 @@
+"""`idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import click
+
+from idealgas.errors import UserError
+
+if TYPE_CHECKING:
+    from idealgas.study.plan import Sweep
+    from idealgas.study.sweep import Progress
+
+
+@click.command()
+@click.argument("path", metavar="SWEEP.toml")
+@click.option("-o", "--output", metavar="DIR", help="Folder for logs and results; continued if it is there.")
+@click.option("--workers", type=click.IntRange(1), metavar="N", help="Processes on this machine.  [default: its cores]")
+@click.option("--scheduler", metavar="ADDRESS", help="A dask scheduler whose workers take the runs.")
+@click.option("--dry-run", is_flag=True, help="Show the points, and the time and space they will take; run nothing.")
+def sweep(path: str, output: str | None, workers: int | None, scheduler: str | None, dry_run: bool) -> None:
+    """Run a scene at many points and collect what its analyses find in DIR/results.csv.
+
+    What was done stays done: the same command goes on where it was stopped. A point that fails is tried again twice and
+    then reported; the others run on.
+    """
+    from idealgas.study.plan import load_sweep
+
+    plan = load_sweep(path)
+    if dry_run:
+        _print_plan(plan, workers)
+        return
+    if output is None:
+        raise UserError("-o DIR: missing (the folder for logs and results)")
+    from idealgas.study.results import write_tables
+    from idealgas.study.sweep import run_sweep
+
+    interrupted = False
+    outcome = None
+    try:
+        with _progress_bar() as show:
+            outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=show)
+    except KeyboardInterrupt:
+        interrupted = True
+    if interrupted or outcome is None:
+        click.echo("interrupted; the same command goes on where this one stopped", err=True)
+        raise SystemExit(130)
+    for index, reason in outcome.failures.items():
+        click.echo(f"point {index} failed: {reason}", err=True)
+    if outcome.ran or outcome.before:
+        tables = " and ".join(map(str, write_tables(output)))
+        click.echo(f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed: {tables}")
+    if outcome.failures:
+        raise SystemExit(1)
+
+
+@contextmanager
+def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
+    """Yield the function that shows how many points are done and failed, on a terminal and nowhere else."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        BarColumn(), MofNCompleteColumn(), TextColumn("points, {task.fields[failed]} failed, remaining"),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    console = Console(stderr=True)
+    with Bar(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
+        task = bar.add_task("sweep", total=None, failed=0)
+
+        def show(progress: "Progress") -> None:
+            done = progress.done + progress.failed
+            bar.update(task, total=progress.total, completed=done, failed=progress.failed)
+
+        yield show
+
+
+def _print_plan(plan: "Sweep", workers: int | None) -> None:
+    import os
+
+    from rich.console import Console
+    from rich.filesize import decimal
+    from rich.table import Table
+
+    from idealgas.study.outlook import outlook
+
+    workers = workers or os.cpu_count() or 1
+    costs = outlook(plan)
+    table = Table("point", "replicate", *plan.axes, "N", "φ", "events", "log")
+    for point, cost in zip(plan.points, costs, strict=True):
+        values = (f"{value:.6g}" if isinstance(value, float) else str(value) for value in point.values.values())
+        sizes = (f"{cost.number}", f"{cost.packing_fraction:.4g}", f"{cost.events:,.0f}", decimal(int(cost.bytes)))
+        table.add_row(str(point.index), str(point.replicate), *values, *sizes)
+    Console().print(table)
+    size = sum(cost.bytes for cost in costs)
+    kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
+    seconds = sum(cost.seconds for cost in costs) / workers
+    click.echo(f"{len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")

@@ -1,0 +1,337 @@
+"use strict";
+
+// ── the gas: which event each disc had last, and its free flight since ──
+
+function unpack(name, Type) {
+  const element = document.getElementById("data-" + name);
+  if (!element) return new Type(0);
+  const text = atob(element.textContent.trim());
+  const bytes = new Uint8Array(text.length);
+  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
+  return new Type(bytes.buffer);
+}
+
+class Gas {
+  constructor(head) {
+    this.head = head;
+    this.radius = unpack("radius", Float32Array);
+    this.mass = unpack("mass", Float32Array);
+    this.start = { position: unpack("position", Float32Array), velocity: unpack("velocity", Float32Array) };
+    this.tick = unpack("event_tick", Uint32Array);
+    this.disc = unpack("event_disc", Uint32Array);
+    this.event = { position: unpack("event_position", Float32Array), velocity: unpack("event_velocity", Float32Array) };
+    this.number = this.radius.length;
+    this.last = new Int32Array(this.number).fill(-1);
+    this.row = 0; // events that have happened
+    this.x = new Float64Array(this.number);
+    this.y = new Float64Array(this.number);
+    this.vx = new Float64Array(this.number);
+    this.vy = new Float64Array(this.number);
+    this.step = Math.max(this.number, 4096);
+    this.marks = [this.last.slice()]; // `last` at every step-th row, to go back to
+    while (this.row < this.tick.length) {
+      this.follow(Math.min(this.row + this.step, this.tick.length));
+      if (this.row % this.step === 0) this.marks.push(this.last.slice());
+    }
+    this.seek(head.start);
+  }
+
+  follow(row) {
+    for (; this.row < row; this.row++) this.last[this.disc[this.row]] = this.row;
+  }
+
+  timeOf(tick) {
+    return this.head.start + tick / this.head.ticks * (this.head.end - this.head.start);
+  }
+
+  rowAfter(time) {
+    const tick = (time - this.head.start) / (this.head.end - this.head.start) * this.head.ticks;
+    let low = 0, high = this.tick.length;
+    while (low < high) {
+      const middle = (low + high) >>> 1;
+      if (this.tick[middle] <= tick) low = middle + 1; else high = middle;
+    }
+    return low;
+  }
+
+  seek(time) {
+    this.time = Math.min(Math.max(time, this.head.start), this.head.end);
+    const row = this.rowAfter(this.time);
+    const mark = Math.min(Math.floor(row / this.step), this.marks.length - 1);
+    if (row < this.row || row - this.row > this.step) {
+      this.last.set(this.marks[mark]);
+      this.row = mark * this.step;
+    }
+    this.follow(row);
+    const [gx, gy] = this.head.gravity, [width, height] = this.head.box, [joinedX, joinedY] = this.head.joined;
+    for (let i = 0; i < this.number; i++) {
+      const event = this.last[i], from = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
+      const dt = this.time - (event < 0 ? this.head.start : this.timeOf(this.tick[event]));
+      const vx = from.velocity[k], vy = from.velocity[k + 1];
+      this.vx[i] = vx + gx * dt;
+      this.vy[i] = vy + gy * dt;
+      this.x[i] = from.position[k] + vx * dt + gx * dt * dt / 2;
+      this.y[i] = from.position[k + 1] + vy * dt + gy * dt * dt / 2;
+      if (joinedX) this.x[i] -= Math.floor(this.x[i] / width) * width;
+      if (joinedY) this.y[i] -= Math.floor(this.y[i] / height) * height;
+    }
+  }
+}
+
+// ── the pictures ──
+
+function themed() {
+  const style = getComputedStyle(document.documentElement);
+  const dark = !printing && matchMedia("(prefers-color-scheme: dark)").matches;
+  const colour = name => printing ? { "--ink": "#1a1a1a", "--line": "#d5d5d5" }[name] : style.getPropertyValue(name).trim();
+  return { dark, ink: colour("--ink"), line: colour("--line") };
+}
+
+function prepare(canvas, ratio, tallest) {
+  const width = canvas.clientWidth || 600;
+  const scale = window.devicePixelRatio || 1;
+  let height = width * ratio, inset = 0;
+  if (height > tallest) { height = tallest; inset = (width - height / ratio) / 2; }
+  const pixels = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) {
+    [canvas.width, canvas.height] = pixels;
+    canvas.style.height = height + "px";
+  }
+  const pen = canvas.getContext("2d");
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height, inset };
+}
+
+class DiscView {
+  constructor(canvas, gas) {
+    this.canvas = canvas;
+    this.gas = gas;
+    this.shade = new Uint8Array(gas.number);
+  }
+
+  draw() {
+    const { gas } = this, { head } = gas, [boxX, boxY] = head.box;
+    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 640);
+    const theme = themed(), shades = theme.dark ? head.dark : head.light;
+    const scale = (width - 2 * inset) / boxX;
+    for (let i = 0; i < gas.number; i++) {
+      const speed = Math.hypot(gas.vx[i], gas.vy[i]) / head.brightest;
+      this.shade[i] = Math.min(Math.floor(speed * shades.length), shades.length - 1);
+    }
+    pen.save();
+    pen.beginPath();
+    pen.rect(inset, 0, width - 2 * inset, height);
+    pen.clip();
+    for (let s = 0; s < shades.length; s++) {
+      pen.beginPath();
+      for (let i = 0; i < gas.number; i++) {
+        if (this.shade[i] === s) this.outline(pen, i, inset, height, scale, boxX, boxY);
+      }
+      pen.fillStyle = shades[s];
+      pen.fill();
+    }
+    pen.restore();
+    pen.strokeStyle = theme.ink;
+    pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
+    pen.lineWidth = 2;
+    for (const wall of head.walls) {
+      const [opens, closes] = wall.absent;
+      if (opens !== null && gas.time >= opens && (closes === null || gas.time < closes)) continue;
+      pen.beginPath();
+      pen.moveTo(inset + wall.from[0] * scale, height - wall.from[1] * scale);
+      pen.lineTo(inset + wall.to[0] * scale, height - wall.to[1] * scale);
+      pen.stroke();
+    }
+    pen.lineWidth = 1;
+  }
+
+  outline(pen, i, inset, height, scale, boxX, boxY) {
+    const { gas } = this, [joinedX, joinedY] = gas.head.joined, r = gas.radius[i];
+    const x = gas.x[i], y = gas.y[i];
+    this.disc(pen, inset + x * scale, height - y * scale, r * scale);
+    const imageX = joinedX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
+    const imageY = joinedY ? (y < r ? boxY : y > boxY - r ? -boxY : 0) : 0;
+    if (imageX) this.disc(pen, inset + (x + imageX) * scale, height - y * scale, r * scale);
+    if (imageY) this.disc(pen, inset + x * scale, height - (y + imageY) * scale, r * scale);
+    if (imageX && imageY) this.disc(pen, inset + (x + imageX) * scale, height - (y + imageY) * scale, r * scale);
+  }
+
+  disc(pen, x, y, r) {
+    if (r < 1.2) {
+      const side = Math.max(2 * r, 1);
+      pen.rect(x - side / 2, y - side / 2, side, side);
+    } else {
+      pen.moveTo(x + r, y);
+      pen.arc(x, y, r, 0, 2 * Math.PI);
+    }
+  }
+}
+
+class SpeedView {
+  constructor(canvas, gas) {
+    this.canvas = canvas;
+    this.gas = gas;
+    this.counts = new Float64Array(40);
+    this.top = 1.8 * Math.max(...this.law(this.temperature()));
+  }
+
+  temperature() {
+    const { gas } = this;
+    let energy = 0;
+    for (let i = 0; i < gas.number; i++) energy += gas.mass[i] * (gas.vx[i] ** 2 + gas.vy[i] ** 2) / 2;
+    return energy / gas.number;
+  }
+
+  law(temperature) {
+    const { head } = this.gas;
+    return Array.from({ length: 201 }, (_, k) => {
+      const v = head.fastest * k / 200;
+      return head.kinds.reduce((sum, kind) => {
+        const share = kind.mass / temperature;
+        return sum + kind.share * share * v * Math.exp(-share * v * v / 2);
+      }, 0);
+    });
+  }
+
+  draw() {
+    const { gas, counts } = this, { head } = gas;
+    const { pen, width, height } = prepare(this.canvas, 0.32, 260);
+    const theme = themed(), left = 52, bottom = 40, right = 12, above = 22;
+    const w = width - left - right, h = height - bottom - above;
+    const toX = v => left + v / head.fastest * w, toY = f => above + h * (1 - Math.min(f / this.top, 1));
+    counts.fill(0);
+    for (let i = 0; i < gas.number; i++) {
+      const bin = Math.floor(Math.hypot(gas.vx[i], gas.vy[i]) / head.fastest * counts.length);
+      if (bin < counts.length) counts[bin]++;
+    }
+    const wide = head.fastest / counts.length;
+    pen.fillStyle = head.bars;
+    counts.forEach((count, k) => {
+      const y = toY(count / gas.number / wide);
+      pen.fillRect(toX(k * wide), y, w / counts.length + 0.5, above + h - y);
+    });
+    const temperature = this.temperature();
+    pen.strokeStyle = theme.dark ? theme.ink : head.curve;
+    pen.lineWidth = 2;
+    pen.beginPath();
+    this.law(temperature).forEach((f, k) => pen.lineTo(toX(head.fastest * k / 200), toY(f)));
+    pen.stroke();
+    pen.lineWidth = 1;
+    pen.strokeStyle = theme.ink;
+    pen.fillStyle = theme.ink;
+    pen.font = "12px system-ui, sans-serif";
+    pen.strokeRect(left + 0.5, above + 0.5, w, h);
+    pen.textAlign = "center";
+    const step = roundStep(head.fastest / 8);
+    for (let v = 0; v <= head.fastest; v += step) pen.fillText(+v.toPrecision(6), toX(v), above + h + 15);
+    pen.fillText("speed (length/time)", left + w / 2, above + h + 33);
+    pen.textAlign = "right";
+    const rise = roundStep(this.top / 4);
+    for (let f = 0; f <= this.top; f += rise) pen.fillText(+f.toPrecision(3), left - 6, toY(f) + 4);
+    pen.fillText("bars: discs, line: Maxwell-Boltzmann at T = " + temperature.toPrecision(5), left + w, 15);
+    pen.textAlign = "left";
+    pen.fillText("density (time/length)", 4, 15);
+  }
+}
+
+function roundStep(size) {
+  const power = 10 ** Math.floor(Math.log10(size));
+  return power * [1, 2, 5, 10].find(step => power * step >= size * (1 - 1e-9));
+}
+
+// ── the player ──
+
+class Player {
+  constructor(gas) {
+    this.gas = gas;
+    this.playing = false;
+    this.rate = 1;
+    this.scrub = document.getElementById("scrub");
+    this.button = document.getElementById("play");
+    this.clock = document.getElementById("clock");
+    this.rates = document.getElementById("rate");
+    this.views = [new SpeedView(document.getElementById("speeds"), gas)];
+    if (gas.head.positions) this.views.push(new DiscView(document.getElementById("discs"), gas));
+    this.button.addEventListener("click", () => this.toggle());
+    this.scrub.addEventListener("input", () => { this.pause(); this.seek(this.at(this.scrub.value / this.scrub.max)); });
+    this.rates.addEventListener("change", () => { this.rate = +this.rates.value; });
+    document.getElementById("player").addEventListener("keydown", event => this.key(event));
+    new ResizeObserver(() => this.draw()).observe(document.getElementById("speeds"));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    this.draw();
+  }
+
+  get time() { return this.gas.time; }
+
+  at(share) { return this.gas.head.start + share * (this.gas.head.end - this.gas.head.start); }
+
+  seek(time) {
+    this.gas.seek(time);
+    this.draw();
+  }
+
+  positions() { return Array.from(this.gas.x, (x, i) => [x, this.gas.y[i]]); }
+
+  draw() {
+    const { head, time } = this.gas;
+    this.views.forEach(view => view.draw());
+    this.scrub.value = this.scrub.max * (time - head.start) / (head.end - head.start);
+    this.scrub.setAttribute("aria-valuetext", "t = " + time.toPrecision(5));
+    this.clock.textContent = "t = " + time.toPrecision(6);
+  }
+
+  toggle() { if (this.playing) this.pause(); else this.play(); }
+
+  play() {
+    if (this.time >= this.gas.head.end) this.seek(this.gas.head.start);
+    this.playing = true;
+    this.button.textContent = "Pause";
+    let before = null;
+    const frame = now => {
+      if (!this.playing) return;
+      if (before !== null) this.seek(this.time + (now - before) / 1000 * this.rate * this.gas.head.speed);
+      before = now;
+      if (this.time >= this.gas.head.end) this.pause(); else requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  pause() {
+    this.playing = false;
+    this.button.textContent = "Play";
+  }
+
+  key(event) {
+    if (event.target === this.rates || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target === this.button && event.key === " ") return; // it is a click already
+    const second = this.rate * this.gas.head.speed, small = event.shiftKey ? second : second / 25;
+    const act = {
+      " ": () => this.toggle(),
+      ArrowLeft: () => { this.pause(); this.seek(this.time - small); },
+      ArrowRight: () => { this.pause(); this.seek(this.time + small); },
+      ArrowUp: () => this.faster(1),
+      ArrowDown: () => this.faster(-1),
+      Home: () => { this.pause(); this.seek(this.gas.head.start); },
+      End: () => { this.pause(); this.seek(this.gas.head.end); },
+    }[event.key];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  }
+
+  faster(steps) {
+    const k = this.rates.selectedIndex + steps;
+    if (k < 0 || k >= this.rates.options.length) return;
+    this.rates.selectedIndex = k;
+    this.rate = +this.rates.value;
+  }
+}
+
+let printing = false;
+const head = document.getElementById("data-head");
+if (head) {
+  window.player = new Player(new Gas(JSON.parse(head.textContent)));
+  addEventListener("beforeprint", () => { printing = true; window.player.draw(); });
+  addEventListener("afterprint", () => { printing = false; window.player.draw(); });
+}

@@ -1,0 +1,101 @@
+"""What the page of a report needs to move the discs: a state, and the events after it, as compact arrays.
+
+The page flies each disc from its last event, as a log's reader does, so that every instant is exact up to the 24 bits
+of a 32-bit float.
+"""
+
+import base64
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+
+from idealgas.analysis.composition import composition
+from idealgas.analysis.figures import COLOURS
+from idealgas.analysis.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST
+from idealgas.analysis.span import span
+from idealgas.log import Log
+
+MOST_ROWS = 400_000
+"""Events that are put into a page, about 13 MB."""
+
+MOST_DISCS = 100_000
+SHADES = 16
+TICKS = 2.0**32 - 1
+"""Times are whole numbers of the player's span over this many."""
+
+
+@dataclass(frozen=True)
+class Player:
+    """head: plain values for JSON. arrays: little-endian bytes, base64, by name. start, end: of what is played."""
+
+    head: dict[str, Any]
+    arrays: dict[str, str]
+    start: float
+    end: float
+
+
+def player(log: Log, start: float | None = None) -> Player | None:
+    """From `start`, by default the log's own, as far as the page can hold; None if it has no events or many discs."""
+    gas = log.discs
+    if not log.has_events or len(gas) > MOST_DISCS:
+        return None
+    first, last = span(log, start, None)
+    rows = log.row_at(first, "right")
+    if len(log) - rows > MOST_ROWS:
+        (cut,) = log.chunks(("time",), rows + MOST_ROWS, rows + MOST_ROWS + 1)
+        last = float(np.nextafter(cut.time[0], first))
+    state = log.state_at(first)
+    typical = float(np.sqrt((state.velocity**2).sum(axis=1).mean())) or 1.0
+    species = composition(gas)
+    shades = colormaps[COLOUR_MAP]
+    head = {
+        "box": gas.box,
+        "joined": log.joined,
+        "gravity": log.gravity,
+        "positions": log.has_positions,
+        "start": first,
+        "end": last,
+        "ticks": TICKS,
+        "speed": max(gas.box) / CROSSING / typical,
+        "fastest": FASTEST * typical,
+        "brightest": BRIGHTEST * typical,
+        "light": _hex(shades(np.linspace(0, 0.93, SHADES))),
+        "dark": _hex(shades(np.linspace(0.3, 1, SHADES))),
+        "bars": COLOURS[5],
+        "curve": COLOURS[0],
+        "kinds": [
+            {"share": share, "mass": mass}
+            for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
+        ],
+        "walls": [
+            {"from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
+            for w in log.scene.wall
+        ],
+    }
+    arrays = {"radius": gas.radius, "mass": gas.mass, "velocity": state.velocity}
+    if log.has_positions:
+        arrays["position"] = state.position
+    return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, rows), first, last)
+
+
+def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
+    """Columns of the events after the first time up to the last."""
+    names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
+    blocks = list(log.chunks(names, start, log.row_at(last, "right")))
+    empty = {"time": np.empty(0), "disc": np.empty(0), "velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
+    columns = {name: np.concatenate([empty[name], *(getattr(block, name) for block in blocks)]) for name in names}
+    ticks = np.round((columns.pop("time") - first) / (last - first) * TICKS)
+    whole = {"tick": ticks.astype("<u4"), "disc": columns.pop("disc").astype("<u4")}
+    return {f"event_{name}": _packed(a) for name, a in (whole | columns).items()}
+
+
+def _packed(array: np.ndarray) -> str:
+    """Floats with 32 bits, base64."""
+    narrow = array.astype("<f4") if array.dtype.kind == "f" else array
+    return base64.b64encode(np.ascontiguousarray(narrow).tobytes()).decode()
+
+
+def _hex(colours: np.ndarray) -> list[str]:
+    return ["#" + bytes(np.round(255 * colour[:3]).astype(np.uint8)).hex() for colour in colours]

@@ -1,0 +1,26 @@
+"""SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): random numbers as a pure function of a counter and a key."""
+
+import numpy as np
+
+from idealgas._jit import inline
+
+GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+"""What the counter is multiplied by."""
+
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_2 = np.uint64(0x94D049BB133111EB)
+_S27, _S30, _S31, _S11 = (np.uint64(s) for s in (27, 30, 31, 11))
+
+
+@inline
+def mix(z):
+    """SplitMix64's output function."""
+    z = (z ^ (z >> _S30)) * _MIX_1
+    z = (z ^ (z >> _S27)) * _MIX_2
+    return z ^ (z >> _S31)
+
+
+@inline
+def unit_interval(bits):
+    """64 random bits as a number in (0, 1]."""
+    return (np.float64(bits >> _S11) + 1.0) * 2.0**-53

@@ -1,0 +1,40 @@
+"""Defaults that follow from several tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from idealgas.scene.effects import Restitution
+    from idealgas.scene.model import Disc, Run, Species
+
+
+def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:
+    """Expected mean speed of the discs at the start, length/time."""
+    speeds = [math.hypot(*d.velocity) for d in disc]
+    for s in species:
+        if s.velocities is not None:
+            speeds += [math.hypot(*v) for v in s.velocities]
+    spread = sum(
+        s.count * (s.speed or math.sqrt(math.pi * (s.temperature or 0.0) / (2 * s.mass)))
+        for s in species
+        if s.velocities is None
+    )
+    return (sum(speeds) + spread) / (len(disc) + sum(s.count for s in species))
+
+
+def contact_duration(restitution: Restitution, species: Sequence[Species], disc: Sequence[Disc]) -> float:
+    """As given, or a millionth of the mean diameter over the mean speed at the start; infinite if nothing moves."""
+    if restitution.contact_duration is not None:
+        return restitution.contact_duration
+    diameters = sum(2 * s.radius * s.count for s in species) + sum(2 * d.radius for d in disc)
+    speed = mean_speed(species, disc)
+    number = sum(s.count for s in species) + len(disc)
+    return 1e-6 * diameters / number / speed if speed > 0 else math.inf
+
+
+def reference_speed(run: Run, largest: float) -> float:
+    """As given, or five times the largest speed at the start."""
+    return run.v_ref or 5.0 * largest

@@ -1,0 +1,166 @@
+"""`resume`, `recover`, `follow` and `export` as commands."""
+
+import resource
+import signal
+import subprocess
+import time
+from functools import partial
+
+import h5py
+import pytest
+from support import IDEALGAS, ROOT, idealgas
+
+from idealgas.log import LogError, open_log
+
+QUICKSTART = ROOT / "configs" / "quickstart.toml"
+LONG = ("--set", "run.collisions_per_disc=1e6")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    path = tmp_path_factory.mktemp("finished") / "run.h5"
+    made = idealgas("run", QUICKSTART, "-o", path, "--set", "run.events=6000")
+    assert made.returncode == 0, made.stderr
+    return path
+
+
+@pytest.fixture
+def copy(finished, tmp_path):
+    (tmp_path / "run.h5").write_bytes(finished.read_bytes())
+    return tmp_path / "run.h5"
+
+
+def start_run(path, rows=200_000):
+    """A run that goes on for long, once it has so many rows on record."""
+    child = subprocess.Popen([IDEALGAS, "run", QUICKSTART, "-o", path, *LONG], stdout=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline:
+        time.sleep(0.1)
+        try:
+            with open_log(path) as log:
+                if len(log) > rows:
+                    return child
+        except LogError:
+            assert child.poll() is None
+    child.kill()
+    raise TimeoutError
+
+
+@pytest.fixture(scope="module")
+def dead(tmp_path_factory):
+    """A log whose writer was killed."""
+    path = tmp_path_factory.mktemp("dead") / "run.h5"
+    child = start_run(path)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    return path
+
+
+def test_resume_to_a_later_end(copy):
+    result = idealgas("resume", copy, "--events", 9000)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "9,000" in result.stdout
+    with open_log(copy) as log:
+        assert (log.scene.run.events, log.scene.run.collisions_per_disc) == (9000, None)
+        assert log.summary["events"] == 9000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--events", 100), "not before the end that is asked for"),
+        (("--until", -1), "run.until: out of range"),
+    ],
+)
+def test_resume_refuses(copy, arguments, message):
+    before = copy.read_bytes()
+    result = idealgas("resume", copy, *arguments)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert copy.read_bytes() == before
+
+
+def test_reading_a_dead_writers_log_says_so(dead):
+    for command in (("info",), ("temperature", "--from", 0), ("follow", "--once")):
+        result = idealgas(command[0], dead, *command[1:])
+        assert result.returncode == 0, result.stderr
+        if command[0] == "follow":
+            assert "its writer died" in result.stdout
+        else:
+            assert result.stderr.startswith(f"{dead}: its writer died; ")
+            assert result.stderr.count("\n") == 1
+
+
+def test_recover(dead, tmp_path):
+    copy = tmp_path / "copy.h5"
+    result = idealgas("recover", dead, "-o", copy)
+    with open_log(copy) as log:
+        assert (result.returncode, result.stdout) == (0, f"{copy}: {len(log):,} event rows kept\n")
+    with h5py.File(copy) as file:
+        assert len(file["events/time"]) >= 200_000
+    assert idealgas("info", copy).stderr == ""
+    assert idealgas("recover", dead, "-o", copy).returncode == 2
+
+
+def test_follow_ends_with_the_run(tmp_path):
+    path = tmp_path / "run.h5"
+    child = start_run(path)
+    try:
+        once = idealgas("follow", path, "--once")
+        assert "running" in once.stdout
+        follower = subprocess.Popen([IDEALGAS, "follow", path], stdout=subprocess.PIPE, text=True)
+        time.sleep(2)
+        assert follower.poll() is None
+    finally:
+        child.send_signal(signal.SIGINT)
+        child.wait(60)
+    printed, _ = follower.communicate(timeout=60)
+    assert follower.returncode == 0
+    for part in ("interrupted", "temperature", "events per second", "Z = PA/NT", "KS distance", "│ Maxwell-Boltzmann"):
+        assert part in printed
+
+
+def test_follow_shows_what_is_complete(finished):
+    result = idealgas("follow", finished)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "complete" in result.stdout
+    assert "6,000" in result.stdout
+
+
+def test_export(copy):
+    result = idealgas("export", copy, "--format", "extxyz", "--frames", "every=0.5")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.startswith(f"{copy.with_suffix('.extxyz')}: ")
+    assert copy.with_suffix(".extxyz").read_text().startswith("1000\nLattice=")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--format", "extxyz", "--frames", "no"), "no choice of frames"),
+        (("--format", "gsd", "--events"), "has no room for events"),
+        (("--format", "csv"), "one of --events and --frames"),
+        (("--format", "csv", "--events", "--frames", "3"), "one of --events and --frames"),
+    ],
+)
+def test_export_refuses(copy, arguments, message):
+    result = idealgas("export", copy, *arguments)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert [path.name for path in copy.parent.iterdir()] == ["run.h5"]
+
+
+def test_resume_on_a_full_disk(copy):
+    """RLIMIT_FSIZE stands for a disk without room."""
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (10_000_000, resource.RLIM_INFINITY))
+    result = subprocess.run(
+        [IDEALGAS, "resume", copy, "--events", "400000"], capture_output=True, text=True, preexec_fn=limit
+    )
+    assert (result.returncode, result.stdout) == (1, "")
+    assert result.stderr == f"{copy}: cannot be written: File too large\n"
+    with open_log(copy) as log:
+        assert len(log) > 6000
+    assert idealgas("resume", copy).returncode == 0
+    with open_log(copy) as log:
+        assert log.complete

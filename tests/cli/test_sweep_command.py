@@ -1,0 +1,167 @@
+"""Sweeps as a user starts, kills and continues them."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from support import IDEALGAS, idealgas
+
+SWEEP = """
+[sweep]
+seed = 3
+replicates = 3
+analyses = ["pressure"]
+keep_logs = false
+[[axis]]
+key = "phi"
+values = [0.02, 0.1]
+[base]
+box.size = [10, 10]
+species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
+run.events = 2000
+"""
+
+
+@pytest.fixture
+def plan(tmp_path):
+    path = tmp_path / "sweep.toml"
+    path.write_text(SWEEP)
+    return path
+
+
+def results(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in (".json", ".csv")}
+
+
+def test_workers_make_no_difference_and_nothing_is_done_twice(plan, tmp_path):
+    for workers in (1, 2):
+        done = idealgas("sweep", plan, "-o", tmp_path / f"with-{workers}", "--workers", workers)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == ""
+        assert done.stdout.startswith("6 points run, 0 done before, 0 failed")
+    one, two = (results(tmp_path / f"with-{workers}") for workers in (1, 2))
+    assert len(one) == 7
+    assert one == two
+    (tmp_path / "with-2" / "points" / "0004.json").unlink()
+    again = idealgas("sweep", plan, "-o", tmp_path / "with-2")
+    assert again.stdout.startswith("1 points run, 5 done before, 0 failed")
+    assert results(tmp_path / "with-2") == one
+    table = idealgas("pressure", tmp_path / "with-1", "--check")
+    assert table.returncode == 0, table.stderr
+    assert "agree within 4 standard errors" in table.stdout
+
+
+def test_failing_points_do_not_stop_the_others(plan, tmp_path):
+    plan.write_text(SWEEP.replace("[0.02, 0.1]", "[0.02, 0.64]"))
+    done = idealgas("sweep", plan, "-o", tmp_path / "out", "--workers", 1)
+    assert done.returncode == 1
+    assert done.stdout.startswith("3 points run, 0 done before, 3 failed")
+    lines = done.stderr.splitlines()
+    assert len(lines) == 3
+    assert all(
+        line.startswith(f"point {k} failed: ") and "no room" in line for k, line in zip((3, 4, 5), lines, strict=True)
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ("-o", "out", "--scheduler", "tcp://127.0.0.1:9"),
+            "tcp://127.0.0.1:9: no scheduler answers there within 10 s",
+        ),
+        (("-o", "out", "--scheduler", "nowhere"), "nowhere: no address of a scheduler"),
+        ((), "-o DIR: missing"),
+        (("-o", "."), "exists and is no sweep's folder"),
+    ],
+)
+def test_bad_input_is_one_line(plan, tmp_path, arguments, message):
+    done = idealgas("sweep", plan, *arguments, folder=tmp_path)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert message in done.stderr
+
+
+def test_dry_run_shows_the_points_and_runs_none(plan, tmp_path):
+    done = idealgas("sweep", plan, "-o", tmp_path / "out", "--dry-run")
+    assert done.returncode == 0, done.stderr
+    assert "6 points, about" in done.stdout
+    assert not (tmp_path / "out").exists()
+
+
+def test_another_sweep_is_not_mixed_in(plan, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "sweep.toml").write_text("another one")
+    done = idealgas("sweep", plan, "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert "holds another sweep" in done.stderr
+
+
+def test_without_the_extra_one_line_names_it(plan, tmp_path):
+    (tmp_path / "distributed.py").write_text("raise ImportError")
+    done = idealgas("sweep", plan, "-o", tmp_path / "out", PYTHONPATH=str(tmp_path))
+    assert done.returncode == 2
+    assert done.stderr == "a sweep needs dask.distributed: pip install 'idealgas[sweep]'\n"
+
+
+LONGER = SWEEP.replace("run.events = 2000", "run.events = 100_000").replace("count = 20", "count = 100")
+
+
+def start(plan: Path, folder: Path) -> subprocess.Popen:
+    command = [IDEALGAS, "sweep", str(plan), "-o", str(folder), "--workers", "1"]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+
+
+def wait_for(ready, running: subprocess.Popen) -> None:
+    while not ready():
+        assert running.poll() is None, running.communicate()
+        time.sleep(0.002)
+
+
+def workers_of(running: subprocess.Popen) -> list[int]:
+    """The processes of a sweep that simulate: those of its children that the nannies spawned."""
+    listed = subprocess.run(["ps", "-o", "pid=,args=", "--ppid", str(running.pid)], capture_output=True, text=True)
+    lines = [line.split(None, 1) for line in listed.stdout.splitlines()]
+    return [int(pid) for pid, arguments in lines if "spawn_main" in arguments]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the table of processes")
+def test_a_killed_worker_loses_nothing(plan, tmp_path):
+    plan.write_text(LONGER)
+    running = start(plan, tmp_path / "out")
+    points = tmp_path / "out" / "points"
+    wait_for(lambda: points.exists() and (points / "0001.h5.part").exists(), running)
+    (worker,) = workers_of(running)
+    os.kill(worker, signal.SIGKILL)
+    stdout, _ = running.communicate(timeout=120)
+    assert running.returncode == 0
+    assert stdout.startswith("6 points run, 0 done before, 0 failed")
+    undisturbed = idealgas("sweep", plan, "-o", tmp_path / "undisturbed")
+    assert undisturbed.returncode == 0
+    assert results(tmp_path / "out") == results(tmp_path / "undisturbed")
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=lambda how: how.name)
+def test_a_killed_sweep_goes_on_where_it_stopped(plan, tmp_path, how):
+    plan.write_text(LONGER)
+    running = start(plan, tmp_path / "out")
+    points = tmp_path / "out" / "points"
+    wait_for(lambda: (points / "0002.json").exists(), running)
+    os.killpg(running.pid, how)  # as a terminal does
+    _, stderr = running.communicate(timeout=60)
+    if how == signal.SIGINT:
+        assert running.returncode == 130
+        assert stderr == "interrupted; the same command goes on where this one stopped\n"
+    before = {path.name: path.stat().st_mtime_ns for path in points.glob("*.json")}
+    assert 0 < len(before) < 6
+    again = idealgas("sweep", plan, "-o", tmp_path / "out")
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.startswith(f"{6 - len(before)} points run, {len(before)} done before, 0 failed")
+    assert all((points / name).stat().st_mtime_ns == at for name, at in before.items())

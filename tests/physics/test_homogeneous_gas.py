@@ -1,0 +1,178 @@
+"""The gas without positions against kinetic theory, and beside the event-driven one on its way to equilibrium.
+
+Seeds are fixed; deviations are counted in standard errors, and what a run must at least resolve is asserted too.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from support import ROOT
+
+from idealgas.analysis.histogram import histogram
+from idealgas.analysis.relaxation import relaxation
+from idealgas.analysis.temperature import temperature
+from idealgas.analysis.trials import trials
+from idealgas.errors import UserError
+from idealgas.log import open_log
+from idealgas.scene import load_scene, parse_scene
+from idealgas.simulate import simulate
+
+STANDARD_ERRORS = 4
+LEAST_P = 0.001
+
+
+def equal_speeds(method, number, seed, collisions_per_disc, packing_fraction=0.01, keys=""):
+    radius = math.sqrt(packing_fraction * 100 / (math.pi * number))
+    return parse_scene(f"""
+        scene.seed = {seed}
+        box.size = [10, 10]
+        species = [{{name = "gas", count = {number}, radius = {radius!r}, speed = 1.0}}]
+        run.method = "{method}"
+        run.collisions_per_disc = {collisions_per_disc}
+        {keys}
+    """)
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """Half a million collisions of 500 discs."""
+    path = tmp_path_factory.mktemp("homogeneous") / "run.h5"
+    simulate(equal_speeds("monte_carlo", 500, 4, 2000, keys="run.v_ref = 9.0"), path)
+    with open_log(path) as log:
+        yield log
+    path.unlink()
+
+
+def test_energy_and_momentum_are_conserved(log):
+    energy, momentum = log.observables["kinetic_energy"][1], log.observables["momentum"][1]
+    assert np.abs(energy / energy[0] - 1).max() < 1e-12
+    scale = np.abs(log.discs.velocity).sum()
+    assert np.abs(momentum - momentum[0]).max() < 1e-12 * scale
+    assert abs(log.summary["energy_drift"]) < 1e-12
+
+
+def test_every_collision_conserves_energy_and_momentum(log):
+    velocity = log.discs.velocity.copy()
+    rows = next(log.chunks(("disc", "velocity")))
+    for first in range(0, 4000, 2):
+        pair = rows.disc[first : first + 2]
+        before, after = velocity[pair], rows.velocity[first : first + 2]
+        assert (after**2).sum() == pytest.approx((before**2).sum(), rel=1e-14)
+        assert after.sum(axis=0) == pytest.approx(before.sum(axis=0), abs=1e-14)
+        velocity[pair] = after
+
+
+@pytest.mark.parametrize("quantity", ["speed", "vx", "energy"])
+def test_velocities_in_equilibrium(log, quantity):
+    (found,) = histogram(log, quantity).distributions
+    assert found.samples > 20_000
+    maxwell, fixed = found.tests
+    assert maxwell.p_value > LEAST_P
+    assert fixed.p_value > LEAST_P
+    assert fixed.law_name == "fixed energy, D = 998"
+
+
+@pytest.mark.parametrize("quantity", ["free-path", "free-time", "wait"])
+def test_time_is_that_of_kinetic_theory(log, quantity):
+    """Collision rate and mean free path, and the laws of free flights, which a gas without memory follows exactly."""
+    (found,) = histogram(log, quantity).distributions
+    assert found.samples > 4_000
+    assert found.tests[0].p_value > LEAST_P
+    if quantity != "wait":
+        assert abs(found.mean.deviation) < STANDARD_ERRORS
+        assert found.mean.standard_error < 3e-3 * found.mean.value
+
+
+def test_acceptance(log):
+    found = trials(log)
+    assert found.collisions == 500_000
+    assert abs(found.acceptance.deviation) < STANDARD_ERRORS
+    assert found.acceptance.standard_error < 3e-3 * found.acceptance.value
+
+
+def test_equipartition_in_a_mixture(tmp_path):
+    path = tmp_path / "mixture.h5"
+    text = """
+        scene.seed = 3
+        box.size = [10, 10]
+        [run]
+        method = "monte_carlo"
+        collisions_per_disc = 1500
+        v_ref = 25.0
+        [[species]]
+        name = "light"
+        count = 300
+        radius = 0.02
+        temperature = 1.5
+        [[species]]
+        name = "heavy"
+        count = 100
+        radius = 0.05
+        mass = 4.0
+        temperature = 0.2
+    """
+    simulate(parse_scene(text), path)
+    with open_log(path) as log:
+        found, free_times = temperature(log), histogram(log, "free-time")
+    for entry in found.species[:-1]:
+        for estimate in (entry.x, entry.y, entry.both):
+            assert abs(estimate.deviation) < STANDARD_ERRORS, entry.species
+            assert estimate.standard_error < 0.01 * estimate.value
+    for entry in free_times.distributions:
+        assert abs(entry.mean.deviation) < STANDARD_ERRORS, entry.name
+        assert entry.mean.standard_error < 0.01 * entry.mean.value
+
+
+def test_relaxation_agrees_with_the_event_driven_gas(tmp_path):
+    """The fourth moment at φ = 0.01, against collisions and against time."""
+    found = {}
+    for method, keys in (("event_driven", ""), ("monte_carlo", "run.v_ref = 9.0")):
+        path = tmp_path / f"{method}.h5"
+        simulate(equal_speeds(method, 4000, 12, 20, keys=keys), path)
+        with open_log(path) as log:
+            found[method] = relaxation(log)
+    exact, random = found["event_driven"], found["monte_carlo"]
+    for name in ("in_collisions", "in_time"):
+        a, b = getattr(exact, name), getattr(random, name)
+        error = math.hypot(a.standard_error, b.standard_error)
+        assert abs(a.value - b.value) < STANDARD_ERRORS * error, name
+        assert error < 0.08 * a.value
+    at = np.array([0.5, 1.0, 2.0, 3.0, 5.0, 8.0])
+    curves = [np.interp(at, r.collisions, r.kurtosis) for r in (exact, random)]
+    error = math.sqrt(2) * 2 / math.sqrt(4000)  # of the kurtosis in equilibrium, where it fluctuates most
+    assert np.abs(curves[0] - curves[1]).max() < STANDARD_ERRORS * error
+    assert curves[0][0] < 1.2 < 1.5 < curves[0][3]
+
+
+def test_the_classic_run(tmp_path):
+    """28 000 trials of 200 equal speeds: about 7 020 collisions, and speeds that nobody can tell from Maxwell's."""
+    simulate(load_scene(ROOT / "configs" / "novak-bortz.toml"), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        tried, found = trials(log), relaxation(log)
+    assert tried.number == 28_000
+    assert tried.published == 6_552
+    assert tried.at_start == pytest.approx(4 / math.pi / 5, rel=0.02)
+    assert tried.expected["Maxwell-Boltzmann"] == pytest.approx(math.sqrt(math.pi / 2) / 5, rel=1e-12)
+    assert abs(tried.collisions - 7_020) < STANDARD_ERRORS * math.sqrt(7_020 * 0.75)
+    assert found.told_until is not None
+    assert found.collisions[found.told_until] < 12
+
+
+def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
+    path = tmp_path / "run.h5"
+    with pytest.raises(UserError, match=r"run\.v_ref: too small"):
+        simulate(equal_speeds("monte_carlo", 100, 1, 5000, keys="run.v_ref = 3.5"), path)
+    with open_log(path) as log:
+        assert not log.complete
+
+
+@pytest.mark.parametrize(("number", "settled"), [(500, 5.0), (100, 25.0)])
+def test_the_time_to_settle_goes_with_the_density(number, settled, tmp_path):
+    """About 5 units for 500 discs, about 25 for a fifth of them, within three standard errors of a single run."""
+    simulate(load_scene(ROOT / "configs" / f"relaxation-{number}.toml"), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = relaxation(log)
+    assert found.number == number
+    assert abs(3 * found.in_time.value - settled) < 3 * 3 * found.in_time.standard_error
+    assert found.in_time.standard_error < 0.2 * found.in_time.value

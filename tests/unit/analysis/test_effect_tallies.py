@@ -1,0 +1,73 @@
+"""Tallies of gases that fall or go round, against slow and obvious computations."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from idealgas.analysis.flights import Moments
+from idealgas.analysis.impacts import Impacts
+from idealgas.analysis.stream import stream
+from idealgas.log import open_log
+from idealgas.scene import parse_scene
+from idealgas.simulate import simulate
+
+GAS = """
+scene.seed = 3
+species = [{name = "gas", count = 9, radius = 0.3, mass = 2.0, temperature = 1.0}]
+run.events = 300
+"""
+
+
+def test_moments_of_falling_discs(tmp_path):
+    """Every flight integrated numerically, cut at the blocks' edges."""
+    simulate(parse_scene(GAS + "box.size = [6, 5]\ngravity.acceleration = [0.3, -0.7]\n"), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        edges, g = np.linspace(0.2, 0.8, 4) * log.end_time, np.array(log.gravity)
+        tally = Moments(log.gravity)
+        stream(log, edges, [tally])
+        for block, (start, end) in enumerate(pairwise(edges)):
+            state = log.state_at(start)
+            flights = [(d, start, state.velocity[d]) for d in range(len(log.discs))]
+            (rows,) = log.chunks(None, log.row_at(start, "right"), log.row_at(end, "right"))
+            since, sums = {d: (t, v) for d, t, v in flights}, np.zeros(4)
+            ends = [
+                *zip(rows.disc.tolist(), rows.time.tolist(), rows.velocity, strict=True),
+                *((d, end, None) for d in since),
+            ]
+            for disc, time, after in ends:
+                began, v = since[disc]
+                for k, power in enumerate(
+                    (
+                        lambda v: np.hypot(*v),
+                        lambda v: 2 * v[0] ** 2,
+                        lambda v: 2 * v[1] ** 2,
+                        lambda v: (2 * (v @ v)) ** 2,
+                    )
+                ):
+                    sums[k] += quad(lambda t: power(v + g * (t - began)), began, time, epsabs=1e-12)[0]  # noqa: B023
+                since[disc] = (time, after)
+            assert tally.flights[block, 0] == pytest.approx(sums, rel=1e-9)
+
+
+@pytest.mark.parametrize("sides", [("periodic", "periodic"), ("periodic", "reflecting")], ids=str)
+def test_virial_of_pairs_across_joined_sides(tmp_path, sides):
+    """d/dt Σ r·p = 2E + Σ r_ij·F_ij - walls, along unwrapped paths; both sides are the same number."""
+    x, y = sides
+    box = f'box = {{size = [3, 4], left = "{x}", right = "{x}", bottom = "{y}", top = "{y}"}}\n'
+    simulate(parse_scene(GAS + box), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        edges = np.array([0.1, 0.9]) * log.end_time
+        tally = Impacts(len(log.walls), log.joined)
+        stream(log, edges, [tally])
+        frame = np.where(log.joined, log.discs.velocity.mean(axis=0), 0.0)
+        momenta = []
+        for state in log.frames(edges):
+            place = state.position + state.image * np.array(log.box) - np.array(log.box) / 2
+            momenta.append(2.0 * ((place - frame * state.time) * (state.velocity - frame)).sum())
+        energy = (log.discs.velocity - frame) ** 2
+        twice = 2.0 * energy.sum() * (edges[1] - edges[0])
+        assert twice + tally.pair_virial.sum() - tally.wall_virial.sum() == pytest.approx(
+            momenta[1] - momenta[0], abs=1e-9 * twice
+        )

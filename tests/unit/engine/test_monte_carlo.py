@@ -1,0 +1,189 @@
+"""Monte Carlo trials: where they stop, what they write, which pairs they take, and what they are accepted for."""
+
+import math
+
+import numpy as np
+import pytest
+from support import gas_of
+
+from idealgas.engine.monte_carlo import MonteCarlo
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.errors import UserError
+from idealgas.events import BLOCK, EventBatch, Kind, empty_batch
+
+BOX = (10.0, 10.0)
+
+
+def some_gas(n=60, seed=1, radius=0.05, mass=1.0):
+    velocity = np.random.default_rng(seed).normal(size=(n, 2))
+    return gas_of(BOX, np.full((n, 2), 5.0), velocity, radius, mass)
+
+
+def run(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
+    """All event rows up to the stop."""
+    found = []
+    while not simulation.finished(stop):
+        batch = empty_batch(rows, homogeneous=True)
+        found.append(batch.rows(0, simulation.advance(stop, batch)))
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+    columns = zip(*found, strict=True)
+    return EventBatch(*(None if column[0] is None else np.concatenate(column) for column in columns))
+
+
+def simulation(gas=None, seed=3, v_ref=20.0, **options):
+    return Simulation(some_gas() if gas is None else gas, MonteCarlo(seed, v_ref, **options))
+
+
+def test_rows_are_pairs_without_positions():
+    rows = run(simulation(), Stop(events=500))
+    assert rows.position is None
+    assert len(rows.time) == 1000
+    first, second = (EventBatch(*(c if c is None else c[k::2] for c in rows)) for k in (0, 1))
+    assert (first.disc < second.disc).all()
+    assert (first.partner == second.disc).all()
+    assert (second.partner == first.disc).all()
+    assert (first.time == second.time).all()
+    assert (first.trial == second.trial).all()
+    assert (np.diff(first.time) > 0).all()
+    assert (np.diff(first.trial.astype(int)) > 0).all()
+    assert (rows.kind == Kind.DISC).all()
+
+
+def test_rows_give_the_state_at_the_end():
+    made = simulation()
+    rows = run(made, Stop(trials=5000))
+    velocity = some_gas().velocity.copy()
+    velocity[rows.disc] = rows.velocity
+    assert made.gas_now().velocity.tolist() == velocity.tolist()
+    assert made.gas_now().position.tolist() == some_gas().position.tolist()
+
+
+@pytest.mark.parametrize("rows", [3, 17, 4096])
+def test_neither_batches_nor_slices_change_anything(rows):
+    whole = run(simulation(), Stop(trials=40_000))
+    parts = run(simulation(), Stop(trials=40_000), rows)
+    for name in ("time", "disc", "velocity", "trial"):
+        assert np.array_equal(getattr(whole, name), getattr(parts, name)), name
+    silent = simulation()
+    while not silent.finished(Stop(trials=40_000)):
+        silent.advance(Stop(trials=40_000), None, 7)
+        if silent.epoch_over:
+            silent.next_epoch()
+    assert silent.so_far.events == len(whole.time) // 2
+    assert silent.epoch == 2
+
+
+def test_stops_where_it_should():
+    made = simulation()
+    rows = run(made, Stop(trials=1234))
+    assert (made.so_far.trials, made.so_far.events) == (1234, len(rows.time) // 2)
+    assert rows.trial[-1] <= 1234
+    made = simulation()
+    assert len(run(made, Stop(disc_collisions=77)).time) == 2 * 77
+    assert made.so_far.trials == int(run(simulation(), Stop(events=77)).trial[-1])
+    made = simulation()
+    assert run(made, Stop(time=9.5)).time[-1] <= 9.5
+    assert made.finished(Stop(time=9.5))
+
+
+def test_a_run_goes_on_from_the_start_of_any_epoch():
+    stop = Stop(trials=60_000)
+    whole = run(simulation(), stop)
+    made = simulation()
+    while made.epoch < 2:
+        made.advance(stop, None)
+        made.next_epoch()
+    again = Simulation(made.gas, MonteCarlo(3, 20.0), time=made.time, epoch=made.epoch, totals=made.totals)
+    rest = run(again, stop)
+    for name in ("time", "disc", "velocity", "trial"):
+        assert np.array_equal(getattr(whole, name)[-len(rest.time) :], getattr(rest, name)), name
+    assert len(rest.time) == len(whole.time) - 2 * made.totals.events
+
+
+def test_seeds_differ_and_epochs_do_too():
+    one, two = (run(simulation(seed=seed), Stop(events=5)).time.tolist() for seed in (1, 2))
+    assert one != two
+    method, other = MonteCarlo(1, 20.0), MonteCarlo(1, 20.0)
+    first = run(Simulation(some_gas(), method), Stop(events=5))
+    second = run(Simulation(some_gas(), other, time=8.0, epoch=1), Stop(events=5))
+    assert first.disc.tolist() != second.disc.tolist()
+
+
+def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
+    made = simulation(v_ref=2.0)
+    with pytest.raises(UserError, match=r"^run\.v_ref: too small: an acceptance of 1\.\d+ in trial \d+ ") as caught:
+        run(made, Stop(trials=100_000))
+    message = str(caught.value)
+    assert "\n" not in message
+    needed = float(message.split("allowed >= ")[1].split(",")[0])
+    gas = made.gas_now()
+    speeds = np.hypot(*(gas.velocity[:, None] - gas.velocity).T)
+    assert speeds == pytest.approx(speeds.T)
+    assert np.isclose(speeds, needed, rtol=1e-5).any()
+    assert needed > 2.0
+
+
+def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
+    def turns(one_sided):
+        gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
+        rows = run(simulation(gas, v_ref=4.0, one_sided=one_sided), Stop(events=2000))
+        relative = np.concatenate(([[2.0, 0.0]], rows.velocity[0::2] - rows.velocity[1::2]))
+        return np.sign(relative[:-1, 0] * relative[1:, 1] - relative[:-1, 1] * relative[1:, 0])
+
+    assert set(turns(True)) in ({1.0}, {-1.0})
+    assert abs(turns(False).mean()) < 4 / math.sqrt(2000)
+
+
+def test_impact_parameters_are_uniform():
+    """They show in the deflection: a relative velocity that meets the line of centres at φ is turned by π - 2φ."""
+    gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
+    rows = run(simulation(gas, v_ref=4.0), Stop(events=4000))
+    relative = np.concatenate(([[2.0, 0.0]], rows.velocity[0::2] - rows.velocity[1::2]))
+    cosine = (relative[:-1] * relative[1:]).sum(axis=1) / (relative[:-1] ** 2).sum(axis=1)
+    offset = np.sqrt(np.maximum(1 + cosine, 0) / 2)  # |b|/S = sin φ = cos((π - 2φ)/2)
+    place = np.sort(offset)
+    distance = np.abs(place - np.arange(1, len(place) + 1) / len(place)).max()
+    assert distance < 1.95 / math.sqrt(len(place))  # Kolmogorov's bound for p = 0.001
+
+
+def test_every_pair_collides_as_often():
+    n, trials = 12, 200_000
+    rows = run(simulation(some_gas(n, seed=5), v_ref=30.0), Stop(trials=trials))
+    counts = np.zeros((n, n))
+    np.add.at(counts, (rows.disc, rows.partner), 1)
+    each = counts[np.triu_indices(n, 1)]
+    assert each.sum() == len(rows.time) / 2
+    expected = each.mean()
+    chi_square = ((each - expected) ** 2).sum() / expected
+    freedom = len(each) - 1
+    assert chi_square < freedom + 4 * math.sqrt(2 * freedom)
+
+
+def test_acceptance_is_in_proportion_to_speed_and_size():
+    """Of a pair's trials the share S v/(S_max v_ref) is accepted; every stretch up to a collision begins afresh."""
+    velocity = [(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)]
+    gas = gas_of(BOX, np.full((3, 2), 5.0), velocity, [0.1, 0.3, 0.2])
+    v_ref = 5.0
+    shares = np.zeros((3, 3))
+    done = 0
+    for seed in range(6000):
+        made = Simulation(gas, MonteCarlo(seed, v_ref))
+        rows = run(made, Stop(events=1), 3)
+        shares[rows.disc[0], rows.disc[1]] += 1
+        done += made.so_far.trials
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        speed = math.hypot(*np.subtract(velocity[i], velocity[j]))
+        expected = (gas.radius[i] + gas.radius[j]) * speed / (0.5 * v_ref)
+        measured = shares[i, j] / (done / 3)
+        assert abs(measured - expected) < 4 * math.sqrt(expected * (1 - expected) / (done / 3)), (i, j)
+
+
+def test_waits_between_trials_are_those_of_a_poisson_process():
+    made = simulation(v_ref=12.0)
+    rows = run(made, Stop(trials=50_000))
+    per_trial = rows.time[-1] / float(rows.trial[-1])
+    gas = some_gas()
+    chi = (1 - 7 * gas.packing_fraction / 16) / (1 - gas.packing_fraction) ** 2
+    expected = gas.area / (60 * 59 * 0.1 * chi * 12.0)
+    assert abs(per_trial / expected - 1) < 4 / math.sqrt(50_000)

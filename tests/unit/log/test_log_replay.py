@@ -1,0 +1,107 @@
+"""States between events, beside the engine's own snapshots; and snapshots as H5MD."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from log_compare import scene_of
+
+import idealgas
+from idealgas.log import LogError
+from idealgas.simulate import simulate
+
+pyh5md = pytest.importorskip("pyh5md")
+
+
+@pytest.fixture(scope="module", params=["quickstart", "periodic", "atmosphere", "rough", "mixing"])
+def path(request, tmp_path_factory):
+    path = tmp_path_factory.mktemp("snapshots") / "run.h5"
+    events = {"mixing": "run.events=20000", "atmosphere": "run.events=30000"}.get(request.param, "run.events=12000")
+    simulate(scene_of(request.param, "log.snapshot_every=0.37", events), path)
+    return path
+
+
+def test_states_are_those_of_the_engine(path):
+    with idealgas.open_log(path) as log, h5py.File(path) as file:
+        discs = file["particles/discs"]
+        times = log.snapshot_times
+        assert np.array_equal(times, 0.37 * np.arange(len(times)))
+        for step, state in enumerate(log.frames(times)):
+            size = max(log.box)
+            wrapped = (state.position - discs["position/value"][step]) / size
+            assert np.abs(wrapped - wrapped.round() * log.joined).max() < 1e-13
+            assert np.abs(state.velocity - discs["velocity/value"][step]).max() < 1e-12
+            if state.image is not None:
+                unwrapped = state.position + state.image * log.box
+                expected = discs["position/value"][step] + discs["image/value"][step] * log.box
+                assert np.abs(unwrapped - expected).max() < 1e-12 * size
+            if state.angular_velocity is not None:
+                assert np.array_equal(state.angular_velocity, discs["angular_velocity/value"][step])
+
+
+def test_frames_are_states(path):
+    with idealgas.open_log(path) as log:
+        times = np.linspace(0, log.end_time, 7)
+        for time, frame in zip(times, log.frames(times), strict=True):
+            for one, other in zip(frame, log.state_at(time), strict=True):
+                assert np.array_equal(one, other) or one is other is None
+
+
+def test_states_at_events_are_the_rows(path):
+    with idealgas.open_log(path) as log:
+        first = len(log) // 2
+        for block in log.chunks(None, first, first + 20):
+            for row in range(20):
+                if row == 19 or block.time[row + 1] > block.time[row]:
+                    state = log.state_at(block.time[row])
+                    assert np.array_equal(state.position[block.disc[row]], block.position[row])
+                    assert np.array_equal(state.velocity[block.disc[row]], block.velocity[row])
+
+
+def test_snapshots_are_h5md(path):
+    with idealgas.open_log(path) as log, pyh5md.File(str(path), "r") as file:
+        assert tuple(file["h5md"].attrs["version"]) == (1, 1)
+        discs = file.particles_group("discs")
+        position, velocity = (pyh5md.element(discs, name) for name in ("position", "velocity"))
+        for element in (position, velocity):
+            assert element.value.shape == (len(log.snapshot_times), len(log.discs), 2)
+            assert np.array_equal(element.time[:], log.snapshot_times)
+            assert np.array_equal(element.step[:], np.arange(len(log.snapshot_times)))
+        assert discs["box"].attrs["dimension"] == 2
+        assert [word == b"periodic" for word in discs["box"].attrs["boundary"]] == list(log.joined)
+        assert discs["box/edges"][:].tolist() == list(log.box)
+        for name in ("species", "mass", "radius"):
+            assert np.array_equal(pyh5md.element(discs, name).value[:], getattr(log.discs, name))
+        assert pyh5md.element(discs, "id").value[:].tolist() == list(range(len(log.discs)))
+        energy = pyh5md.element(file["observables"], "kinetic_energy")
+        assert len(energy.value) == len(energy.time) == len(energy.step)
+
+
+def test_without_events_there_are_states_at_checkpoints(tmp_path):
+    simulate(scene_of("quickstart", "log.events=false", "run.events=200000"), tmp_path / "run.h5")
+    with idealgas.open_log(tmp_path / "run.h5") as log:
+        last = log.checkpoints[-1]
+        assert np.array_equal(log.state_at(last.time).position, last.position)
+        with pytest.raises(LogError, match="without events only at checkpoints"):
+            log.state_at(last.time / 3)
+
+
+H5DUMP = shutil.which("h5dump")
+
+
+@pytest.mark.skipif(H5DUMP is None, reason="h5dump (Debian's hdf5-tools) is not installed")
+@pytest.mark.parametrize("compression", ["gzip", "none"])
+def test_h5dump_reads_it(tmp_path: Path, compression):
+    path = tmp_path / "run.h5"
+    simulate(
+        scene_of("periodic", "run.events=1000", "log.snapshot_every=0.5", f'log.compression="{compression}"'), path
+    )
+    said = subprocess.run([H5DUMP, path], capture_output=True, text=True)
+    assert (said.returncode, said.stderr) == (0, "")
+    times = subprocess.run([H5DUMP, "-d", "/events/time", "-y", "-m", "%.17g", path], capture_output=True, text=True)
+    numbers = times.stdout.partition("DATA {")[2].partition("}")[0].replace(",", " ").split()
+    with h5py.File(path) as file:
+        assert [float(number) for number in numbers] == file["events/time"][:].tolist()

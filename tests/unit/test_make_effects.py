@@ -1,0 +1,148 @@
+"""From a scene's tables to the arrays of the engines: what is there, and that nothing else is."""
+
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.effects import make_effects
+from idealgas.gas import make_gas
+from idealgas.scene import EFFECTS, load_scene, parse_scene
+
+PLAIN = """
+box.size = [20, 10]
+run.until = 4
+species = [
+    { name = "a", count = 30, radius = 0.1, temperature = 2 },
+    { name = "b", count = 20, radius = 0.2, mass = 3, speed = 1, region = [0, 0, 5, 10] },
+]
+disc = [{ position = [7, 5], velocity = [1, 0], radius = 0.5, mass = 2 }]
+"""
+FIELDS = ("gravity", "periodic", "segments", "rotation", "restitution", "thermal", "piston")
+"""Of the engines' effects, in the order of EFFECTS."""
+
+
+def effects_of(*overrides, text=PLAIN):
+    scene = parse_scene(text, overrides=overrides)
+    return scene, make_effects(scene, make_gas(scene))
+
+
+def test_no_table_no_effect():
+    scene, effects = effects_of()
+    assert scene.effects == ()
+    assert effects == (None,) * len(effects)
+
+
+def assert_as_called_for(scene):
+    effects = make_effects(scene, make_gas(scene))
+    called = tuple(name for name, field in zip(EFFECTS, FIELDS, strict=True) if getattr(effects, field) is not None)
+    assert called == scene.effects
+
+
+def test_a_shipped_scene_has_the_effects_it_calls_for_and_no_others(shipped_scene):
+    assert_as_called_for(load_scene(shipped_scene))
+
+
+def test_a_valid_case_has_the_effects_it_calls_for_and_no_others(valid_case):
+    assert_as_called_for(load_scene(valid_case))
+
+
+def test_gravity():
+    assert effects_of("gravity.acceleration=[0, -0.5]")[1].gravity == (0.0, -0.5)
+
+
+def test_periodic_sides():
+    periodic = effects_of("box.bottom=periodic", "box.top=periodic")[1].periodic
+    assert periodic[:4] == (False, True, 20.0, 10.0)
+    for counts in periodic[4:]:
+        assert (counts.shape, counts.dtype, counts.any()) == ((51, 2), np.int32, False)
+
+
+WALLS = """wall = [
+    { from = [10, 1], to = [13, 5] },
+    { from = [10, 8], to = [12, 8], opens_at = 2 },
+    { from = [14, 8], to = [16, 8], closes_at = 3, temperature = 4 },
+    { from = [14, 2], to = [16, 2], opens_at = 2, closes_at = 3 },
+]"""
+
+
+def test_wall_segments_and_gates():
+    segments = effects_of(text=WALLS + PLAIN)[1].segments
+    assert (segments.x[0], segments.y[0], segments.tx[0], segments.ty[0], segments.length[0]) == (10, 1, 0.6, 0.8, 5)
+    assert segments.opens.tolist() == [math.inf, 2, 0, 2]
+    assert segments.closes.tolist() == [math.inf, math.inf, 3, 3]
+    assert segments.active.tolist() == [True, True, False, True]
+    assert all(column.flags.c_contiguous for column in segments)
+    assert [column.dtype for column in segments] == [np.float64] * 7 + [np.bool_]
+
+
+def test_spins():
+    """By temperature: the energy is exact, whatever the draw. Inertia is κ m R²."""
+    tables = ("species.a.spin_temperature=3", "species.b.angular_velocity=-2", "disc.0.angular_velocity=1")
+    rotation = effects_of("rotation.inertia=0.25", "rotation.wall_roughness=0.5", *tables)[1].rotation
+    assert rotation.inertia[[0, 1, 31]] == pytest.approx([0.25 * 2 * 0.25, 0.25 * 0.01, 0.25 * 3 * 0.04], rel=1e-15)
+    assert rotation.omega[0] == 1
+    assert (rotation.omega[31:] == -2).all()
+    assert (rotation.inertia * rotation.omega**2)[1:31].sum() == pytest.approx(30 * 3, rel=1e-14)
+    assert (rotation.roughness, rotation.wall_roughness) == (1.0, 0.5)
+
+
+def test_spins_have_random_numbers_of_their_own():
+    plain, turning = (
+        make_gas(effects_of(*o)[0]) for o in ((), ("rotation.inertia=0.5", "species.a.spin_temperature=3"))
+    )
+    assert (plain.velocity == turning.velocity).all()
+    assert (plain.position == turning.position).all()
+
+
+def test_restitution():
+    scene, effects = effects_of("restitution.normal=0.9")
+    assert effects.restitution[:2] == (0.9, 1.0)
+    assert (effects.restitution.last == -math.inf).all()
+    speed = (30 * math.sqrt(math.pi * 2 / 2) + 20 * 1 + 1) / 51
+    diameter = (30 * 0.2 + 20 * 0.4 + 1) / 51
+    assert effects.restitution.contact_duration == pytest.approx(1e-6 * diameter / speed, rel=1e-14)
+    assert scene.restitution.contact_duration == effects.restitution.contact_duration
+    assert effects_of("restitution.normal=0.9", "restitution.contact_duration=1e-4")[1].restitution[2] == 1e-4
+
+
+def test_thermal_walls():
+    effects = effects_of("box.left={ thermal = 1.5 }", "scene.seed=7", text=WALLS + PLAIN)[1]
+    assert effects.thermal.temperature.tolist() == [1.5, -1, -1, -1, -1, -1, 4, -1]
+    assert effects.thermal.seed == np.uint64(7)
+    assert effects.thermal.seed.dtype == np.uint64
+    assert effects.thermal.emissions.dtype == np.uint64
+    assert effects.ledger.tolist() == [0.0] * 8
+
+
+def test_a_piston_of_given_velocity():
+    (record,) = effects_of("piston.velocity=-0.5")[1].piston
+    assert (record.x, record.v, record.a, record.m, record.stop, record.side) == (20, -0.5, 0, 0, 20, 1)
+
+
+def test_a_piston_with_a_mass_under_pressure_and_gravity():
+    piston = "piston={ side = 'bottom', position = 0.25, mass = 4, pressure = 0.5 }"
+    region = "species.b.region=[0, 1, 5, 9]"
+    (record,) = effects_of(piston, region, "gravity.acceleration=[0, 0.125]")[1].piston
+    assert (record.x, record.v, record.m, record.stop, record.side) == (0.25, 0, 4, 0, 2)
+    assert record.a == 0.5 * 20 / 4 + 0.125
+    (record,) = effects_of(piston.replace("bottom", "top").replace("0.25", "9.75"), region)[1].piston
+    assert (record.a, record.stop, record.side) == (-0.5 * 20 / 4, 10, 3)
+
+
+@pytest.mark.parametrize(
+    ("override", "kept"),
+    [
+        ("gravity.acceleration=[0, 1]", False),
+        ("rotation.roughness=0.5", False),
+        ("rotation.wall_roughness=1", False),
+        ("rotation.wall_roughness=0.5", True),
+        ("restitution.normal=0.5", False),
+        ("restitution.wall=0.5", True),
+        ("box.top={ thermal = 1 }", True),
+        ("piston.velocity=0.25", True),
+    ],
+)
+def test_an_account_is_kept_only_where_walls_can_give_or_take_energy(override, kept):
+    piston = ["piston.position=15"] if "piston" in override else []
+    assert (effects_of(override, *piston)[1].ledger is not None) == kept

@@ -1,0 +1,161 @@
+"""A log gone on with is the log of a run without a break, bit for bit; or it is refused."""
+
+from functools import partial
+from itertools import count
+
+import numpy as np
+import pytest
+from log_compare import differences, scene_of
+
+import idealgas.simulate as composition
+from idealgas.log import LogError, LogWriter, open_log
+from idealgas.scene import SceneError
+from idealgas.simulate import resume, simulate
+
+SNAPSHOTS = "log.snapshot_every=0.37"
+EVENTS = 12_000
+SCENES = ("quickstart", "periodic", "piston", "cooling", "rough", "heat-bath", "atmosphere", "novak-bortz")
+
+
+def interrupted(slices):
+    """What ends a run after some slices."""
+    calls = count(1)
+    return lambda: next(calls) >= slices
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def whole(request, tmp_path_factory):
+    """A scene's name and its log."""
+    path = tmp_path_factory.mktemp("whole") / "run.h5"
+    simulate(scene_of(request.param, SNAPSHOTS, f"run.events={EVENTS}"), path)
+    return request.param, path
+
+
+def test_extended(whole, tmp_path):
+    name, expected = whole
+    path = tmp_path / "run.h5"
+    simulate(scene_of(name, SNAPSHOTS, f"run.events={EVENTS * 2 // 3}"), path)
+    resume(path, [f"run.events={EVENTS}"])
+    assert differences(path, expected) == []
+
+
+@pytest.mark.parametrize("slices", [1, 3])
+def test_interrupted(whole, tmp_path, slices):
+    name, expected = whole
+    path = tmp_path / "run.h5"
+    simulate(scene_of(name, SNAPSHOTS, f"run.events={EVENTS}"), path, interrupted=interrupted(slices))
+    with open_log(path) as log:
+        assert not log.complete
+    summary = resume(path)
+    assert summary.completed
+    assert differences(path, expected) == []
+
+
+def test_from_a_time_to_a_later_one(tmp_path):
+    simulate(scene_of("quickstart", "run.until=0.61"), tmp_path / "run.h5")
+    resume(tmp_path / "run.h5", ["run.until=1.7"])
+    simulate(scene_of("quickstart", "run.until=1.7"), tmp_path / "whole.h5")
+    assert differences(tmp_path / "run.h5", tmp_path / "whole.h5") == []
+
+
+def test_sparse_checkpoints_and_no_events(tmp_path):
+    for number, override in enumerate(("log.checkpoint_every=3", "log.events=false")):
+        scene = partial(scene_of, "quickstart", override, SNAPSHOTS)
+        part, whole = tmp_path / f"{number}.h5", tmp_path / f"{number}-whole.h5"
+        simulate(scene("run.events=300000"), part)
+        resume(part, ["run.events=400000"])
+        simulate(scene("run.events=400000"), whole)
+        assert differences(part, whole) == []
+
+
+def test_a_log_that_has_only_its_start(tmp_path):
+    scene = scene_of("rough", "run.events=3000")
+    for name in ("run.h5", "whole.h5"):
+        simulate(scene, tmp_path / name)
+    LogWriter.resume(tmp_path / "run.h5", None).close()
+    with open_log(tmp_path / "run.h5") as log:
+        assert (len(log), len(log.checkpoints)) == (0, 0)
+    resume(tmp_path / "run.h5")
+    assert differences(tmp_path / "run.h5", tmp_path / "whole.h5") == []
+
+
+def test_snapshots_change_no_event(tmp_path):
+    for name, override in (("with", SNAPSHOTS), ("without", "log.snapshot_every=")):
+        simulate(scene_of("periodic", override, "run.events=20000"), tmp_path / name)
+    with open_log(tmp_path / "with") as one, open_log(tmp_path / "without") as other:
+        assert len(one.snapshot_times) > 5
+        for a, b in zip(one.chunks(), other.chunks(), strict=True):
+            for name in one.columns:
+                assert np.array_equal(getattr(a, name), getattr(b, name))
+
+
+# ── refusals ──
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    path = tmp_path_factory.mktemp("finished") / "run.h5"
+    simulate(scene_of("quickstart", "run.events=5000"), path, command="first")
+    return path
+
+
+def test_a_log_at_its_end_stays_as_it_is(finished):
+    before = finished.read_bytes()
+    summary = resume(finished)
+    assert (summary.events, summary.completed) == (5000, True)
+    assert finished.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (["run.events=4000"], r"goes on to t = [\d.]+, 5000 events already"),
+        (["run.until=0.001"], "goes on to t = "),
+        (["gravity.acceleration=[0, -1]"], r"with another \[gravity\]: only until, events, .* may change"),
+        (["species.gas.radius=0.01", "run.events=9000"], r"with another \[species\]"),
+        (["run.method=brute_force"], r"with another \[run\]"),
+        (["scene.seed=5"], r"with another \[scene\]"),
+    ],
+)
+def test_what_would_not_follow(finished, overrides, message):
+    before = finished.read_bytes()
+    with pytest.raises(LogError, match=message) as caught:
+        resume(finished, overrides)
+    assert caught.value.exit_code == 2
+    assert finished.read_bytes() == before
+
+
+def test_a_wrong_end(finished):
+    with pytest.raises(SceneError, match=r"run\.until: out of range"):
+        resume(finished, ["run.until=-1"])
+
+
+def test_other_laws_by_their_version(finished, monkeypatch):
+    monkeypatch.setattr(composition, "TRAJECTORY", 99)
+    with pytest.raises(LogError, match="made with version 1 of the laws of motion, this program has version 99"):
+        resume(finished, ["run.events=9000"])
+
+
+def test_other_laws_by_what_they_do(finished, monkeypatch):
+    restore = composition.restore
+
+    def displaced(*arguments):
+        gas = restore(*arguments)
+        gas.velocity[:] *= 1 + 1e-15
+        return gas
+
+    monkeypatch.setattr(composition, "restore", displaced)
+    before = finished.read_bytes()
+    with pytest.raises(LogError, match=r"in event row \d+ comes out differently with this program on this machine"):
+        resume(finished, ["run.events=9000"])
+    assert finished.read_bytes() == before
+
+
+def test_the_log_tells_of_its_runs(finished, tmp_path):
+    path = tmp_path / "run.h5"
+    path.write_bytes(finished.read_bytes())
+    resume(path, ["run.events=6000"], command="second")
+    with open_log(path) as log:
+        assert [command for _, command in log.runs] == ["first", "second"]
+        assert (log.command, log.scene.run.events) == ("second", 6000)
+        assert len(log.checkpoints) >= 1
