@@ -21,6 +21,7 @@ ALLOWED = {
     "energy": {"gas", "engine"},
     "columns": {"scene", "gas", "engine", "energy", "log"},
     "simulate": {"scene", "gas", "effects", "resting", "energy", "columns", "engine", "log"},
+    "resume": {"scene", "effects", "energy", "columns", "engine", "log", "simulate"},
     "analysis": {"_jit", "scene", "gas", "log"},
     "study": {"scene", "gas", "log", "simulate", "analysis"},
     "_jit": set(),
