@@ -78,4 +78,4 @@ def test_physics_only_computes(path):
 @pytest.mark.parametrize("path", COMMANDS, ids=name_of)
 def test_commands_use_what_is_public(path):
     used = {part(name) for name in imports(path) if name.split(".")[0] == "idealgas"}
-    assert used <= FREE | {"scene", "gas", "simulate", "log", "analysis", "study"}
+    assert used <= FREE | {"scene", "gas", "simulate", "resume", "log", "analysis", "study"}
