@@ -13,6 +13,7 @@ import numpy as np
 
 from idealgas.analysis.gif import GifWriter
 from idealgas.analysis.painter import CROSSING, Painter
+from idealgas.analysis.piston_track import piston_track
 from idealgas.analysis.span import span
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -79,7 +80,8 @@ def animate(
             f"{number:,} frames are too many (allowed <= {MOST_FRAMES:,}): a shorter window or more --speed"
         )
     width, height = (pixels // 2 * 2 for pixels in size)
-    painter = Painter(log.scene, log.discs, (width, height), float(typical), by_species)
+    piston = piston_track(log, first, last)
+    painter = Painter(log.scene, log.discs, piston, (width, height), float(typical), by_species)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with _replacing(path) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
         for k, state in enumerate(log.frames(times)):
