@@ -10,7 +10,7 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """axis: 0 if it moves along x, 1 along y. time, place: (K,), where it is known. pull: length/time². limits: length."""
+    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way."""
 
     axis: int
     time: np.ndarray
