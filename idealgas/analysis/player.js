@@ -111,11 +111,12 @@ function themed() {
   return { dark, ink: colour("--ink"), panel: colour("--panel") };
 }
 
-function prepare(canvas, ratio, tallest) {
+// A canvas as wide as the page and `ratio` as high, within limits; inset: what is left free on both sides.
+function prepare(canvas, ratio, lowest, tallest) {
   const width = canvas.clientWidth || 600;
   const scale = window.devicePixelRatio || 1;
-  let height = width * ratio, inset = 0;
-  if (height > tallest) { height = tallest; inset = (width - height / ratio) / 2; }
+  const height = Math.min(Math.max(width * ratio, lowest), tallest);
+  const inset = Math.max(width - height / ratio, 0) / 2;
   const pixels = [Math.round(width * scale), Math.round(height * scale)];
   if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) {
     [canvas.width, canvas.height] = pixels;
@@ -138,7 +139,7 @@ class DiscView {
 
   draw() {
     const { gas } = this, { head } = gas, [boxX, boxY] = head.box;
-    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 640);
+    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 0, 640);
     const theme = themed(), shades = theme.dark ? head.dark : head.light;
     const scale = (width - 2 * inset) / boxX;
     for (let i = 0; i < gas.number; i++) {
@@ -234,7 +235,7 @@ class SpeedView {
 
   draw() {
     const { gas, counts } = this, { head } = gas;
-    const { pen, width, height } = prepare(this.canvas, 0.32, 260);
+    const { pen, width, height } = prepare(this.canvas, 0.32, 180, 260);
     const theme = themed(), left = 52, bottom = 48, right = 12, above = 24, strip = 8;
     const shades = theme.dark ? head.dark : head.light;
     const w = width - left - right, h = height - bottom - above;
@@ -269,13 +270,14 @@ class SpeedView {
     pen.font = "12px system-ui, sans-serif";
     pen.strokeRect(left + 0.5, above + 0.5, w, h);
     pen.textAlign = "center";
-    const step = roundStep(head.fastest / 8);
+    const step = roundStep(head.fastest * 60 / w);
     for (let v = 0; v <= head.fastest; v += step) pen.fillText(+v.toPrecision(6), toX(v), above + h + strip + 14);
     pen.fillText("speed (length/time)", left + w / 2, above + h + strip + 32);
     pen.textAlign = "right";
     const rise = roundStep(this.top / 4);
     for (let f = 0; f <= this.top; f += rise) pen.fillText(+f.toPrecision(3), left - 6, toY(f) + 4);
-    pen.fillText("bars: discs, line: Maxwell-Boltzmann at T = " + temperature.toPrecision(5), left + w, 15);
+    const key = "bars: discs, line: Maxwell-Boltzmann at ";
+    pen.fillText((w > 480 ? key : "") + "T = " + temperature.toPrecision(5), left + w, 15);
     pen.textAlign = "left";
     pen.fillText("density (time/length)", 4, 15);
   }

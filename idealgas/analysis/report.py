@@ -168,6 +168,8 @@ def _run(log: Log, found: dict) -> str:
         (s["name"], f"{s['number']:,}", f"{s['radius']:.6g}", f"{s['mass']:.6g}") for s in found["gas"]["species"]
     ]
     summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
+    if "trial" not in log.columns:
+        summary = [row for row in summary if row[0] != SUMMARY["trials"]]
     state = [("state", found["file"]["state"]), ("created", found["file"]["created"]), *summary]
     tables = (
         Table("Discs", ("species", "N", "radius (length)", "mass (mass)"), species),
