@@ -62,11 +62,13 @@ def animate(
     """Make a film of a log between two times, every frame exact; see `film_path` for where.
 
     speed: simulated time per second of film. size: width and height in pixels, made even. on_frame(done, total).
-    UserError for a log without positions, for an empty window, and (exit code 1) if the film cannot be written.
+    UserError for a log without positions or events, an empty window, and (exit code 1) a film that cannot be written.
     """
     path = film_path(output)
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
     first, latest = span(log, start, end)
     typical = max(np.sqrt((s.velocity**2).sum(axis=1).mean()) for s in log.frames(np.linspace(first, latest, 5)))
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
