@@ -101,7 +101,7 @@ def _print(results: "Sequence[Relaxation]") -> None:
 
 
 def _fitted(found: "Estimate | None") -> str:
-    return "in equilibrium" if found is None else f"{found.value:.4g} ± {found.standard_error:.2g}"
+    return "none seen" if found is None else f"{found.value:.4g} ± {found.standard_error:.2g}"
 
 
 def _told(result: "Relaxation", series: "np.ndarray") -> str:

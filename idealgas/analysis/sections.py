@@ -63,7 +63,7 @@ def _relaxation(log: Log) -> Section:
     notes = [
         f"Near equilibrium theory expects a relaxation time of {LINEAR:g} collisions per disc, farther away more."
         if rows
-        else "The gas starts in equilibrium: there is no relaxation time to fit."
+        else "The kurtosis starts where it fluctuates in equilibrium: there is no relaxation time to fit."
     ]
     if found.in_time is not None:
         notes.append(f"Settled to 5 % after {SETTLED * found.in_time.value:.4g} units of time.")
