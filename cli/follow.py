@@ -33,9 +33,9 @@ def follow(path: str, once: bool) -> None:
     from idealgas.log import open_log
 
     console = Console()
+    rate: float | None = None
     with open_log(path) as log, Live(console=console, auto_refresh=False, transient=True) as screen:
         seen, looked = glance(log), time.monotonic()
-        rate: float | None = log.summary["events"] / log.summary["seconds"] if log.complete else None
         while log.live:
             time.sleep(SECONDS)
             log.refresh()
@@ -46,8 +46,10 @@ def follow(path: str, once: bool) -> None:
                 break
             if console.is_terminal:
                 screen.update(_view(log, seen, rate), refresh=True)
-        log.refresh()
-        shown = _view(log, seen if once else glance(log), rate)
+    with open_log(path) as log:  # anew, as it may have been closed
+        if log.complete:
+            rate = log.summary["events"] / log.summary["seconds"]
+        shown = _view(log, glance(log), rate)
     console.print(shown)
 
 

@@ -8,6 +8,8 @@ from idealgas.gas import Gas
 
 EVENTS_PER_DISC = 64  # at most; half of it at least
 FEWEST_EVENTS = 1024  # of an epoch of few discs
+LONGEST_WAY = 6144  # of the fastest disc, in diameters: contacts are missed by 2**-54 of it for each of the two at most
+FEWEST_PER_DISC = 4  # events, however long the way: an epoch costs about as much as one event a disc
 
 
 def encounters_per_length(gas: Gas) -> float:
@@ -15,7 +17,7 @@ def encounters_per_length(gas: Gas) -> float:
     n = len(gas)
     largest_radius = float(gas.radius.max())
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
-    phi = min(math.pi * math.fsum((gas.radius**2).tolist()) / gas.area, 0.7)
+    phi = min(math.pi * math.fsum((gas.radius**2).tolist()) / gas.area, 0.9)
     contact_value = (1.0 - 7.0 * phi / 16.0) / (1.0 - phi) ** 2
     pairs = math.sqrt(2.0) * mean_diameter * (n - 1) / gas.area * contact_value
     room = [length - 2.0 * largest_radius for length in gas.box]
@@ -23,16 +25,18 @@ def encounters_per_length(gas: Gas) -> float:
     return n * (pairs + sides)
 
 
-def epoch_length(velocity: np.ndarray, encounters: float, extra_speed: float = 0.0) -> float:
-    """A power of two of time in which 32 to 64 events a disc happen; infinite if nothing moves.
+def epoch_length(gas: Gas, encounters: float, extra_speed: float = 0.0) -> float:
+    """A power of two of time in which 32 to 64 events a disc happen, fewer in a thin gas; infinite if nothing moves.
 
-    velocity: (N, 2). encounters: see `encounters_per_length`. extra_speed: length/time, what gravity or a piston may
-    add to the mean speed. The sum of the speeds is exactly rounded, so neither the order of memory nor the processor
-    has a say in it.
+    encounters: see `encounters_per_length`. extra_speed: length/time, what gravity or a piston may add to a speed.
+    The sum of the speeds is exactly rounded, so neither the order of memory nor the processor has a say in it.
     """
-    n = len(velocity)
-    speeds = np.sqrt(velocity[:, 0] ** 2 + velocity[:, 1] ** 2)
-    mean_speed = math.fsum(speeds.tolist()) / n + extra_speed
-    if mean_speed * encounters == 0.0:
+    n = len(gas)
+    speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
+    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters
+    if rate == 0.0:
         return math.inf
-    return 2.0 ** math.floor(math.log2(max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / (mean_speed * encounters)))
+    way = 2.0 * LONGEST_WAY * float(gas.radius.min()) / (float(speeds.max()) + extra_speed)
+    shortest = FEWEST_PER_DISC * n / rate
+    longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
+    return 2.0 ** math.floor(math.log2(min(max(way, shortest), longest)))

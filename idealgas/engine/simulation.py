@@ -83,7 +83,7 @@ class Simulation:
         begin_epoch(self.effects, self.time)
         until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
         extra_speed = speed_beyond(self.gas, self.effects)
-        self.length = min(epoch_length(self.gas.velocity, self._encounters, extra_speed), until_gate)
+        self.length = min(epoch_length(self.gas, self._encounters, extra_speed), until_gate)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)

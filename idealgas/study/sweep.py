@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 RETRIES = 2
 """How often a point is tried again that failed, or whose worker died."""
 
+DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What a worker here does first: Ctrl-C is for the process that has it end in order."""
+
 PATIENCE = 10.0  # seconds in which a scheduler must answer
 
 
@@ -148,9 +151,11 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
-            dashboard_address=None,
+            dashboard_address=":0",  # no fixed port for the routes that come without a dashboard too
+            scheduler_kwargs={"dashboard": False},
             memory_limit=0,
             silence_logs=logging.CRITICAL,
+            preload=DEAF,
         ) as cluster,
         Client(cluster, set_as_default=False) as client,
     ):

@@ -153,7 +153,7 @@ def test_export_refuses(copy, arguments, message):
 
 def test_resume_on_a_full_disk(copy):
     """RLIMIT_FSIZE stands for a disk without room."""
-    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (10_000_000, resource.RLIM_INFINITY))
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (20_000_000, resource.RLIM_INFINITY))
     result = subprocess.run(
         [IDEALGAS, "resume", copy, "--events", "400000"], capture_output=True, text=True, preexec_fn=limit
     )

@@ -54,10 +54,10 @@ def test_plot_and_window(command, folder, tmp_path):
     assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
 
 
-bad = pytest.mark.parametrize("name", ["missing", "folder", "empty", "text", "noise", "other", "start", "half"])
+BAD = ("missing", "folder", "empty", "text", "noise", "other", "start", "half")
 
 
-@bad
+@pytest.mark.parametrize("name", BAD)
 def test_what_is_no_log_is_one_line(name, folder):
     before = listing(folder)
     result = idealgas("info", f"{name}.h5", folder=folder)
@@ -67,14 +67,28 @@ def test_what_is_no_log_is_one_line(name, folder):
     assert listing(folder) == before
 
 
-@bad
-@pytest.mark.parametrize("command", COMMANDS[1:])
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        (command, name)
+        for command in COMMANDS[1:]
+        for name in BAD
+        if not (name == "folder" and command in ("pressure", "heat-capacity"))
+    ],
+)
 def test_all_commands_say_the_same(command, name, folder, monkeypatch):
     monkeypatch.chdir(folder)
     first, result = (CliRunner().invoke(main, [each, f"{name}.h5"]) for each in ("info", command))
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr == first.stderr
     assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["pressure", "heat-capacity"])
+def test_a_folder_that_is_no_sweep_is_one_line(command, folder):
+    result = idealgas(command, "folder.h5", folder=folder)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr == "folder.h5: holds no results of a sweep\n"
 
 
 def test_a_picture_that_cannot_be_written(folder):

@@ -64,21 +64,27 @@ def test_quick_start_shows_the_check(quickstart):
     assert "Measurement and theory agree within 4 standard errors." in printed
 
 
-def test_the_program_reads_the_log(quickstart):
+def test_the_programs_read_the_log(quickstart):
     folder, (_, printed) = quickstart
-    (program,) = blocks("python")
+    plain, package = (run_program(program, folder) for program in blocks("python"))
+    whole_run = float(plain.removeprefix("P = "))
+    all_walls = float(re.search(r"all walls.*?P = ([\d.]+)", printed)[1])
+    assert whole_run == pytest.approx(all_walls, rel=0.02)
+    assert "1000 discs" in package
+    assert package.endswith(" wall hits\n")
+
+
+def run_program(program, folder):
     assert program.count("\n") <= 10
     result = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True)
     assert (result.returncode, result.stderr) == (0, "")
-    whole_run = float(result.stdout.removeprefix("P = "))
-    all_walls = float(re.search(r"all walls.*?P = ([\d.]+)", printed)[1])
-    assert whole_run == pytest.approx(all_walls, rel=0.02)
+    return result.stdout
 
 
 def test_commands_run(tmp_path):
     (text,) = blocks("bash", section("Commands"))
     printed = list(run_lines(text, tmp_path))
-    assert len(printed) == 9
+    assert len(printed) == 12
     assert all(printed)
     assert (tmp_path / "speeds.png").exists()
 
@@ -94,7 +100,10 @@ def keys_of_scenes():
         annotations = (field.annotation, *get_args(field.annotation))
         (model,) = (a for a in annotations if isinstance(a, type) and issubclass(a, BaseModel))
         for key, entry in model.model_fields.items():
-            yield f"{table}.{key}", "" if entry.is_required() or entry.default is None else f"`{toml(entry.default)}`"
+            yield (
+                f"{table}.{entry.alias or key}",
+                "" if entry.is_required() or entry.default is None else f"`{toml(entry.default)}`",
+            )
 
 
 def toml(value):

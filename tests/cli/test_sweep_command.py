@@ -56,7 +56,7 @@ def test_workers_make_no_difference_and_nothing_is_done_twice(plan, tmp_path):
 
 
 def test_failing_points_do_not_stop_the_others(plan, tmp_path):
-    plan.write_text(SWEEP.replace("[0.02, 0.1]", "[0.02, 0.64]"))
+    plan.write_text(SWEEP.replace("[0.02, 0.1]", "[0.02, 0.64]").replace("count = 20", "count = 3"))
     done = idealgas("sweep", plan, "-o", tmp_path / "out", "--workers", 1)
     assert done.returncode == 1
     assert done.stdout.startswith("3 points run, 0 done before, 3 failed")
@@ -76,10 +76,12 @@ def test_failing_points_do_not_stop_the_others(plan, tmp_path):
         ),
         (("-o", "out", "--scheduler", "nowhere"), "nowhere: no address of a scheduler"),
         ((), "-o DIR: missing"),
-        (("-o", "."), "exists and is no sweep's folder"),
+        (("-o", "full"), "exists and is no sweep's folder"),
     ],
 )
 def test_bad_input_is_one_line(plan, tmp_path, arguments, message):
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "precious").touch()
     done = idealgas("sweep", plan, *arguments, folder=tmp_path)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from idealgas.analysis.heat_capacity import heat_capacity
+from idealgas.analysis.heat_capacity import heat_capacity, measure_heat
 from idealgas.analysis.histogram import histogram
 from idealgas.analysis.pressure import pressure
 from idealgas.analysis.temperature import temperature
@@ -121,9 +121,10 @@ def test_heat_capacity_is_the_number_of_discs(tmp_path):
         path = tmp_path / f"{t}.h5"
         simulate(scene(500, 0.1, 400, seed=20 + k, temperature=t), path)
         logs.append(open_log(path))
-    result = heat_capacity(logs)
+    routes = heat_capacity([measure_heat(log) for log in logs]).routes
     for log in logs:
         log.close()
-    assert result.route == "dE/dT"
-    assert abs(result.per_disc.deviation) < STANDARD_ERRORS
-    assert result.per_disc.standard_error < 0.03
+    assert [route.name for route in routes] == ["dE/dT", "E/T"]
+    for route in routes:
+        assert abs(route.value.deviation) < STANDARD_ERRORS
+        assert route.value.standard_error < 0.03

@@ -54,7 +54,11 @@ def found_in(folder):
 def test_wheel(source, tmp_path):
     names, entry_points = build(source, "build_wheel", tmp_path)
     code = {name for name in names if ".dist-info/" not in name}
-    expected = {f"idealgas/{p.relative_to(ROOT / 'idealgas').as_posix()}" for p in (ROOT / "idealgas").rglob("*.py")}
+    expected = {
+        f"idealgas/{p.relative_to(ROOT / 'idealgas').as_posix()}"
+        for p in (ROOT / "idealgas").rglob("*.*")
+        if p.suffix != ".pyc"
+    }
     expected |= {f"idealgas_cli/{p.name}" for p in (ROOT / "cli").glob("*.py")}
     assert code == expected
     assert "idealgas = idealgas_cli.main:main" in entry_points

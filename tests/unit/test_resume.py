@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from log_compare import differences, scene_of
 
-import idealgas.simulate as composition
+import idealgas.resume as going_on
 from idealgas.log import LogError, LogWriter, open_log
+from idealgas.resume import resume
 from idealgas.scene import SceneError
-from idealgas.simulate import resume, simulate
+from idealgas.simulate import simulate
 
 SNAPSHOTS = "log.snapshot_every=0.37"
 EVENTS = 12_000
@@ -131,20 +132,20 @@ def test_a_wrong_end(finished):
 
 
 def test_other_laws_by_their_version(finished, monkeypatch):
-    monkeypatch.setattr(composition, "TRAJECTORY", 99)
+    monkeypatch.setattr(going_on, "TRAJECTORY", 99)
     with pytest.raises(LogError, match="made with version 1 of the laws of motion, this program has version 99"):
         resume(finished, ["run.events=9000"])
 
 
 def test_other_laws_by_what_they_do(finished, monkeypatch):
-    restore = composition.restore
+    restore = going_on.restore
 
     def displaced(*arguments):
         gas = restore(*arguments)
         gas.velocity[:] *= 1 + 1e-15
         return gas
 
-    monkeypatch.setattr(composition, "restore", displaced)
+    monkeypatch.setattr(going_on, "restore", displaced)
     before = finished.read_bytes()
     with pytest.raises(LogError, match=r"in event row \d+ comes out differently with this program on this machine"):
         resume(finished, ["run.events=9000"])

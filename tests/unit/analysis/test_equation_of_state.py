@@ -54,7 +54,7 @@ def test_few_states_give_no_coefficients_and_frozen_ones_nothing():
     few = equation_of_state(list(samples([0.1, 0.2], 1e-3)))
     assert few.b2 is None
     assert few.b3 is None
-    with pytest.raises(UserError, match=r"no theory at packing fraction 0\.75"):
+    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75"):
         equation_of_state([Sample(0.75, 100, Estimate(9.0, 0.1, 10.0))])
 
 

@@ -9,7 +9,7 @@ import pytest
 from idealgas.analysis import figures
 from idealgas.analysis.composition import composition
 from idealgas.analysis.flights import Moments
-from idealgas.analysis.heat_capacity import heat_capacity
+from idealgas.analysis.heat_capacity import CLOSED, heat_capacity, measure_heat
 from idealgas.analysis.histogram import QUANTITIES, histogram
 from idealgas.analysis.info import info
 from idealgas.analysis.pressure import pressure
@@ -170,31 +170,36 @@ def test_temperatures_of_the_directions_add_up(log):
     assert gas.history == pytest.approx(np.full(len(gas.history), 0.5), rel=1e-10)
 
 
-def test_heat_capacity_of_one_log_says_what_it_cannot_be(log):
-    result = heat_capacity([log])
-    assert result.route == "E/T"
-    assert "no slope" in result.explanation
-    assert result.per_disc.value == pytest.approx(0.5 / result.points[0].temperature.value, rel=1e-10)
-    assert result.number == 100
+def test_heat_capacity_of_one_log(log):
+    """The exact energy over the temperature by the pressure."""
+    measured = measure_heat(log)
+    (route,) = heat_capacity([measured]).routes
+    assert (route.name, route.kind) == ("E/T", CLOSED)
+    assert route.value.value == pytest.approx(0.5 / measured.temperature.value, rel=1e-10)
 
 
-def test_heat_capacity_of_two_logs_is_their_slope(log, hotter):
-    result = heat_capacity([log, hotter])
-    cold, hot = result.points
-    slope = (hot.energy - cold.energy) / (hot.temperature.value - cold.temperature.value)
-    assert result.per_disc.value == pytest.approx(slope, rel=1e-10)
+def test_heat_capacity_of_two_logs_has_their_slope(log, hotter):
+    cold, hot = logs = [measure_heat(log), measure_heat(hotter)]
+    slope = (hot.energy.value - cold.energy.value) / (hot.temperature.value - cold.temperature.value)
+    found = {route.name: route.value for route in heat_capacity(logs).routes}
+    assert found["dE/dT"].value == pytest.approx(slope, rel=1e-10)
     error = slope * np.hypot(cold.temperature.standard_error, hot.temperature.standard_error) / 1.5 * slope
-    assert result.per_disc.standard_error == pytest.approx(error, rel=1e-10)
-    assert result.intercept == pytest.approx(cold.energy - slope * cold.temperature.value, rel=1e-8, abs=1e-12)
+    assert found["dE/dT"].standard_error == pytest.approx(error, rel=1e-10)
 
 
-def test_heat_capacity_needs_different_energies(log):
-    with pytest.raises(UserError, match="same energy per disc"):
-        heat_capacity([log, log])
+def test_logs_of_one_energy_have_no_slope(log):
+    found = heat_capacity([measure_heat(log), measure_heat(log)])
+    assert [route.name for route in found.routes] == ["E/T"]
+    assert "several energies" in found.refused["dE/dT"]
 
 
 def test_results_are_json(log, hotter):
-    results = [pressure(log), temperature(log), heat_capacity([log, hotter]), histogram(log, "speed")]
+    results = [
+        pressure(log),
+        temperature(log),
+        heat_capacity([measure_heat(log), measure_heat(hotter)]),
+        histogram(log, "speed"),
+    ]
     for values in (*(result.as_dict() for result in results), info(log)):
         assert json.loads(json.dumps(values, allow_nan=False))
 
@@ -207,7 +212,7 @@ def test_every_axis_has_a_name(log, hotter):
     for figure in (
         figures.pressure_figure(pressure(log)),
         figures.temperature_figure(temperature(log)),
-        figures.heat_capacity_figure(heat_capacity([log, hotter])),
+        figures.heat_capacity_figure(heat_capacity([measure_heat(log), measure_heat(hotter)])),
         *(figures.histogram_figure(histogram(log, quantity)) for quantity in ("speed", "wait")),
     ):
         for ax in figure.axes:

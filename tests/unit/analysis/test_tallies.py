@@ -210,7 +210,8 @@ def test_rows_cut_into_chunks_make_no_difference(log, edges):
     """Pairs may straddle two chunks."""
 
     class Cut:
-        discs, has_positions, state_at, row_at = log.discs, log.has_positions, log.state_at, log.row_at
+        discs, scene, joined, has_positions = log.discs, log.scene, log.joined, log.has_positions
+        state_at, row_at = log.state_at, log.row_at
 
         def chunks(self, columns, start, stop):
             for row in range(start, stop, 7):

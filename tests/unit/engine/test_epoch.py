@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas.engine.epoch import encounters_per_length, epoch_length
+from idealgas.engine.epoch import FEWEST_PER_DISC, LONGEST_WAY, encounters_per_length, epoch_length
 from idealgas.gas import Gas
 
 
@@ -24,7 +24,7 @@ def gas(n=100, speed=1.0, side=50.0):
 
 
 def length_for(gas):
-    return epoch_length(gas.velocity, encounters_per_length(gas))
+    return epoch_length(gas, encounters_per_length(gas))
 
 
 def test_a_power_of_two():
@@ -46,3 +46,18 @@ def test_does_not_depend_on_the_order_of_the_discs():
 @pytest.mark.parametrize("n", [1, 100])
 def test_infinite_at_rest(n):
     assert length_for(gas(n, speed=0.0)) == math.inf
+
+
+@pytest.mark.parametrize("side", [50.0, 300.0])
+def test_the_fastest_disc_stays_within_the_longest_way(side):
+    """Unless the gas is so thin that an epoch would have hardly any events."""
+    thin = gas(side=side)
+    fastest = np.sqrt((thin.velocity**2).sum(1)).max()
+    assert length_for(thin) * fastest <= LONGEST_WAY * 2 * 0.5
+
+
+def test_some_events_in_the_thinnest_gas():
+    thinnest = gas(side=1e9)
+    speeds = np.sqrt((thinnest.velocity**2).sum(1))
+    events = length_for(thinnest) * speeds.mean() * encounters_per_length(thinnest)
+    assert FEWEST_PER_DISC * len(thinnest) / 2 <= events <= FEWEST_PER_DISC * len(thinnest)
