@@ -131,7 +131,8 @@ class Painter:
     def _draw_box(self, axes: Axes) -> None:
         axes.set(xlim=(0, self._gas.box[0]), ylim=(0, self._gas.box[1]), xlabel="x (length)", ylabel="y (length)")
         for axis, pixels in ((axes.xaxis, axes.bbox.width), (axes.yaxis, axes.bbox.height)):
-            axis.set_major_locator(MaxNLocator(1 + int(pixels * DPI / self._figure.dpi) // 60, min_n_ticks=2))
+            nbins = 1 + int(pixels * DPI / self._figure.dpi) // 60
+            axis.set_major_locator(MaxNLocator(nbins, steps=(1, 2, 5, 10), min_n_ticks=2))
         self._discs = EllipseCollection(
             [], [], [], units="xy", offset_transform=axes.transData, linewidths=0, animated=True
         )
