@@ -9,8 +9,8 @@ from ._analysis import log_argument, open_log, reading
 
 def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d+)x(\d+)", text)
-    if not match or not all(200 <= int(side) <= 8192 for side in match.groups()):
-        raise click.BadParameter(f"WIDTHxHEIGHT in pixels, 200 to 8192 each (got {text!r})")
+    if not match or not all(240 <= int(side) <= 8192 for side in match.groups()):
+        raise click.BadParameter(f"WIDTHxHEIGHT in pixels, 240 to 8192 each (got {text!r})")
     return int(match[1]), int(match[2])
 
 

@@ -10,8 +10,11 @@ from ._options import json_option
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
+
     from idealgas.analysis.development import Development
     from idealgas.analysis.relaxation import Relaxation
+    from idealgas.analysis.statistics import Estimate
     from idealgas.analysis.trials import Trials
 
 
@@ -82,31 +85,26 @@ def _print(results: "Sequence[Relaxation]") -> None:
     from idealgas.analysis.relaxation import LINEAR, SETTLED
 
     table = Table("", title="Relaxation to Maxwell-Boltzmann", title_justify="left")
-    for result in results:
-        table.add_column(result.path, justify="right")
-    table.add_row("discs N", *(f"{result.number}" for result in results))
-    table.add_row("relaxation time, time", *map(_fitted("in_time"), results))
-    table.add_row("the same in collisions per disc", *map(_fitted("in_collisions"), results))
-    settled = (f"{SETTLED * r.in_time.value:.4g}" if r.in_time else "" for r in results)
-    table.add_row("settled to 5 %, time", *settled)
-    table.add_row("cannot be told from it after: time", *(_told(r, r.time - r.time[0]) for r in results))
-    table.add_row("  collisions per disc", *(_told(r, r.collisions) for r in results))
+    for head in ("N", "relaxation time", "settled", "not told apart"):
+        table.add_column(head, justify="right")
+    for r in results:
+        settled = f"{SETTLED * r.in_time.value:.4g}" if r.in_time else ""
+        table.add_row(r.path, f"{r.number}", _fitted(r.in_time), settled, _told(r, r.time - r.time[0]))
+        table.add_row("  collisions per disc", "", _fitted(r.in_collisions), "", _told(r, r.collisions))
     Console().print(table)
     click.echo(
-        "A collision counts for both discs. It cannot be told: the speeds pass a Kolmogorov-Smirnov test at 5 %.\n"
-        f"Near equilibrium theory expects a relaxation time of {LINEAR:g} collisions per disc, farther away more."
+        "Relaxation time: of the kurtosis; after three of them 5 % of the distance is left, and the gas has settled.\n"
+        "Not told apart: the first time that the speeds pass a Kolmogorov-Smirnov test at 5 %.\n"
+        "A collision counts for both discs. Near equilibrium theory expects a relaxation time of "
+        f"{LINEAR:g} collisions\nper disc, farther away more."
     )
 
 
-def _fitted(name: str):
-    def shown(result: "Relaxation") -> str:
-        found = getattr(result, name)
-        return "in equilibrium" if found is None else f"{found.value:.4g} ± {found.standard_error:.2g}"
-
-    return shown
+def _fitted(found: "Estimate | None") -> str:
+    return "none seen" if found is None else f"{found.value:.4g} ± {found.standard_error:.2g}"
 
 
-def _told(result: "Relaxation", series) -> str:
+def _told(result: "Relaxation", series: "np.ndarray") -> str:
     return "not reached" if result.told_until is None else f"{series[result.told_until]:.3g}"
 
 
@@ -131,7 +129,7 @@ def _print_development(path: str, found: "Development") -> None:
     from rich.console import Console
     from rich.table import Table
 
-    title = f"{path}: discs by speed; classes begin at these multiples of the rms speed {found.rms:.5g}"
+    title = f"{path}: discs by speed, in classes from multiples of {found.rms:.4g} (rms)"
     table = Table(title=title, title_justify="left", box=box.SIMPLE, padding=(0, 1, 0, 0))
     classes = (f"{edge / found.rms:.1f}" for edge in found.edges)
     for head in ("time" if found.trials is None else "trials", "coll/disc", "KS", *classes):

@@ -19,6 +19,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 """Okabe & Ito, Color Universal Design (2008)."""
 
 GREY = "#767676"
+LEAST_RANGE = 0.05
+"""Share of itself that an axis shows of a conserved quantity: its last digits are of no interest."""
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> None:
@@ -53,7 +55,7 @@ def histogram_figure(result: Histogram) -> Figure:
             ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
         ax.set_xlim(found.edges[0], _last_seen(found.density, found.edges))
         ax.set_xlabel(f"{result.quantity} ({result.unit})")
-        ax.set_ylabel(f"density (1/({result.unit}))")
+        ax.set_ylabel(f"density ({'time/length' if result.unit == 'length/time' else f'1/{result.unit}'})")
         ax.legend(frameon=False)
     return figure
 
@@ -67,7 +69,7 @@ def temperature_figure(result: Temperature) -> Figure:
     """Temperature of every species against time; the window is where it is not shaded."""
     figure, (ax,) = panels(1)
     edges = result.window.edges
-    for entry, colour in zip(result.species, _repeated(COLOURS), strict=False):
+    for entry, colour in zip(result.apart, _repeated(COLOURS), strict=False):
         ax.stairs(entry.history, edges, baseline=None, color=colour, label=f"{entry.species} (N = {entry.number})")
     if result.expected is not None:
         ax.axhline(result.expected, color=GREY, linestyle="--", label="E/N")
@@ -75,6 +77,10 @@ def temperature_figure(result: Temperature) -> Figure:
         ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
     ax.set_xlabel("t (time)")
     ax.set_ylabel("temperature (energy, k_B = 1)")
+    ax.ticklabel_format(useOffset=False)
+    low, high = ax.get_ylim()
+    middle, reach = (low + high) / 2, max(high - low, LEAST_RANGE * (low + high)) / 2
+    ax.set_ylim(middle - reach, middle + reach)
     ax.legend(frameon=False)
     return figure
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from idealgas.analysis.gif import GifWriter
 from idealgas.analysis.painter import CROSSING, Painter
+from idealgas.analysis.piston_track import piston_track
 from idealgas.analysis.span import span
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -61,11 +62,13 @@ def animate(
     """Make a film of a log between two times, every frame exact; see `film_path` for where.
 
     speed: simulated time per second of film. size: width and height in pixels, made even. on_frame(done, total).
-    UserError for a log without positions, for an empty window, and (exit code 1) if the film cannot be written.
+    UserError for a log without positions or events, an empty window, and (exit code 1) a film that cannot be written.
     """
     path = film_path(output)
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
     first, latest = span(log, start, end)
     typical = max(np.sqrt((s.velocity**2).sum(axis=1).mean()) for s in log.frames(np.linspace(first, latest, 5)))
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
@@ -79,7 +82,8 @@ def animate(
             f"{number:,} frames are too many (allowed <= {MOST_FRAMES:,}): a shorter window or more --speed"
         )
     width, height = (pixels // 2 * 2 for pixels in size)
-    painter = Painter(log.scene, log.discs, (width, height), float(typical), by_species)
+    piston = piston_track(log, first, last)
+    painter = Painter(log.scene, log.discs, piston, (width, height), float(typical), by_species)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with _replacing(path) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
         for k, state in enumerate(log.frames(times)):

@@ -20,6 +20,7 @@ class Gas {
     this.tick = unpack("event_tick", Uint32Array);
     this.disc = unpack("event_disc", Uint32Array);
     this.event = { position: unpack("event_position", Float32Array), velocity: unpack("event_velocity", Float32Array) };
+    this.hits = unpack("event_hit", Uint32Array); // rows in which a disc met the piston
     this.number = this.radius.length;
     this.last = new Int32Array(this.number).fill(-1);
     this.row = 0; // events that have happened
@@ -46,12 +47,7 @@ class Gas {
 
   rowAfter(time) {
     const tick = (time - this.head.start) / (this.head.end - this.head.start) * this.head.ticks;
-    let low = 0, high = this.tick.length;
-    while (low < high) {
-      const middle = (low + high) >>> 1;
-      if (this.tick[middle] <= tick) low = middle + 1; else high = middle;
-    }
-    return low;
+    return firstAfter(this.tick.length, row => this.tick[row], tick);
   }
 
   seek(time) {
@@ -76,6 +72,33 @@ class Gas {
       if (joinedY) this.y[i] -= Math.floor(this.y[i] / height) * height;
     }
   }
+
+  // Where the piston is: touched by the discs that hit it, on a parabola from hit to hit.
+  pistonPlace() {
+    const { axis, outward, pull, limits, ends } = this.head.piston;
+    const knot = k => {
+      if (k < 0) return { time: this.head.start, place: ends[0] };
+      if (k >= this.hits.length) return { time: this.head.end, place: ends[1] };
+      const row = this.hits[k];
+      const place = this.event.position[2 * row + axis] + outward * this.radius[this.disc[row]];
+      return { time: this.timeOf(this.tick[row]), place };
+    };
+    const next = firstAfter(this.hits.length, k => knot(k).time, this.time), a = knot(next - 1), b = knot(next);
+    const before = this.time - a.time, after = this.time - b.time, step = b.time - a.time;
+    if (!(step > 0)) return a.place;
+    const place = (b.place * before - a.place * after) / step + pull * before * after / 2;
+    return Math.min(Math.max(place, limits[0]), limits[1]);
+  }
+}
+
+// The first of `number` places with a key, which do not fall from place to place, above a value.
+function firstAfter(number, key, value) {
+  let low = 0, high = number;
+  while (low < high) {
+    const middle = (low + high) >>> 1;
+    if (key(middle) <= value) low = middle + 1; else high = middle;
+  }
+  return low;
 }
 
 // ── the pictures ──
@@ -83,15 +106,17 @@ class Gas {
 function themed() {
   const style = getComputedStyle(document.documentElement);
   const dark = !printing && matchMedia("(prefers-color-scheme: dark)").matches;
-  const colour = name => printing ? { "--ink": "#1a1a1a", "--line": "#d5d5d5" }[name] : style.getPropertyValue(name).trim();
-  return { dark, ink: colour("--ink"), line: colour("--line") };
+  const onPaper = { "--ink": "#1a1a1a", "--panel": "#ffffff" };
+  const colour = name => printing ? onPaper[name] : style.getPropertyValue(name).trim();
+  return { dark, ink: colour("--ink"), panel: colour("--panel") };
 }
 
-function prepare(canvas, ratio, tallest) {
+// A canvas as wide as the page and `ratio` as high, within limits; inset: what is left free on both sides.
+function prepare(canvas, ratio, lowest, tallest) {
   const width = canvas.clientWidth || 600;
   const scale = window.devicePixelRatio || 1;
-  let height = width * ratio, inset = 0;
-  if (height > tallest) { height = tallest; inset = (width - height / ratio) / 2; }
+  const height = Math.min(Math.max(width * ratio, lowest), tallest);
+  const inset = Math.max(width - height / ratio, 0) / 2;
   const pixels = [Math.round(width * scale), Math.round(height * scale)];
   if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) {
     [canvas.width, canvas.height] = pixels;
@@ -103,6 +128,8 @@ function prepare(canvas, ratio, tallest) {
   return { pen, width, height, inset };
 }
 
+const SMALLEST = 1.25; // radius in pixels that any disc is drawn with
+
 class DiscView {
   constructor(canvas, gas) {
     this.canvas = canvas;
@@ -112,13 +139,15 @@ class DiscView {
 
   draw() {
     const { gas } = this, { head } = gas, [boxX, boxY] = head.box;
-    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 640);
+    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 0, 640);
     const theme = themed(), shades = theme.dark ? head.dark : head.light;
     const scale = (width - 2 * inset) / boxX;
     for (let i = 0; i < gas.number; i++) {
       const speed = Math.hypot(gas.vx[i], gas.vy[i]) / head.brightest;
       this.shade[i] = Math.min(Math.floor(speed * shades.length), shades.length - 1);
     }
+    pen.fillStyle = theme.panel;
+    pen.fillRect(inset, 0, width - 2 * inset, height);
     pen.save();
     pen.beginPath();
     pen.rect(inset, 0, width - 2 * inset, height);
@@ -138,17 +167,27 @@ class DiscView {
     for (const wall of head.walls) {
       const [opens, closes] = wall.absent;
       if (opens !== null && gas.time >= opens && (closes === null || gas.time < closes)) continue;
-      pen.beginPath();
-      pen.moveTo(inset + wall.from[0] * scale, height - wall.from[1] * scale);
-      pen.lineTo(inset + wall.to[0] * scale, height - wall.to[1] * scale);
-      pen.stroke();
+      this.line(pen, wall.from.map(x => x * scale), wall.to.map(x => x * scale), inset, height);
+    }
+    if (head.piston) {
+      pen.lineWidth = 3;
+      pen.strokeStyle = head.pistonColour;
+      const place = gas.pistonPlace() * scale, along = head.piston.axis === 0;
+      this.line(pen, along ? [place, 0] : [0, place], along ? [place, height] : [boxX * scale, place], inset, height);
     }
     pen.lineWidth = 1;
   }
 
+  line(pen, [x0, y0], [x1, y1], inset, height) {
+    pen.beginPath();
+    pen.moveTo(inset + x0, height - y0);
+    pen.lineTo(inset + x1, height - y1);
+    pen.stroke();
+  }
+
   outline(pen, i, inset, height, scale, boxX, boxY) {
-    const { gas } = this, [joinedX, joinedY] = gas.head.joined, r = gas.radius[i];
-    const x = gas.x[i], y = gas.y[i];
+    const { gas } = this, [joinedX, joinedY] = gas.head.joined;
+    const x = gas.x[i], y = gas.y[i], r = Math.max(gas.radius[i], SMALLEST / scale);
     this.disc(pen, inset + x * scale, height - y * scale, r * scale);
     const imageX = joinedX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
     const imageY = joinedY ? (y < r ? boxY : y > boxY - r ? -boxY : 0) : 0;
@@ -158,9 +197,8 @@ class DiscView {
   }
 
   disc(pen, x, y, r) {
-    if (r < 1.2) {
-      const side = Math.max(2 * r, 1);
-      pen.rect(x - side / 2, y - side / 2, side, side);
+    if (r < 1.5) { // a square looks the same and is drawn faster
+      pen.rect(x - r, y - r, 2 * r, 2 * r);
     } else {
       pen.moveTo(x + r, y);
       pen.arc(x, y, r, 0, 2 * Math.PI);
@@ -173,7 +211,7 @@ class SpeedView {
     this.canvas = canvas;
     this.gas = gas;
     this.counts = new Float64Array(40);
-    this.top = 1.8 * Math.max(...this.law(this.temperature()));
+    this.top = 1.8 * Math.max(...this.law(this.temperature())) || 1;
   }
 
   temperature() {
@@ -186,6 +224,7 @@ class SpeedView {
   law(temperature) {
     const { head } = this.gas;
     return Array.from({ length: 201 }, (_, k) => {
+      if (!(temperature > 0)) return 0;
       const v = head.fastest * k / 200;
       return head.kinds.reduce((sum, kind) => {
         const share = kind.mass / temperature;
@@ -196,8 +235,9 @@ class SpeedView {
 
   draw() {
     const { gas, counts } = this, { head } = gas;
-    const { pen, width, height } = prepare(this.canvas, 0.32, 260);
-    const theme = themed(), left = 52, bottom = 40, right = 12, above = 22;
+    const { pen, width, height } = prepare(this.canvas, 0.32, 180, 260);
+    const theme = themed(), left = 52, bottom = 48, right = 12, above = 24, strip = 8;
+    const shades = theme.dark ? head.dark : head.light;
     const w = width - left - right, h = height - bottom - above;
     const toX = v => left + v / head.fastest * w, toY = f => above + h * (1 - Math.min(f / this.top, 1));
     counts.fill(0);
@@ -205,6 +245,8 @@ class SpeedView {
       const bin = Math.floor(Math.hypot(gas.vx[i], gas.vy[i]) / head.fastest * counts.length);
       if (bin < counts.length) counts[bin]++;
     }
+    pen.fillStyle = theme.panel;
+    pen.fillRect(left, above, w, h);
     const wide = head.fastest / counts.length;
     pen.fillStyle = head.bars;
     counts.forEach((count, k) => {
@@ -217,19 +259,25 @@ class SpeedView {
     pen.beginPath();
     this.law(temperature).forEach((f, k) => pen.lineTo(toX(head.fastest * k / 200), toY(f)));
     pen.stroke();
+    shades.forEach((shade, k) => {
+      const from = toX(head.brightest * k / shades.length), last = k + 1 === shades.length;
+      pen.fillStyle = shade;
+      pen.fillRect(from, above + h, (last ? left + w : toX(head.brightest * (k + 1) / shades.length)) - from, strip);
+    });
     pen.lineWidth = 1;
     pen.strokeStyle = theme.ink;
     pen.fillStyle = theme.ink;
     pen.font = "12px system-ui, sans-serif";
     pen.strokeRect(left + 0.5, above + 0.5, w, h);
     pen.textAlign = "center";
-    const step = roundStep(head.fastest / 8);
-    for (let v = 0; v <= head.fastest; v += step) pen.fillText(+v.toPrecision(6), toX(v), above + h + 15);
-    pen.fillText("speed (length/time)", left + w / 2, above + h + 33);
+    const step = roundStep(head.fastest * 60 / w);
+    for (let v = 0; v <= head.fastest; v += step) pen.fillText(+v.toPrecision(6), toX(v), above + h + strip + 14);
+    pen.fillText("speed (length/time)", left + w / 2, above + h + strip + 32);
     pen.textAlign = "right";
     const rise = roundStep(this.top / 4);
     for (let f = 0; f <= this.top; f += rise) pen.fillText(+f.toPrecision(3), left - 6, toY(f) + 4);
-    pen.fillText("bars: discs, line: Maxwell-Boltzmann at T = " + temperature.toPrecision(5), left + w, 15);
+    const key = "bars: discs, line: Maxwell-Boltzmann at ";
+    pen.fillText((w > 480 ? key : "") + "T = " + temperature.toPrecision(5), left + w, 15);
     pen.textAlign = "left";
     pen.fillText("density (time/length)", 4, 15);
   }
@@ -290,7 +338,8 @@ class Player {
     let before = null;
     const frame = now => {
       if (!this.playing) return;
-      if (before !== null) this.seek(this.time + (now - before) / 1000 * this.rate * this.gas.head.speed);
+      const seconds = Math.min((now - (before ?? now)) / 1000, 0.25); // a hidden page has no frames: no leap after it
+      this.seek(this.time + seconds * this.rate * this.gas.head.speed);
       before = now;
       if (this.time >= this.gas.head.end) this.pause(); else requestAnimationFrame(frame);
     };

@@ -13,12 +13,14 @@ from matplotlib import colormaps
 
 from idealgas.analysis.composition import composition
 from idealgas.analysis.figures import COLOURS
-from idealgas.analysis.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST
+from idealgas.analysis.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST, PALEST
+from idealgas.analysis.piston_track import piston_track
 from idealgas.analysis.span import span
+from idealgas.events import Kind
 from idealgas.log import Log
 
-MOST_ROWS = 400_000
-"""Events that are put into a page, about 13 MB."""
+MOST_ROWS = 600_000
+"""Events that are put into a page, about 19 MB."""
 
 MOST_DISCS = 100_000
 SHADES = 16
@@ -61,10 +63,11 @@ def player(log: Log, start: float | None = None) -> Player | None:
         "speed": max(gas.box) / CROSSING / typical,
         "fastest": FASTEST * typical,
         "brightest": BRIGHTEST * typical,
-        "light": _hex(shades(np.linspace(0, 0.93, SHADES))),
+        "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
         "dark": _hex(shades(np.linspace(0.3, 1, SHADES))),
         "bars": COLOURS[5],
         "curve": COLOURS[0],
+        "pistonColour": COLOURS[1],
         "kinds": [
             {"share": share, "mass": mass}
             for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
@@ -73,6 +76,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
             {"from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
             for w in log.scene.wall
         ],
+        "piston": _piston(log, first, last),
     }
     arrays = {"radius": gas.radius, "mass": gas.mass, "velocity": state.velocity}
     if log.has_positions:
@@ -80,15 +84,34 @@ def player(log: Log, start: float | None = None) -> Player | None:
     return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, rows), first, last)
 
 
+def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
+    """Where it begins and ends, and how it falls in between; the events of the page tell where discs hit it."""
+    track = piston_track(log, first, last)
+    if track is None or log.scene.piston is None:
+        return None
+    return {
+        "axis": track.axis,
+        "outward": log.scene.piston.outward,
+        "pull": track.pull,
+        "limits": track.limits,
+        "ends": [track.at(first), track.at(last)],
+    }
+
+
 def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
-    """Columns of the events after the first time up to the last."""
-    names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
+    """Columns of the events after the first time up to the last, and which of them were hits of the piston."""
+    names = ("time", "disc", "kind", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks(names, start, log.row_at(last, "right")))
-    empty = {"time": np.empty(0), "disc": np.empty(0), "velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
-    columns = {name: np.concatenate([empty[name], *(getattr(block, name) for block in blocks)]) for name in names}
+    empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
+    columns = {
+        name: np.concatenate([empty.get(name, np.empty(0)), *(getattr(block, name) for block in blocks)])
+        for name in names
+    }
     ticks = np.round((columns.pop("time") - first) / (last - first) * TICKS)
-    whole = {"tick": ticks.astype("<u4"), "disc": columns.pop("disc").astype("<u4")}
-    return {f"event_{name}": _packed(a) for name, a in (whole | columns).items()}
+    hits = np.flatnonzero(columns.pop("kind") == Kind.PISTON)
+    whole = {"tick": ticks, "disc": columns.pop("disc"), "hit": hits}
+    columns |= {name: numbers.astype("<u4") for name, numbers in whole.items()}
+    return {f"event_{name}": _packed(column) for name, column in columns.items()}
 
 
 def _packed(array: np.ndarray) -> str:

@@ -46,8 +46,8 @@ class Relaxation:
 
     kurtosis, distance, entropy: (K,), entropy being H - H_eq per disc. equilibrium_kurtosis: of N discs.
     critical_distance: what one in twenty gases of N discs in equilibrium exceeds. in_time, in_collisions: the fitted
-    relaxation time of the kurtosis; None if the gas starts in equilibrium. told_until: index of the first instant at
-    which the distance is below the critical one; None if it never is.
+    relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium. told_until: index of the
+    first instant at which the distance is below the critical one; None if it never is.
     """
 
     path: str

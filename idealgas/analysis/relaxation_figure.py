@@ -12,6 +12,8 @@ from idealgas.analysis.relaxation import Relaxation
 
 STYLES = ("-", "--", "-.", ":")
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
+ENTROPIES = (-0.1, -0.05, 0, 0.05, 0.1, 0.2, 0.5, 1, 2)
+"""Ticks of the axes with both small and large values."""
 
 
 def relaxation_figure(results: Sequence[Relaxation]) -> Figure:
@@ -41,11 +43,14 @@ def relaxation_figure(results: Sequence[Relaxation]) -> Figure:
         distance.yaxis.set_major_formatter("{x:g}")
         distance.yaxis.set_minor_locator(NullLocator())
         entropy.set_ylabel("H - H of equilibrium, per disc (no unit)")
-        entropy.set_yscale("symlog", linthresh=0.03)
-        entropy.yaxis.set_major_formatter("{x:g}")
+        if max(result.entropy.max() for result in results) > 0.5:
+            entropy.set_yscale("symlog", linthresh=0.1)
+            entropy.yaxis.set_major_locator(FixedLocator(ENTROPIES))
+            entropy.yaxis.set_major_formatter("{x:g}")
         for ax in (kurtosis, distance, entropy):
             ax.set_xlim(left=0)
             ax.set_xlabel(x_name)
     axes[0].legend(frameon=False, fontsize="small", loc="lower right")
+    axes[0].set_title("pale: fitted exponential", fontsize="small", color=GREY)
     axes[2].set_title("dotted: exceeded by 1 in 20 gases in equilibrium", fontsize="small", color=GREY)
     return figure

@@ -19,25 +19,44 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 PLAYER = """
-<section id="player" tabindex="-1" aria-label="Player">
+<section id="s0">
 <h2>$heading</h2>
+<div id="player" tabindex="0" role="group" aria-label="Player">
 <canvas id="discs" role="img" aria-label="The discs in their box, coloured by speed"$hidden></canvas>
 <div id="controls">
 <button id="play" type="button">Play</button>
 <input id="scrub" type="range" min="0" max="10000" step="1" value="0" aria-label="Time">
 <output id="clock"></output>
-<label>speed <select id="rate">
-<option value="0.125">⅛</option><option value="0.25">¼</option><option value="0.5">½</option>
-<option value="1" selected>1</option><option value="2">2</option><option value="4">4</option>
-<option value="8">8</option>
+<label>playback <select id="rate">
+<option value="0.125">⅛ ×</option><option value="0.25">¼ ×</option><option value="0.5">½ ×</option>
+<option value="1" selected>1 ×</option><option value="2">2 ×</option><option value="4">4 ×</option>
+<option value="8">8 ×</option>
 </select></label>
 </div>
 <canvas id="speeds" role="img" aria-label="Histogram of the speeds with Maxwell and Boltzmann's law"></canvas>
+</div>
 <p class="note">$shown</p>
-<p class="note keys">Keys: space plays and pauses; ← → step by a frame, with shift by a second; ↑ ↓ change the speed;
-Home and End go to the start and the end.</p>
+<p class="note keys">Keys, after a click into the player: space plays and pauses; ← → step by a frame, with shift by a
+second; ↑ ↓ change the playback; Home and End go to the start and the end.</p>
 </section>
 """
+
+
+SUMMARY = {
+    "end_time": "end (time)",
+    "events": "events",
+    "disc_collisions": "disc collisions",
+    "wall_hits": "wall hits",
+    "trials": "trials of pairs",
+    "rows": "event rows",
+    "epochs": "epochs",
+    "energy_change": "energy change of the discs (energy)",
+    "energy_drift": "energy drift (share of the energy)",
+    "deepest_overlap": "deepest overlap (sums of two radii)",
+    "farthest_outside": "farthest outside (diameters)",
+    "seconds": "wall time (s)",
+}
+"""What is shown of the summary of a run, with units."""
 
 
 def write_report(
@@ -94,16 +113,17 @@ def _page(
         f"{gas['number']:,} discs, packing fraction {phi:.4g}, {log.scene.run.method.replace('_', '-')}, "
         f"{run['end_time']:.6g} units of time, {run['event_rows'] or 0:,} event rows"
     )
-    contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, (name, _) in enumerate(parts))
+    names = ["The discs" if log.has_positions else "The speeds", *(name for name, _ in parts)]
+    contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
     return Template(_text("report.html")).substitute(
         title=escape(title),
         subtitle=escape(subtitle),
         style=_text("report.css"),
         script=_text("player.js"),
         contents=f"<ul>{contents}</ul>",
-        player=_player(log, played),
+        player=_player(log, played, names[0]),
         sections="\n".join(
-            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts)
+            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 1)
         ),
         data="" if played is None else _data(played),
         footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
@@ -114,20 +134,26 @@ def _text(name: str) -> str:
     return resources.files("idealgas.analysis").joinpath(name).read_text(encoding="utf-8")
 
 
-def _player(log: Log, played: Player | None) -> str:
+def _player(log: Log, played: Player | None, heading: str) -> str:
     """The player's part of the page, and which part of the log it has."""
     if played is None:
         why = "no events are on record" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
-        return f'<section><h2>The discs</h2><p class="note">No player: {why}.</p></section>'
-    if played.end < log.end_time or played.start > log.start_time:
-        shown = f"The player has t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}"
+        return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {why}.</p></section>'
+    if log.has_positions:
+        width, height = log.box
+        shown = (
+            f"A box of {width:g} × {height:g} (length); the strip below the speeds tells the colours of the discs. "
+            "Positions are exact at any time: every event is in the page. Very small discs are drawn larger."
+        )
     else:
-        shown = "The player has the whole run"
-    shown += (
-        ", every event of it: positions are exact at any time." if log.has_positions else "; no positions are known."
-    )
-    hidden, heading = ("", "The discs") if log.has_positions else (" hidden", "The speeds")
-    return Template(PLAYER).substitute(hidden=hidden, heading=heading, shown=shown)
+        shown = f"No discs to show: {log.scene.run.method} does not know where they are. Their speeds are exact."
+    shown += " The player has "
+    if played.end < log.end_time or played.start > log.start_time:
+        shown += f"t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}."
+    else:
+        shown += "the whole run."
+    shown += f" At 1 × a second is {played.head['speed']:.3g} units of time."
+    return Template(PLAYER).substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
 
 
 def _data(played: Player) -> str:
@@ -141,25 +167,27 @@ def _run(log: Log, found: dict) -> str:
     species = [
         (s["name"], f"{s['number']:,}", f"{s['radius']:.6g}", f"{s['mass']:.6g}") for s in found["gas"]["species"]
     ]
-    summary = [(name.replace("_", " "), _shown(value)) for name, value in log.summary.items()]
+    summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
+    if "trial" not in log.columns:
+        summary = [row for row in summary if row[0] != SUMMARY["trials"]]
     state = [("state", found["file"]["state"]), ("created", found["file"]["created"]), *summary]
-    return (
-        _table(Table("Discs", ("species", "N", "radius", "mass"), species))
-        + _table(Table("Run", ("", ""), state))
-        + f"<details><summary>Scene</summary><pre>{escape(log.scene_text)}</pre></details>"
+    tables = (
+        Table("Discs", ("species", "N", "radius (length)", "mass (mass)"), species),
+        Table("Run", ("", ""), state),
     )
+    return _tables(tables) + f"<details><summary>Scene</summary><pre>{escape(log.scene_text)}</pre></details>"
 
 
 def _shown(value: object) -> str:
-    if isinstance(value, bool) or value is None:
-        return {True: "yes", False: "no", None: "–"}[value]
-    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}" if isinstance(value, float) else str(value)
+    if value is None:
+        return "–"
+    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
 def _section(section: Section) -> str:
     notes = "".join(f'<p class="note">{escape(note)}</p>' for note in section.notes)
     picture = "" if section.picture is None else _picture(section.picture, section.caption)
-    return notes + picture + "".join(map(_table, section.tables))
+    return f'{notes}<div class="beside">{picture}{_tables(section.tables)}</div>'
 
 
 def _picture(figure: Figure, caption: str) -> str:
@@ -170,6 +198,10 @@ def _picture(figure: Figure, caption: str) -> str:
     return (
         f'<figure><img alt="{text}" src="data:image/svg+xml;base64,{source}"><figcaption>{text}</figcaption></figure>'
     )
+
+
+def _tables(tables: Sequence[Table]) -> str:
+    return f'<div class="tables">{"".join(map(_table, tables))}</div>'
 
 
 def _table(table: Table) -> str:

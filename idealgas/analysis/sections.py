@@ -6,6 +6,8 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from idealgas.analysis import figures
+from idealgas.analysis.effusion import effusion
+from idealgas.analysis.effusion_figure import effusion_figure
 from idealgas.analysis.heat_capacity import heat_capacity, measure_heat
 from idealgas.analysis.histogram import histogram
 from idealgas.analysis.pressure import pressure
@@ -13,6 +15,8 @@ from idealgas.analysis.relaxation import LINEAR, SETTLED, relaxation
 from idealgas.analysis.relaxation_figure import relaxation_figure
 from idealgas.analysis.statistics import Estimate
 from idealgas.analysis.temperature import temperature
+from idealgas.analysis.transport import transport
+from idealgas.analysis.transport_figure import transport_figure
 from idealgas.analysis.trials import trials
 from idealgas.analysis.window import Window
 from idealgas.errors import UserError
@@ -59,7 +63,7 @@ def _relaxation(log: Log) -> Section:
     notes = [
         f"Near equilibrium theory expects a relaxation time of {LINEAR:g} collisions per disc, farther away more."
         if rows
-        else "The gas starts in equilibrium: there is no relaxation time to fit."
+        else "The kurtosis starts where it fluctuates in equilibrium: there is no relaxation time to fit."
     ]
     if found.in_time is not None:
         notes.append(f"Settled to 5 % after {SETTLED * found.in_time.value:.4g} units of time.")
@@ -77,32 +81,63 @@ def _temperature(log: Log) -> Section:
     found = temperature(log)
     rows = [
         (f"{entry.species}: {name}", estimate)
-        for entry in found.species
+        for entry in found.apart
         for name, estimate in (("m vx²", entry.x), ("m vy²", entry.y), ("m v²/2", entry.both))
     ]
-    picture = figures.temperature_figure(found)
-    return Section(
-        picture, "Temperature of each species against time", [estimates("Equipartition", rows)], [_window(found.window)]
-    )
+    tables = [estimates("Equipartition (energy)", rows)]
+    caption = "Kinetic temperature of each species against time"
+    return Section(figures.temperature_figure(found), caption, tables, [_window(found.window)])
 
 
 def _pressure(log: Log) -> Section:
     found = pressure(log)
     theories = [(name, f"{value:.6f}") for name, value in found.theories.items()]
-    paths = [
-        (f"{entry.species}: {name}", estimate)
-        for entry in found.free_paths
-        for name, estimate in (("mean free path", entry.path), ("mean free time", entry.time))
-    ]
-    rates = [(f"{rate.species} with {rate.other}", rate.rate) for rate in found.collision_rates]
     tables = [
-        estimates("Z = PA/NT", [(route.name, route.compressibility) for route in found.routes]),
-        Table("Z by theory", ("", ""), theories),
-        estimates("Collisions per disc and time", rates),
-        estimates("Between collisions", paths),
+        estimates("Z = PA/NT (no unit)", [(route.name, route.compressibility) for route in found.routes]),
+        Table("Z by theory (no unit)", ("", ""), theories),
     ]
-    caption = "Compressibility factor Z by every route, beside theory"
+    caption = "Compressibility factor Z by every route with its standard error, and theory as lines"
     return Section(figures.pressure_figure(found), caption, tables, [_window(found.window)])
+
+
+def _transport(log: Log) -> Section:
+    found = transport(log)
+    rates = [(f"{rate.species} with {rate.other}", rate.rate) for rate in found.collision_rates]
+    paths = [
+        row
+        for entry in found.free_paths
+        for row in (
+            (f"{entry.species}: mean free path, length", entry.path),
+            (f"{entry.species}: mean free time, time", entry.time),
+        )
+    ]
+    contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in found.contacts]
+    diffusion = [
+        row
+        for entry in found.diffusion
+        for row in (
+            (f"{entry.species}: D by displacement, length²/time", entry.coefficient),
+            (f"{entry.species}: memory of the velocity, time", entry.memory),
+        )
+    ]
+    tables = [
+        estimates("Collisions per disc (1/time)", rates),
+        estimates("Between collisions of a disc", paths),
+        estimates("g(r) at contact (no unit)", contacts),
+        estimates("Diffusion, theory Enskog's", diffusion),
+    ]
+    notes = [_window(found.window)]
+    if found.walled:
+        notes.append("Walls turn discs back: D is that of an endless gas only in a box much wider than their way.")
+    caption = "Memory of the velocity, mean square displacement and pair distribution"
+    return Section(transport_figure(found), caption, tables, notes)
+
+
+def _effusion(log: Log) -> Section:
+    found = effusion(log)
+    name = "this run"
+    tables = [estimates("Flux over density (length/time), theory ⟨v⟩/π", [(name, found.speed)])]
+    return Section(effusion_figure({name: [found]}, {name: found.speed}), "Discs beyond the gate", tables)
 
 
 def _heat_capacity(log: Log) -> Section:
@@ -114,7 +149,7 @@ def _heat_capacity(log: Log) -> Section:
     return Section(None, "", [estimates("Heat capacity per disc", rows)], notes)
 
 
-def _histogram(quantity: str) -> Callable[[Log], Section]:
+def _histogram(title: str, quantity: str) -> tuple[str, Callable[[Log], Section]]:
     def section(log: Log) -> Section:
         found = histogram(log, quantity)
         means = [(entry.name, entry.mean) for entry in found.distributions]
@@ -124,13 +159,13 @@ def _histogram(quantity: str) -> Callable[[Log], Section]:
             for test in entry.tests
         ]
         tables = [
-            estimates(f"Mean {quantity}", means),
-            Table("Kolmogorov-Smirnov tests", ("", "law", "distance", "p", "samples"), tests),
+            estimates(f"Mean {quantity.replace('-', ' ')} ({found.unit})", means),
+            Table("Kolmogorov-Smirnov tests (no unit)", ("", "law", "distance", "p", "samples"), tests),
         ]
-        caption = f"Distribution of the {quantity} with its laws"
+        caption = f"Density of {title.lower()}: measured with its standard errors, and its laws as lines"
         return Section(figures.histogram_figure(found), caption, tables, [_window(found.window)])
 
-    return section
+    return title, section
 
 
 def _trials(log: Log) -> Section:
@@ -156,14 +191,16 @@ def _trials(log: Log) -> Section:
 SECTIONS: tuple[tuple[str, Callable[[Log], Section]], ...] = (
     ("Pressure", _pressure),
     ("Temperature", _temperature),
-    ("Speeds", _histogram("speed")),
-    ("Velocities along x", _histogram("vx")),
-    ("Energies", _histogram("energy")),
+    _histogram("Speeds", "speed"),
+    _histogram("Velocities along x", "vx"),
+    _histogram("Energies", "energy"),
     ("Relaxation", _relaxation),
-    ("Free paths", _histogram("free-path")),
-    ("Free times", _histogram("free-time")),
-    ("Waits", _histogram("wait")),
+    ("Transport", _transport),
+    _histogram("Free paths", "free-path"),
+    _histogram("Free times", "free-time"),
+    _histogram("Waits between events", "wait"),
     ("Heat capacity", _heat_capacity),
+    ("Effusion", _effusion),
     ("Trials", _trials),
 )
 """Title and analysis of every part of a report, in order."""

@@ -43,6 +43,11 @@ class Temperature:
     expected: float | None
     species: tuple[SpeciesTemperature, ...]
 
+    @property
+    def apart(self) -> tuple[SpeciesTemperature, ...]:
+        """Those that differ: with one species alone, it is all discs."""
+        return self.species[:1] if len(self.species) == 2 else self.species
+
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {

@@ -1,0 +1,48 @@
+"""Where a piston is: known where discs hit it and where it was sampled, and falling in between."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.events import Kind
+from idealgas.log import Log
+
+
+@dataclass(frozen=True)
+class PistonTrack:
+    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way."""
+
+    axis: int
+    time: np.ndarray
+    place: np.ndarray
+    pull: float
+    limits: tuple[float, float]
+
+    def at(self, time: float) -> float:
+        """Coordinate at a time: on the parabola through the knots before and after it, if no end stop is in its way."""
+        k = int(np.clip(self.time.searchsorted(time, "right") - 1, 0, len(self.time) - 2))
+        before, after = time - self.time[k], time - self.time[k + 1]
+        step = self.time[k + 1] - self.time[k]
+        place = (self.place[k + 1] * before - self.place[k] * after) / step + 0.5 * self.pull * before * after
+        return float(np.clip(place, *self.limits))
+
+
+def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
+    """Of the piston between two times; None if there is none, or too little to tell. Discs that hit it touch it."""
+    piston = log.scene.piston
+    if piston is None:
+        return None
+    sampled, places = log.observables["piston_position"]
+    first = max(int(sampled.searchsorted(start, "right")) - 1, 0)
+    some = slice(first, int(sampled.searchsorted(end)) + 1)
+    times, knots = [sampled[some]], [places[some]]
+    names, last = ("time", "disc", "kind", "position"), max(end, float(sampled[some][-1]))
+    for rows in log.chunks(names, log.row_at(sampled[first]), log.row_at(last, "right")):
+        hits = rows.kind == Kind.PISTON
+        times.append(rows.time[hits])
+        knots.append(rows.position[hits, piston.axis] + piston.outward * log.discs.radius[rows.disc[hits]])
+    time, unique = np.unique(np.concatenate(times), return_index=True)
+    if len(time) < 2:
+        return None
+    pull = piston.acceleration(log.box, log.scene.gravity)
+    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, (0.0, log.box[piston.axis]))
