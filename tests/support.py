@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import BLOCK, EventBatch, empty_batch
@@ -15,6 +16,18 @@ from idealgas.gas import Gas
 
 ROOT = Path(__file__).parent.parent
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
+
+
+PACKAGES = {"chromium": "chromium", "chromedriver": "chromium-driver", "h5dump": "hdf5-tools", "ffmpeg": "ffmpeg"}
+"""Programs beside Python that tests use, and what Debian packs them in."""
+
+
+def program(name: str) -> str:
+    """Its path; skips the test where it is not installed, or fails it where ALL_PROGRAMS is set."""
+    path = shutil.which(name)
+    if path is None:
+        (pytest.fail if os.environ.get("ALL_PROGRAMS") else pytest.skip)(f"no {name}: apt-get install {PACKAGES[name]}")
+    return path
 
 
 def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:

@@ -2,12 +2,12 @@
 
 import json
 import os
-import shutil
 import subprocess
 
 import numpy as np
 import pytest
 from PIL import Image
+from support import program
 
 from idealgas.analysis import film
 from idealgas.analysis.film import animate, film_path
@@ -170,8 +170,8 @@ def test_without_an_end_it_is_twenty_seconds_of_film(path, tmp_path):
     assert made.frames == 41
 
 
-@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg")
 def test_a_video_has_all_frames(path, tmp_path):
+    program("ffmpeg")
     with open_log(path) as log:
         made = animate(log, tmp_path / "film.mp4", end=2.0, fps=25, speed=1.0, size=(321, 240))
     probe = ("ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", str(made.path))

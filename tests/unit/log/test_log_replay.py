@@ -1,6 +1,5 @@
 """States between events, beside the engine's own snapshots; and snapshots as H5MD."""
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from log_compare import scene_of
+from support import program
 
 import idealgas
 from idealgas.log import LogError
@@ -89,19 +89,15 @@ def test_without_events_there_are_states_at_checkpoints(tmp_path):
             log.state_at(last.time / 3)
 
 
-H5DUMP = shutil.which("h5dump")
-
-
-@pytest.mark.skipif(H5DUMP is None, reason="h5dump (Debian's hdf5-tools) is not installed")
 @pytest.mark.parametrize("compression", ["gzip", "none"])
 def test_h5dump_reads_it(tmp_path: Path, compression):
-    path = tmp_path / "run.h5"
+    h5dump, path = program("h5dump"), tmp_path / "run.h5"
     simulate(
         scene_of("periodic", "run.events=1000", "log.snapshot_every=0.5", f'log.compression="{compression}"'), path
     )
-    said = subprocess.run([H5DUMP, path], capture_output=True, text=True)
+    said = subprocess.run([h5dump, path], capture_output=True, text=True)
     assert (said.returncode, said.stderr) == (0, "")
-    times = subprocess.run([H5DUMP, "-d", "/events/time", "-y", "-m", "%.17g", path], capture_output=True, text=True)
+    times = subprocess.run([h5dump, "-d", "/events/time", "-y", "-m", "%.17g", path], capture_output=True, text=True)
     numbers = times.stdout.partition("DATA {")[2].partition("}")[0].replace(",", " ").split()
     with h5py.File(path) as file:
         assert [float(number) for number in numbers] == file["events/time"][:].tolist()
