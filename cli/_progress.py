@@ -20,19 +20,20 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
     columns = (
         BarColumn(),
         TaskProgressColumn(),
-        TextColumn("{task.fields[rate]:,.0f} events/s, simulated time {task.fields[time]:.6g}, remaining"),
+        TextColumn("{task.description}"),
         TimeRemainingColumn(),
     )
     console = Console(stderr=True)
     started = time.perf_counter()
     first: list[int] = []  # a run that was resumed does not begin at no events
     with Bars(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task("run", total=1.0, rate=0.0, time=0.0)
+        task = bar.add_task("loading machine code, or compiling it once for these effects; remaining", total=1.0)
 
         def show(progress: "Progress") -> None:
             if not first:
                 first.append(progress.events)
             rate = (progress.events - first[0]) / (time.perf_counter() - started)
-            bar.update(task, completed=progress.share, rate=rate, time=progress.time)
+            doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}, remaining"
+            bar.update(task, completed=progress.share, description=doing)
 
         yield show

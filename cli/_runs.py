@@ -60,6 +60,8 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
         table.add_row("energy drift", f"{summary.energy_drift:.1e}")
     table.add_row("deepest overlap", f"{summary.deepest_overlap:.1e} diameters")
     table.add_row("wall time", f"{summary.seconds:.2f} s")
+    if summary.compile_seconds > 1:
+        table.add_row("compilation (once for these effects)", f"{summary.compile_seconds:.1f} s")
     if from_start:
         table.add_row("events per second", f"{summary.events / summary.seconds:,.0f}")
     table.add_row("file size", decimal(os.path.getsize(output)))

@@ -21,11 +21,21 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 )
 @click.option("--collisions", default=1_000_000, show_default=True, help="Fewest collisions of a run.")
 @click.option("--repeats", default=3, show_default=True, help="Runs of each kind; the median counts.")
+@click.option("--effects", is_flag=True, help="Instead: what each effect costs, against the plain box.")
 @json_option
-def bench(numbers: list[float], fractions: list[float], collisions: int, repeats: int, as_json: bool) -> None:
+def bench(
+    numbers: list[float], fractions: list[float], collisions: int, repeats: int, effects: bool, as_json: bool
+) -> None:
     """Time the event-driven engine over a grid of N and φ, without the event log and with it."""
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
         raise click.UsageError("N, collisions and repeats are 1 or more, φ is above 0 and 0.9 at most")
+    if effects:
+        _bench_effects(collisions, repeats, as_json)
+    else:
+        _bench_grid([int(n) for n in numbers], fractions, collisions, repeats, as_json)
+
+
+def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, repeats: int, as_json: bool) -> None:
     import json
 
     from rich.console import Console
@@ -36,7 +46,7 @@ def bench(numbers: list[float], fractions: list[float], collisions: int, repeats
     console = Console(stderr=True)
     with console.status("compiling") as status:
         found = measure(
-            [int(n) for n in numbers],
+            numbers,
             fractions,
             collisions,
             repeats,
@@ -56,3 +66,24 @@ def bench(numbers: list[float], fractions: list[float], collisions: int, repeats
         table.add_row(f"{row.N:,}", f"{row.phi:g}", "on" if row.log else "off", rate, spread, share)
     Console().print(table)
     click.echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")
+
+
+def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
+    import json
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from idealgas.study.bench_effects import bench_effects
+
+    console = Console(stderr=True)
+    with console.status("compiling") as status:
+        rows = bench_effects(events, repeats, lambda row: status.update(f"{row.effect}: {row.ratio:.2f}"))
+    if as_json:
+        click.echo(json.dumps({"rows": [row._asdict() for row in rows]}, indent=2))
+        return
+    table = Table("effect", "time per event / plain box", "smallest – largest", "compiling or loading, s")
+    for row in rows:
+        spread = f"{row.smallest:.2f} – {row.largest:.2f}"
+        table.add_row(row.effect, f"{row.ratio:.2f}", spread, f"{row.compile_seconds:.1f}")
+    Console().print(table)

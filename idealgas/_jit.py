@@ -8,6 +8,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from typing import Any
 import numba
 import numpy as np
 from numba import types
+from numba.core.event import TimingListener, install_listener
 from numba.extending import intrinsic, overload
 
 if numba.config.DISABLE_JIT:
@@ -56,6 +58,11 @@ def njit(function: Callable) -> Any:
 def inline(function: Callable) -> Any:
     """Compile a small part that LLVM pastes into the entry points that call it; C has no need to."""
     return numba.njit(function, forceinline=True, no_cfunc_wrapper=True, **_OPTIONS)
+
+
+def compile_timer() -> AbstractContextManager[TimingListener]:
+    """Measure, as `duration` if `done`, the seconds spent on making machine code or loading it."""
+    return install_listener("numba:compile", TimingListener())
 
 
 def borrowed(arrays):

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 
+from idealgas._jit import compile_timer
 from idealgas.columns import restore
 from idealgas.effects import make_effects
 from idealgas.energy import energy_of
@@ -32,26 +33,27 @@ def resume(
     program or a change of the scene would make it go on otherwise than it began, or if it goes beyond the end asked
     for.
     """
-    with open_log(path) as log:
-        if log.live:
-            raise LogError(f"{log.path}: another process writes this file")
-        scene = _scene_to_go_on_with(log, overrides)
-        if log.complete and scene == log.scene:
-            return Summary(**log.summary)
-        last = log.checkpoints[-1] if len(log.checkpoints) else None
-        _check_end(log, last, stop_of(scene, len(log.discs)))
-        _check_laws(log, last, _simulation_at(log, last, scene))
-        simulation = _simulation_at(log, last, scene)
-        past = _past_of(log, last, scene)
-    with LogWriter.resume(
-        path,
-        None if last is None else -1,
-        fsync=scene.log.fsync,
-        make_batch=batch_maker(simulation.effects, simulation.method),
-        scene_text=dump_scene(scene),
-        command=command,
-    ) as writer:
-        return LoggedRun(scene, simulation, writer, past).to_the_end(on_progress, interrupted)
+    with compile_timer() as compilation:
+        with open_log(path) as log:
+            if log.live:
+                raise LogError(f"{log.path}: another process writes this file")
+            scene = _scene_to_go_on_with(log, overrides)
+            if log.complete and scene == log.scene:
+                return Summary(**log.summary)
+            last = log.checkpoints[-1] if len(log.checkpoints) else None
+            _check_end(log, last, stop_of(scene, len(log.discs)))
+            _check_laws(log, last, _simulation_at(log, last, scene))
+            simulation = _simulation_at(log, last, scene)
+            past = _past_of(log, last, scene)
+        with LogWriter.resume(
+            path,
+            None if last is None else -1,
+            fsync=scene.log.fsync,
+            make_batch=batch_maker(simulation.effects, simulation.method),
+            scene_text=dump_scene(scene),
+            command=command,
+        ) as writer:
+            return LoggedRun(scene, simulation, writer, past, compilation).to_the_end(on_progress, interrupted)
 
 
 def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:

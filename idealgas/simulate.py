@@ -9,7 +9,9 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba.core.event import TimingListener
 
+from idealgas._jit import compile_timer
 from idealgas.columns import (
     boundary_of,
     by_name,
@@ -53,6 +55,7 @@ class Summary:
     discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
     discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
     starts of epochs and at the end). seconds: wall time, start-up and compilation not counted.
+    compile_seconds: to make the machine code, once for each set of effects; later runs only load it.
     """
 
     completed: bool
@@ -68,6 +71,7 @@ class Summary:
     deepest_overlap: float
     farthest_outside: float
     seconds: float
+    compile_seconds: float
 
 
 @dataclass(frozen=True)
@@ -118,33 +122,34 @@ def simulate(
     the run ends at its last event, with a readable log. Raises SceneError if the discs do not fit, LogError if the log
     cannot be written.
     """
-    gas = make_gas(scene)
-    effects = make_effects(scene, gas)
-    method = make_method(scene, gas)
-    with LogWriter(
-        path,
-        gas,
-        scene_text=dump_scene(scene),
-        seed=scene.scene.seed,
-        command=command,
-        trajectory=TRAJECTORY,
-        walls=walls_of(scene),
-        boundary=boundary_of(scene),
-        gravity=scene.gravity.acceleration if scene.gravity else (0.0, 0.0),
-        events=scene.log.events,
-        compression=scene.log.compression,
-        fsync=scene.log.fsync,
-        force=force,
-        disc_columns=disc_constants(effects),
-        event_columns=event_columns(effects, method.homogeneous),
-        make_batch=batch_maker(effects, method),
-        checkpoint_arrays=tuple(disc_state(gas, effects, method.homogeneous)),
-        checkpoint_values=(*TOTALS, *whole_state(effects)),
-        observables=(*OBSERVABLES, *observed(gas, effects)),
-        snapshot_arrays=tuple(snapshot_state(gas, effects, method.homogeneous)) if scene.log.snapshot_every else (),
-    ) as log:
-        run = LoggedRun(scene, Simulation(gas, method, effects), log, Past(energy_of(gas, effects)))
-        return run.to_the_end(on_progress, interrupted)
+    with compile_timer() as compilation:
+        gas = make_gas(scene)
+        effects = make_effects(scene, gas)
+        method = make_method(scene, gas)
+        with LogWriter(
+            path,
+            gas,
+            scene_text=dump_scene(scene),
+            seed=scene.scene.seed,
+            command=command,
+            trajectory=TRAJECTORY,
+            walls=walls_of(scene),
+            boundary=boundary_of(scene),
+            gravity=scene.gravity.acceleration if scene.gravity else (0.0, 0.0),
+            events=scene.log.events,
+            compression=scene.log.compression,
+            fsync=scene.log.fsync,
+            force=force,
+            disc_columns=disc_constants(effects),
+            event_columns=event_columns(effects, method.homogeneous),
+            make_batch=batch_maker(effects, method),
+            checkpoint_arrays=tuple(disc_state(gas, effects, method.homogeneous)),
+            checkpoint_values=(*TOTALS, *whole_state(effects)),
+            observables=(*OBSERVABLES, *observed(gas, effects)),
+            snapshot_arrays=tuple(snapshot_state(gas, effects, method.homogeneous)) if scene.log.snapshot_every else (),
+        ) as log:
+            run = LoggedRun(scene, Simulation(gas, method, effects), log, Past(energy_of(gas, effects)), compilation)
+            return run.to_the_end(on_progress, interrupted)
 
 
 def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
@@ -170,10 +175,13 @@ class Past(NamedTuple):
 class LoggedRun:
     """A simulation and its log on the way to a stop."""
 
-    def __init__(self, scene: Scene, simulation: Simulation, log: LogWriter, past: Past) -> None:
+    def __init__(
+        self, scene: Scene, simulation: Simulation, log: LogWriter, past: Past, compilation: TimingListener
+    ) -> None:
         self._scene = scene
         self._simulation = simulation
         self._log = log
+        self._compilation = compilation
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
 
@@ -264,6 +272,7 @@ class LoggedRun:
             deepest_overlap=self._overlap,
             farthest_outside=self._outside,
             seconds=seconds,
+            compile_seconds=self._compilation.duration if self._compilation.done else 0.0,
         )
 
     def _progress(self) -> Progress:

@@ -11,11 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import inline
-
-_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
-_S27, _S30, _S31, _S11 = (np.uint64(s) for s in (27, 30, 31, 11))
+from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 
 
 class Thermal(NamedTuple):
@@ -38,20 +34,11 @@ def is_thermal(thermal, wall):
 
 
 @inline
-def mix(z):
-    """SplitMix64's output function."""
-    z = (z ^ (z >> _S30)) * _MIX_1
-    z = (z ^ (z >> _S27)) * _MIX_2
-    return z ^ (z >> _S31)
-
-
-@inline
 def uniform(thermal, own, draw):
     """A number in (0, 1] for a disc's current emission; draw: which of its numbers."""
-    key = mix(thermal.seed + _GOLDEN * (np.uint64(own) + np.uint64(1)))
+    key = mix(thermal.seed + GOLDEN * (np.uint64(own) + np.uint64(1)))
     count = thermal.emissions[np.uintp(own)] * np.uint64(8) + np.uint64(draw)
-    bits = mix(mix(key + _GOLDEN * (count + np.uint64(1))) + key) >> _S11
-    return (np.float64(bits) + 1.0) * 2.0**-53
+    return unit_interval(mix(mix(key + GOLDEN * (count + np.uint64(1))) + key))
 
 
 @inline

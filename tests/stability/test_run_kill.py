@@ -15,7 +15,7 @@ from idealgas.log import open_log
 IN_CI, BY_HAND = 6, 40
 SCENES = {
     "fast": ("quickstart", "run.events=2000000", "log.snapshot_every=5"),
-    "slow": ("mixing", "run.method=brute_force", "run.events=150000", 'log.compression="none"'),
+    "slow": ("mixing", "run.method=brute_force", "run.events=15000", 'log.compression="none"'),
 }
 
 

@@ -1,0 +1,169 @@
+"""Discs among walls drawn at random: no path between two events comes nearer to a wall than the disc's radius.
+
+The bound on the depth is rounding: contacts are rounded by less than 1e-12 of the box.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from idealgas.engine.effects import Effects
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import empty_batch
+from idealgas.gas import Gas
+from idealgas.physics.motion import Gravity
+from idealgas.physics.segment import Segments
+
+WIDTH, HEIGHT = 6.0, 5.0
+EVENTS = 120
+DEPTH = 1e-11
+SAMPLES = 33  # of a parabola
+
+coordinate = st.one_of(st.floats(-1.0, 7.0), st.integers(-1, 7).map(float), st.sampled_from([0.5, 2.5, WIDTH, HEIGHT]))
+point = st.tuples(coordinate, coordinate)
+
+
+class Scene(NamedTuple):
+    walls: list[tuple[tuple[float, float], tuple[float, float]]]
+    number: int
+    radius: float
+    seed: int
+
+
+def regular(centre, radius, corners, turn):
+    angles = [turn + 2 * math.pi * k / corners for k in range(corners)]
+    x, y = centre
+    ring = [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
+    return list(zip(ring, ring[1:] + ring[:1], strict=True))
+
+
+short = st.builds(
+    lambda p, angle, length: [(p, (p[0] + length * math.cos(angle), p[1] + length * math.sin(angle)))],
+    point,
+    st.floats(0, 6.3),
+    st.sampled_from([1e-9, 1e-3, 0.1, 1.0]),
+)
+anywhere = st.tuples(point, point).map(lambda ends: [ends])
+star = st.builds(lambda p, others: [(p, q) for q in others], point, st.lists(point, min_size=2, max_size=4))  # touching
+polygon = st.builds(regular, point, st.floats(0.1, 2.5), st.integers(3, 8), st.floats(0, 1))
+some_walls = st.lists(st.one_of(anywhere, short, star, polygon), min_size=1, max_size=4).map(
+    lambda parts: [wall for part in parts for wall in part if math.dist(*wall) > 1e-12]
+)
+scenes = st.builds(
+    Scene,
+    walls=some_walls.filter(bool),
+    number=st.integers(1, 4),
+    radius=st.sampled_from([0.02, 0.1, 0.3, 0.45]),
+    seed=st.integers(0, 2**32),
+)
+
+
+def segments_of(walls) -> Segments:
+    ends = np.array(walls, float)
+    along = ends[:, 1] - ends[:, 0]
+    length = np.hypot(*along.T)
+    columns = (*ends[:, 0].T, *(along / length[:, None]).T, length)
+    never = np.full(len(walls), math.inf)
+    return Segments(*map(np.ascontiguousarray, columns), never, never, np.ones(len(walls), bool))
+
+
+def distances(points: np.ndarray, walls: np.ndarray) -> np.ndarray:
+    """(P, W) of points (P, 2) from walls (W, 2, 2)."""
+    start, along = walls[:, 0], walls[:, 1] - walls[:, 0]
+    share = ((points[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1)
+    return np.linalg.norm(points[:, None] - start - np.clip(share, 0, 1)[..., None] * along, axis=2)
+
+
+def crossings(begin: np.ndarray, end: np.ndarray, walls: np.ndarray) -> np.ndarray:
+    """(P, W) bool, whether the straight way from begin to end (P, 2) crosses a wall."""
+
+    def side(a, b, p):
+        return np.sign((b - a)[..., 0] * (p - a)[..., 1] - (b - a)[..., 1] * (p - a)[..., 0])
+
+    a, b = begin[:, None], end[:, None]
+    c, d = walls[None, :, 0], walls[None, :, 1]
+    return (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
+
+
+def place_discs(scene: Scene) -> Gas | None:
+    """Discs at random clear of the walls and of each other; None if that does not come about."""
+    draw, placed = np.random.default_rng(scene.seed), []
+    walls = np.array(scene.walls)
+    for _ in range(200):
+        p = draw.uniform(scene.radius, (WIDTH - scene.radius, HEIGHT - scene.radius))
+        clear = distances(p[None], walls).min() > scene.radius * (1 + 1e-9)
+        if clear and all(np.hypot(*(p - q)) > 2 * scene.radius for q in placed):
+            placed.append(p)
+        if len(placed) == scene.number:
+            n = scene.number
+            velocity = draw.normal(size=(n, 2))
+            return Gas(
+                (WIDTH, HEIGHT), np.array(placed), velocity, np.full(n, scene.radius), np.ones(n),
+                np.zeros(n, np.uint16), ("gas",),
+            )  # fmt: skip
+    return None
+
+
+def assert_walls_hold(scene: Scene, gravity: tuple[float, float] | None = None) -> None:
+    gas = place_discs(scene)
+    if gas is None:
+        return
+    effects = Effects(segments=segments_of(scene.walls), gravity=Gravity(*gravity) if gravity else None)
+    simulation, stop = Simulation(gas, EventDriven(), effects), Stop(events=EVENTS)
+    walls, pull = np.array(scene.walls), np.array(gravity or (0.0, 0.0))
+    since = np.zeros(scene.number)
+    position, velocity = gas.position.copy(), gas.velocity.copy()
+    while not simulation.finished(stop):
+        batch = empty_batch(2 * EVENTS)
+        rows = batch.rows(0, simulation.advance(stop, batch))
+        for time, disc, place, after in zip(rows.time, rows.disc, rows.position, rows.velocity, strict=True):
+            assert_clear(position[disc], velocity[disc], pull, time - since[disc], place, walls, scene.radius)
+            since[disc], position[disc], velocity[disc] = time, place, after
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+
+
+def assert_clear(start, velocity, pull, duration, end, walls, radius) -> None:
+    """A flight stays clear of the walls and inside the box, and ends where it should."""
+    time = np.linspace(0.0, duration, SAMPLES)[:, None]
+    path = start + velocity * time + 0.5 * pull * time**2
+    assert np.abs(path[-1] - end).max() < DEPTH
+    assert distances(path, walls).min() > radius - DEPTH
+    assert not crossings(path[:-1], path[1:], walls).any()
+    assert (path > radius - DEPTH).all()
+    assert (path < np.array([WIDTH, HEIGHT]) - radius + DEPTH).all()
+
+
+few = settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+many = settings(few, max_examples=10_000)
+
+
+@few
+@given(scenes)
+def test_no_disc_crosses_a_wall(scene):
+    assert_walls_hold(scene)
+
+
+@few
+@given(scenes, st.sampled_from([(0.0, -1.0), (0.3, 0.1), (-2.0, 0.0)]))
+def test_no_falling_disc_crosses_a_wall(scene, gravity):
+    assert_walls_hold(scene, gravity)
+
+
+@pytest.mark.long
+@many
+@given(scenes)
+def test_no_disc_crosses_a_wall_in_many_scenes(scene):
+    assert_walls_hold(scene)
+
+
+@pytest.mark.long
+@many
+@given(scenes, st.sampled_from([(0.0, -1.0), (0.3, 0.1), (-2.0, 0.0)]))
+def test_no_falling_disc_crosses_a_wall_in_many_scenes(scene, gravity):
+    assert_walls_hold(scene, gravity)
