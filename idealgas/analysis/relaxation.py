@@ -231,7 +231,7 @@ def _decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
         model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))
         return float(((series - model) ** 2).sum())
 
-    low, high = math.log(time[1] / 10), math.log(10 * time[-1])
+    low, high = math.log(time[time > 0][0] / 10), math.log(10 * time[-1])
     start = min(np.linspace(low, high, 40), key=misfit)
     step = (high - low) / 39
     found = optimize.minimize_scalar(misfit, bounds=(start - step, start + step), method="bounded")

@@ -27,7 +27,7 @@ scene.title = "Some <discs> & no more"
 scene.seed = 2
 box.size = [20, 10]
 species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
-run.collisions_per_disc = 20
+run.collisions_per_disc = 150  # more rows than the player goes through to seek a time
 """
 
 SCENES = {
@@ -109,6 +109,7 @@ def seek(browser, time):
 def assert_positions(browser, log, time, accuracy=2e-5):
     """The page's positions are the log's, within the 24 bits that it has; across joined sides the near image."""
     shown, exact = np.array(browser.execute_script("return player.positions()")), log.state_at(time).position
+    assert ((shown >= 0) & (shown <= log.box)).all()
     difference = shown - exact
     for axis in np.flatnonzero(log.joined):
         difference[:, axis] -= np.round(difference[:, axis] / log.box[axis]) * log.box[axis]
@@ -123,7 +124,9 @@ def picture(browser, canvas="discs"):
 def test_positions_are_those_of_the_log(opened, pages, name):
     browser = opened(name)
     with open_log(pages(name)[0]) as log:
-        for share in (0.0, 0.31, 0.9, 0.305, 1.0, 0.02, 0.6):
+        (beyond_mark,) = log.chunks(("time",), 4100, 4101)  # few rows after a state that the player goes back to
+        shares = (0.0, 0.31, 0.9, beyond_mark.time.item() / log.end_time, 1.0, 0.02, 0.6)
+        for share in shares:
             time = share * log.end_time
             seek(browser, time)
             assert_positions(browser, log, time)

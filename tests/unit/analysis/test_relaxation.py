@@ -91,6 +91,11 @@ def test_decay_times_are_found():
         assert module._decay_time(time, 2 - np.exp(-time / tau), 2.0) == pytest.approx(tau, rel=1e-4)
 
 
+def test_decay_times_are_found_in_collisions_that_set_in_late():
+    collisions = np.maximum(np.linspace(-3, 37, 321), 0)
+    assert module._decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
+
+
 def test_reduced_energies_of_both_species_have_mean_one(make_log):
     """In the mean over the discs, whatever their masses, about the velocity of the centre of mass."""
     text = SCENE.replace("}]", '}, {name = "heavy", count = 20, radius = 0.1, mass = 10, speed = 1.0}]')
