@@ -20,7 +20,7 @@ def scene_of(name: str, *overrides: str) -> Scene:
 def contents(path: Path) -> dict[str, np.ndarray | str | dict]:
     """Everything that does not tell of the writing: runs, commits, and the seconds it took."""
     with open_log(path) as log:
-        summary = {name: value for name, value in log.summary.items() if name != "seconds"}
+        summary = {name: value for name, value in log.summary.items() if not name.endswith("seconds")}
         found: dict[str, np.ndarray | str | dict] = {"summary": summary, "scene": log.scene_text}
         rows = len(log)
 

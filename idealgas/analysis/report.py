@@ -55,6 +55,7 @@ SUMMARY = {
     "deepest_overlap": "deepest overlap (sums of two radii)",
     "farthest_outside": "farthest outside (diameters)",
     "seconds": "wall time (s)",
+    "compile_seconds": "making or loading machine code, before that (s)",
 }
 """What is shown of the summary of a run, with units."""
 

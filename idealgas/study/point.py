@@ -62,7 +62,7 @@ def run_point(task: Task) -> None:
     part = log.with_name(f"{log.name}.part")
     simulate(scene, part, force=True, command="idealgas sweep")
     with open_log(part) as opened:
-        summary = {name: value for name, value in opened.summary.items() if name != "seconds"}
+        summary = {name: value for name, value in opened.summary.items() if not name.endswith("seconds")}
         results = {name: _analysis(name)(opened).as_dict() for name in task.analyses}
     if task.keep_log:
         part.replace(log)
