@@ -7,7 +7,7 @@ from idealgas.analysis.figures import COLOURS, GREY, panels
 
 
 def evolution_figure(result: Evolution) -> Figure:
-    """Temperature with its law dashed; then discs beyond the gate, piston and account of the walls where there are any."""
+    """Temperature with its law dashed; then discs beyond the gate, piston and account of the walls, if any."""
     shown = [result.beyond, result.piston is not None, result.given]
     figure, axes = panels(1 + sum(map(bool, shown)))
     _temperature(axes[0], result)

@@ -10,7 +10,7 @@ from idealgas.analysis.ensemble import drift, kept_momentum, known_ensemble
 from idealgas.analysis.profile_theory import column_temperature
 from idealgas.log import Log
 
-STEPS = 1024
+STEPS = 128
 """Areas between which the adiabat is integrated."""
 
 
