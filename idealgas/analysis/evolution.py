@@ -8,6 +8,7 @@ import numpy as np
 from idealgas.analysis.ensemble import drift
 from idealgas.analysis.evolution_theory import Law, expected_course
 from idealgas.analysis.span import span
+from idealgas.errors import UserError
 from idealgas.log import Log
 
 INSTANTS = 257
@@ -49,8 +50,10 @@ TABLES = ("beyond", "parts", "given")
 
 
 def evolution(log: Log, start: float | None = None, end: float | None = None) -> Evolution:
-    """Follow a log from one time to another, by default from its start to its end."""
+    """Follow a log from one time to another, by default from its start to its end. UserError if it has no samples."""
     first, last = span(log, start, end)
+    if not len(log.observables["kinetic_energy"][0]):
+        raise UserError(f"{log.path}: no samples of the energy")
     observed = {name: values for name, (_, values) in log.observables.items()}
     samples = log.observables["kinetic_energy"][0]
     inside = (samples >= first) & (samples <= last)

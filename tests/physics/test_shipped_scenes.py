@@ -193,8 +193,8 @@ def test_rough(run):
 def test_cooling(run):
     """Haff, J. Fluid Mech. 134, 401 (1983), with the time of Enskog's collision rate and of van Noije & Ernst's a₂.
 
-    Flow in long waves is not cooled by collisions but by viscosity: it has a little more than T of its own, which makes
-    the cooling of this small box about 1 % slower than the law's; less than can be told here.
+    Flow in long waves is not cooled by collisions but by viscosity, and so keeps somewhat more than its T/2 a wave. In
+    this small box that slows the cooling by 1 or 2 % in the end, which the runs can hardly tell.
     """
     courses = [evolution(run("cooling", f"scene.seed={seed}")) for seed in range(1, 13)]
     for instant in (32, 64, 128, 256):
@@ -238,8 +238,8 @@ def test_conduction(run):
         slopes.append(-slope)
         ends.append((middle - 10 * slope, middle + 10 * slope))
         pressures.append((n * t * theory.compressibility(math.pi * n * 0.01))[1:-1])
-    assert np.abs(np.diff(fluxes)).max() < 0.5  # the gas between keeps a little in a run
-    agrees(of_runs(np.diff(fluxes)[:, 0] + 1, 1.0), 0.1)
+    left, right = np.array(fluxes).T
+    agrees(of_runs(left / right, 1.0), 0.05)
     conductivity = np.mean(fluxes, axis=1) / 5 / (2 / 3 * np.array(slopes))
     agrees(of_runs(conductivity, 1.029 * 10 / math.sqrt(math.pi) * conductivity_factor(0.1005)), 0.05)
     for strip in (np.array(pressures) / np.mean(pressures, axis=1, keepdims=True)).T:
