@@ -80,10 +80,10 @@ def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tupl
 def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
     """Of a gas that falls along an axis: its walls' own, or what its energy at the start comes to in a dilute gas.
 
-    None where other effects leave it unknown.
+    None where other effects leave it unknown, and for a single disc, with which nobody shares.
     """
     scene, gas = log.scene, log.discs
-    if scene.piston or "restitution" in scene.effects or log.joined[1 - axis]:
+    if scene.piston or "restitution" in scene.effects or log.joined[1 - axis] or len(gas) == 1:
         return None
     if walls := wall_temperatures(scene):
         return walls.pop() if len(walls) == 1 else None
