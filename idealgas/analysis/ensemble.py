@@ -28,10 +28,15 @@ class Ensemble:
 
 
 def kept_momentum(log: Log) -> np.ndarray:
-    """(2,) bool, directions along which nothing takes momentum from the discs; all, where discs have no positions."""
+    """(2,) bool, directions along which nothing takes momentum from the discs; all, where discs have no positions.
+
+    Smooth walls take none along themselves; thermal and rough ones do.
+    """
     if not log.has_positions:
         return np.array([True, True])
-    return np.array(log.joined) & (not log.scene.wall)
+    scene = log.scene
+    grip = bool(wall_temperatures(scene)) or (scene.rotation is not None and scene.rotation.wall_roughness > -1)
+    return np.array(log.joined) & (not scene.wall) & (all(log.joined) or not grip)
 
 
 def drift(log: Log) -> np.ndarray:

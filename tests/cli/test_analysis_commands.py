@@ -29,6 +29,8 @@ COMMANDS = [
     ("temperature",),
     ("pressure",),
     ("heat-capacity",),
+    ("profile",),
+    ("evolution",),
     *(("histogram", "--quantity", q) for q in ("speed", "vx", "vy", "energy", "free-path", "free-time", "wait")),
 ]
 
@@ -44,7 +46,7 @@ def test_tables_and_json(path, command):
     assert json.loads(found.stdout)
 
 
-@pytest.mark.parametrize("command", COMMANDS[1:5], ids=" ".join)
+@pytest.mark.parametrize("command", COMMANDS[1:7], ids=" ".join)
 def test_plot(path, command, tmp_path):
     drawn = idealgas(*command, path, "--plot", tmp_path / "picture.png")
     assert drawn.exit_code == 0, drawn.output
@@ -76,7 +78,7 @@ def test_check_that_fails_exits_with_one(path, monkeypatch):
         (("--plot", "picture.xyz"), "unknown kind of picture"),
     ],
 )
-@pytest.mark.parametrize("command", COMMANDS[1:5], ids=" ".join)
+@pytest.mark.parametrize("command", COMMANDS[1:7], ids=" ".join)
 def test_bad_input_is_one_line(path, command, arguments, message):
     result = idealgas(*command, path, *arguments)
     assert result.exit_code == 2
@@ -85,7 +87,7 @@ def test_bad_input_is_one_line(path, command, arguments, message):
     assert message in result.stderr
 
 
-@pytest.mark.parametrize("command", COMMANDS[:5], ids=" ".join)
+@pytest.mark.parametrize("command", COMMANDS[:7], ids=" ".join)
 def test_not_a_log(command, tmp_path):
     (tmp_path / "scene.toml").write_text(SCENE)
     for name in ("scene.toml", "missing.h5"):

@@ -1,0 +1,28 @@
+"""What each shipped scene conserves, at every sample of a run of twenty thousand events."""
+
+import numpy as np
+
+from idealgas.analysis.ensemble import kept_momentum
+from idealgas.analysis.evolution import evolution
+from idealgas.log import open_log
+from idealgas.scene import load_scene
+from idealgas.simulate import simulate
+
+
+def test_energy_and_momentum(shipped_scene, tmp_path):
+    """Energy to 1e-12 between elastic walls at rest; to 1e-10 where thermal walls or a piston give some, less that.
+
+    Inelastic collisions only ever take some. Momentum to 1e-12 along axes on which no wall takes any.
+    """
+    scene = load_scene(shipped_scene, ["run.events=20000"])
+    simulate(scene, tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = evolution(log)
+        if scene.restitution:
+            assert (np.diff(found.balance) < 0).all()
+        else:
+            assert np.abs(found.balance).max() < (1e-10 if found.given else 1e-12)
+        momentum = log.observables["momentum"][1]
+        size = (log.discs.mass * np.hypot(*log.discs.velocity.T)).sum()
+        assert np.abs(momentum - momentum[0])[:, kept_momentum(log)].max(initial=0.0) < 1e-12 * size
+        assert len(found.samples) >= 2

@@ -1,0 +1,137 @@
+"""Strips across an axis, against counting by hand, and the theories beside them."""
+
+import json
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.composition import composition
+from idealgas.analysis.profile import profile
+from idealgas.analysis.profile_theory import column_temperature, expected_profile, natural_axis
+from idealgas.errors import UserError
+from idealgas.log import open_log
+from idealgas.scene import parse_scene
+from idealgas.simulate import simulate
+
+GAS = """
+scene.seed = 3
+box.size = [12, 8]
+run.collisions_per_disc = 40
+[[species]]
+name = "light"
+count = 40
+radius = 0.1
+temperature = 1
+[[species]]
+name = "heavy"
+count = 20
+radius = 0.2
+mass = 3
+temperature = 1
+"""
+
+
+@pytest.fixture
+def make(tmp_path):
+    """The log of GAS with overrides."""
+    logs = []
+
+    def run(*overrides):
+        simulate(parse_scene(GAS, overrides=overrides), tmp_path / "run.h5", force=True)
+        logs.append(open_log(tmp_path / "run.h5"))
+        return logs[-1]
+
+    yield run
+    for log in logs:
+        log.close()
+
+
+def test_strips_are_counted_by_hand(make):
+    log = make("rotation={ inertia = 0.4 }")
+    found = profile(log, "y", bins=4, start=1.0, end=3.0)
+    assert found.edges == pytest.approx([0.1, 2.05, 4.0, 5.95, 7.9])
+    gas, frames = log.discs, list(log.frames(np.linspace(1.0, 3.0, found.frames)))
+    for s, entry in enumerate(found.species):
+        for k in range(4):
+            counts, motion, spin = 0, 0.0, 0.0
+            for state in frames:
+                y = state.position[:, 1]
+                inside = (gas.species == s) & (y >= found.edges[k]) & (y < found.edges[k + 1])
+                counts += inside.sum()
+                motion += (gas.mass * (state.velocity**2).sum(axis=1) / 2)[inside].sum()
+                spin += (0.4 * gas.mass * gas.radius**2 * state.angular_velocity**2)[inside].sum()
+            assert entry.density[k].value == pytest.approx(counts / len(frames) / (1.95 * 12))
+            assert entry.temperature[k].value == pytest.approx(motion / counts)
+            assert entry.spin[k].value == pytest.approx(spin / counts)
+    assert json.dumps(found.as_dict(), allow_nan=False)
+
+
+def test_all_discs_are_in_a_uniform_gas(make):
+    log = make()
+    expected = expected_profile(log, 0, np.linspace(0.1, 11.9, 8), 0.0)
+    assert expected.law == "uniform"
+    assert (expected.density * 11.8 / 7 * 8).sum(axis=1) == pytest.approx([40, 20])
+    assert expected.density[1, 0] < expected.density[1, 1]  # the heavy ones do not reach as far
+    assert expected.temperature == pytest.approx(1.0)
+
+
+def test_a_column_falls_off_with_height(make):
+    """In a tall column a disc has T of height beside T of motion, so that T is half of the energy above the floor."""
+    log = make("gravity={ acceleration = [0, -9] }")
+    assert natural_axis(log) == 1
+    discs = composition(log.discs)
+    heights = log.discs.position[:, 1] - log.discs.radius
+    energy = log.discs.kinetic_energy + 9 * (log.discs.mass * heights).sum()
+    t = column_temperature(log, 1, discs)
+    x = discs.mass * 9 * (8 - 2 * discs.radius) / t
+    assert energy == pytest.approx((discs.number * t * (2 - x / np.expm1(x))).sum(), rel=1e-9)
+    expected = expected_profile(log, 1, np.linspace(1.0, 3.0, 3), 0.0)
+    fall = expected.density[:, 1] / expected.density[:, 0]
+    assert fall == pytest.approx(np.exp(-discs.mass * 9 / t), rel=1e-12)
+    assert expected_profile(log, 0, np.linspace(1.0, 3.0, 3), 0.0) is None
+
+
+def test_between_two_thermal_sides(make):
+    log = make("box.bottom={ thermal = 4 }", "box.top={ thermal = 1 }")
+    assert natural_axis(log) == 1
+    expected = expected_profile(log, 1, np.linspace(0, 8, 42), 0.0)
+    t, n = expected.temperature[0, 1:-1], expected.density[0, 1:-1]  # in the outermost the discs do not reach all
+    assert t[[0, 19, -1]] ** 1.5 == pytest.approx([8 - 7 * 1.5 / 41, 4.5, 1 + 7 * 1.5 / 41], rel=2e-3)
+    assert n * t == pytest.approx(n[0] * t[0], rel=1e-9)
+    found = profile(log, bins=3, start=0.0)
+    assert set(found.heat) == {"bottom", "top"}
+    time, given = log.observables["wall_energy"]
+    gain = (given[-1] - given[0]) / (time[-1] - time[0])
+    assert [found.heat[name].value for name in ("bottom", "top")] == pytest.approx(gain[2:])
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "piston={ position = 12, mass = 5, pressure = 2 }",
+        "wall=[{ from = [6, 0], to = [6, 1] }]",
+        "wall=[{ from = [6, 0], to = [6, 1], opens_at = 3 }]",
+        "rotation.roughness=0",
+    ],
+)
+def test_scenes_without_a_theory_are_measured_too(make, override):
+    found = profile(make(override), start=2.0)
+    assert found.law is None
+    assert all(e.theory is None for e in found.species[0].density)
+
+
+def test_a_gate_that_has_opened_is_no_wall(make):
+    log = make("wall=[{ from = [6, 0], to = [6, 1], opens_at = 1 }]")
+    assert profile(log, start=2.0).law == "uniform"
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (["log.events=false"], "has no events"),
+        (["run.method=monte_carlo", "run.v_ref=20"], "no positions"),
+    ],
+)
+def test_what_cannot_be_measured_is_refused(make, overrides, message):
+    with pytest.raises(UserError, match=message):
+        profile(make(*overrides))
