@@ -28,6 +28,7 @@ from idealgas.engine.audit import Audit
 from idealgas.engine.effects import Effects
 from idealgas.engine.monte_carlo import MonteCarlo
 from idealgas.engine.simulation import LATEST, METHODS, TRAJECTORY, Method, Simulation, Stop, Totals
+from idealgas.engine.time_driven import TimeDriven
 from idealgas.events import empty_batch
 from idealgas.gas import Gas, make_gas
 from idealgas.log import Checkpoint, Column, Log, LogError, LogWriter, open_log
@@ -54,7 +55,8 @@ class Summary:
     completed: whether it reached its end. end_time: time. trials: of pairs, by Monte Carlo. energy_change: of the
     discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
     discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
-    starts of epochs and at the end). seconds: wall time, start-up and compilation not counted.
+    starts of epochs and at the end; in time steps the overlap is that of any collision, each of which has one).
+    seconds: wall time, start-up and compilation not counted.
     """
 
     completed: bool
@@ -103,6 +105,9 @@ def stop_of(scene: Scene, n: int) -> Stop:
 def make_method(scene: Scene, start: Gas) -> Method:
     """The method a scene calls for; start: its discs at time 0."""
     run = scene.run
+    if run.method == "time_driven":
+        assert run.dt is not None
+        return TimeDriven(run.dt)
     if run.method != "monte_carlo":
         return METHODS[run.method]()
     v_ref = reference_speed(run, float(np.hypot(*start.velocity.T).max()))
