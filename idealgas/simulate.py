@@ -27,6 +27,7 @@ from idealgas.energy import Energy, energy_of, is_conserved
 from idealgas.engine.audit import Audit
 from idealgas.engine.effects import Effects
 from idealgas.engine.monte_carlo import MonteCarlo
+from idealgas.engine.precise import PreciseBruteForce
 from idealgas.engine.simulation import LATEST, METHODS, TRAJECTORY, Method, Simulation, Stop, Totals
 from idealgas.engine.time_driven import TimeDriven
 from idealgas.events import empty_batch
@@ -108,6 +109,8 @@ def make_method(scene: Scene, start: Gas) -> Method:
     if run.method == "time_driven":
         assert run.dt is not None
         return TimeDriven(run.dt)
+    if run.precision not in (None, "float64"):
+        return PreciseBruteForce(run.precision)
     if run.method != "monte_carlo":
         return METHODS[run.method]()
     v_ref = reference_speed(run, float(np.hypot(*start.velocity.T).max()))

@@ -283,6 +283,7 @@ class TimeDriven:
     """The method as an object: what an epoch needs between its start and its end; steps end at multiples of dt."""
 
     homogeneous = False
+    single_epoch = False
 
     def __init__(self, dt: float) -> None:
         self._dt = dt
