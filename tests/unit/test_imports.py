@@ -22,7 +22,7 @@ ALLOWED = {
     "columns": {"scene", "gas", "engine", "energy", "log"},
     "simulate": {"scene", "gas", "effects", "resting", "energy", "columns", "engine", "log"},
     "analysis": {"_jit", "scene", "gas", "log"},
-    "study": {"scene", "gas", "log", "simulate", "analysis"},
+    "study": {"scene", "gas", "effects", "engine", "log", "simulate", "analysis"},
     "_jit": set(),
     "errors": set(),
     "events": set(),
