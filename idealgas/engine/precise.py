@@ -276,6 +276,18 @@ def advance_precisely(
     return rows, reached
 
 
+@njit
+def turn_back(c, time):
+    """Bring all discs to a local time, reverse their velocities and count time from there."""
+    end = number(time, load(c.t, 0))
+    zero = number(0.0, end)
+    for i in range(c.t.shape[0]):
+        move(c, i, end)
+        store(c.vx, i, subtract(zero, load(c.vx, i)))
+        store(c.vy, i, subtract(zero, load(c.vy, i)))
+        store(c.t, i, zero)
+
+
 class PreciseBruteForce:
     """The method as an object. columns: the discs as they are, with all their digits."""
 

@@ -106,10 +106,10 @@ class OrbitStudy:
         unbroken = sum(s.unbroken for s in found)
         spread = [max(s.times, default=math.inf) / s.median for s in found]
         return [
-            f"In exact arithmetic the orbit would last for ever. Median over {self.placements} boxes and radii, in time "
-            f"units at speed 1: {medians}.",
-            f"Each decimal digit carried buys {self.time_per_digit:.3g} time units, the time in which a deviation grows "
-            "tenfold. More digits, not a better method, make the orbit last longer.",
+            f"In exact arithmetic the orbit would last for ever. Median over {self.placements} boxes and radii, in "
+            f"time units at speed 1: {medians}.",
+            f"Each decimal digit carried buys {self.time_per_digit:.3g} time units, the time in which a deviation "
+            "grows tenfold. More digits, not a better method, make the orbit last longer.",
             f"{unbroken} of {len(found) * self.placements} trials never broke; the luckiest of those that did lasted "
             f"{max(spread):.2g} times the median. Where roundings happen to cancel, the rounded motion can even be "
             "exactly periodic: a single placement proves nothing, hence the median.",

@@ -43,7 +43,7 @@ def exact_events(box, radius, periods):
 
 @pytest.mark.parametrize(("box", "radius"), [(BOX, RADIUS), ((23.7, 18.1), 0.9), ((5.0, 2.3), 0.2)])
 def test_the_exact_motion(box, radius):
-    """Every event of two periods at its place and time, to 16 digits; and back at the start, to 32 less two periods'."""
+    """Every event of two periods at its place and time, to 16 digits; back at the start, to 32 less two periods'."""
     orbit = three_disc_orbit(box, radius)
     gas = orbit_gas(orbit, box, radius)
     made = Simulation(gas, PreciseBruteForce("double-double", columns_at(orbit, gas, "double-double")))
@@ -66,11 +66,12 @@ def test_the_exact_motion(box, radius):
         assert max(abs(a - mpf(str(b))) for a, b in zip(at_end, orbit.x, strict=True)) < 2.0**-104 * GROWTH**2 * 1e3
 
 
-def test_the_shipped_scene_is_on_its_orbit_and_others_are_not(shipped_scenes=ROOT / "configs"):
-    assert is_on_orbit(make_gas(load_scene(shipped_scenes / "three-discs.toml")))
-    assert not is_on_orbit(make_gas(load_scene(shipped_scenes / "three-discs.toml", ["box.size=[10.21, 6.2]"])))
-    assert not is_on_orbit(make_gas(load_scene(shipped_scenes / "three-discs.toml", ["disc.0.mass=2"])))
-    assert not is_on_orbit(make_gas(load_scene(shipped_scenes / "corner.toml")))
+def test_the_shipped_scene_is_on_its_orbit_and_others_are_not():
+    configs = ROOT / "configs"
+    assert is_on_orbit(make_gas(load_scene(configs / "three-discs.toml")))
+    assert not is_on_orbit(make_gas(load_scene(configs / "three-discs.toml", ["box.size=[10.21, 6.2]"])))
+    assert not is_on_orbit(make_gas(load_scene(configs / "three-discs.toml", ["disc.0.mass=2"])))
+    assert not is_on_orbit(make_gas(load_scene(configs / "corner.toml")))
 
 
 def test_every_digit_buys_the_same_time():
