@@ -93,10 +93,8 @@ class Accuracy:
 
 
 def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda what, share: None) -> Accuracy:
-    """Run a scene on all rungs. SceneError or UserError if it cannot be run in time steps, or nothing collides."""
-    if len(make_gas(scene)) < 2:
-        raise UserError("accuracy: nothing to compare: one disc alone collides with none")
-    Rung("time_driven", dt=1.0).scene(scene, 1.0)  # refuses what cannot be
+    """Run a scene on all rungs. UserError if it cannot be run in time steps, or nothing collides."""
+    check(scene)
     progress("mixing the gas", 0.0)
     start = mixed(scene)
     left_out = why_not_precise(scene, start.gas)
@@ -124,6 +122,16 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
         for k, (rung, timing, found) in enumerate(zip(rungs, timings, averages, strict=True))
     ]  # fmt: skip
     return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, tuple(rows))
+
+
+def check(scene: Scene) -> None:
+    """UserError unless the scene can be run in time steps, and anything collides."""
+    if scene.run.method == "monte_carlo":
+        raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
+    if strange := [effect for effect in scene.effects if effect in ("wall segments", "piston")]:
+        raise UserError(f"nothing to compare: time steps know nothing of {' and '.join(strange)}")
+    if len(make_gas(scene)) < 2:
+        raise UserError("nothing to compare: one disc alone collides with none")
 
 
 def why_not_precise(scene: Scene, gas: Gas) -> str:

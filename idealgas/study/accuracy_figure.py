@@ -87,12 +87,12 @@ def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]
                 ax.plot(row.timing.median, error[0], marker, ms=9, mfc=filled, mec=colour)
     own = found.event_driven.timing.median
     ax.axvline(own, color=GREY, linestyle="--", linewidth=0.8, label="event-driven (filled)")
-    for row in found.precisions:
+    for k, row in enumerate(found.precisions):
         ax.axvline(row.timing.median, color=GREY, linestyle=":", linewidth=0.8)
         place = (row.timing.median, 1.0)
         ax.annotate(
             row.rung.precision or "", place, xycoords=("data", "axes fraction"), rotation=90, fontsize="x-small",
-            color=GREY, ha="right", va="top",
+            color=GREY, ha="left" if k % 2 else "right", va="top",
         )  # fmt: skip
     ax.set_xscale("log")
     ax.set_yscale("log")
@@ -138,7 +138,7 @@ def orbit_figure(found: OrbitStudy) -> Figure:
     x = np.array([0.0, 1.05 * digits.max()])
     line = median.mean() + found.time_per_digit * (x - digits.mean())
     ax.plot(x, line, "--", color=COLOURS[1], label=f"{found.time_per_digit:.3g} time units a digit")
-    ax.set_xlim(left=0)
+    ax.set_xlim(0, 1.2 * digits.max())
     ax.set_ylim(bottom=0)
     ax.set_xlabel("decimal digits carried (no unit)")
     ax.set_ylabel("orbit lasts (time, at speed 1)")

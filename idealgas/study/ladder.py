@@ -43,7 +43,7 @@ class Rung:
 
     def scene(self, scene: Scene, until: float) -> Scene:
         """The scene run this way to a time, without other stop rules. SceneError if it cannot be."""
-        ends = (f"run.until={until!r}", "run.events=", "run.collisions_per_disc=")
+        ends = (f"run.until={until!r}", "run.events=", "run.collisions_per_disc=", "run.dt=", "run.precision=")
         settings = [f'run.method="{self.method}"', *ends, "log.events=true", "log.snapshot_every="]
         if self.dt is not None:
             settings.append(f"run.dt={self.dt!r}")
