@@ -102,7 +102,7 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
     click.echo(
         "path error: from the double-double motion after 1 collision a disc; lost: 0.1 diameters off, after these"
     )
-    click.echo("collisions a disc; way back: after 1 collision a disc, all velocities reversed. All in diameters.")
+    click.echo("collisions a disc; way back: after 1 collision a disc, all velocities reversed. All rms, in diameters.")
 
 
 def _number(value: float | None, form: str, factor: float = 1.0) -> str:

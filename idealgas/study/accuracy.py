@@ -16,12 +16,12 @@ from idealgas.scene import Scene
 from idealgas.simulate import Summary
 from idealgas.study.averages import Averages, measure_averages
 from idealgas.study.ladder import Rung, Start, cpu_seconds, ladder, mixed
-from idealgas.study.motion import Missed, count_missed, error_on_return, positions, typical_distance
+from idealgas.study.motion import Missed, count_missed, error_on_return, positions, rms_distance
 
 SHORTEST_TIMING = 0.1  # CPU seconds of a run that is timed
 LONGEST_RUN = 40.0  # CPU seconds that a rung may take for its averages, and the reference for the trajectories
 MOST_PRECISE = 4000  # discs, whose time brute force takes
-FOLLOWED = (1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
+FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
 """Collisions a disc at which trajectories are compared: at the last, no digit of a float64 is left."""
 
 Progress = Callable[[str, float], None]
@@ -48,8 +48,8 @@ class Row:
     """A rung and all its errors; None where there is no such number.
 
     rate, z_pairs, z_walls: relative bias with its standard error, of the collision rate against the event-driven run
-    and of the pressure against theory. trajectory: (T,) typical distance from the reference, in diameters. way_back:
-    typical distance from the start after going back, in diameters.
+    and of the pressure against theory. trajectory: (T,) rms distance from the reference, in diameters. way_back:
+    rms distance from the start after going back, in diameters.
     """
 
     rung: Rung
@@ -227,6 +227,6 @@ def _motion(
     for k, rung in enumerate(rungs):
         progress("trajectories and ways back", k / len(rungs))
         if rung is not reference:
-            trajectories[rung] = typical_distance(positions(start.simulation(rung.make()), times), truth, start.gas)
+            trajectories[rung] = rms_distance(positions(start.simulation(rung.make()), times), truth, start.gas)
         ways_back[rung] = error_on_return(start, rung, min(times[-1], 1 / rate))
     return collisions, trajectories, ways_back

@@ -55,7 +55,7 @@ AVERAGES: dict[str, Measure] = {
     "Kolmogorov-Smirnov distance": _distance,
 }
 MARKERS = "osD^vP*X"
-ENTRIES = (1.0, 2.0, 4.0)  # collisions a disc at which trajectories are shown against time
+ENTRIES = (0.5, 1.0, 2.0)  # collisions a disc at which trajectories are shown against time
 
 
 def accuracy_figure(found: Accuracy) -> Figure:
@@ -121,7 +121,7 @@ def _trajectories(ax: Axes, found: Accuracy) -> None:
         )
     ax.set_yscale("log")
     ax.set_xlabel("collisions a disc (no unit)")
-    ax.set_ylabel("typical distance from the truth (diameters)")
+    ax.set_ylabel("rms distance from the truth (diameters)")
     ax.legend(frameon=False, fontsize="x-small", loc="center left", bbox_to_anchor=(1, 0.5))
 
 

@@ -70,7 +70,7 @@ def nearest(values: np.ndarray, target: float) -> int:
 
 
 def lost_after(row: Row, found: Accuracy) -> float | None:
-    """Collisions a disc after which the typical disc is LOST diameters from where it should be; None if never."""
+    """Collisions a disc after which discs are LOST diameters (rms) from where they should be; None if never."""
     if row.trajectory is None or not (gone := row.trajectory > LOST).any():
         return None
     return float(found.collisions[int(gone.argmax())])
@@ -161,15 +161,15 @@ def _of_motion(found: Accuracy) -> list[str]:
 
     def life(row: Row) -> str:
         lost = lost_after(row, found)
-        return f"{lost:.2g} collisions a disc" if lost is not None else f"more than {last:.2g} collisions a disc"
+        return f"{lost:.2g}" if lost is not None else f"more than {last:.2g}"
 
     single, double, twice = found.precisions
     return [
-        f"The typical disc is {LOST} diameters off its true path after {life(found.event_driven)} with the 16 digits "
-        f"of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} with dt = "
-        f"{finest.rung.dt:.2g}; the truth is the double-double motion, followed for {last:.2g} collisions a disc (the "
-        f"whole gas, but no longer: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times the "
-        "event-driven time).",
+        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions a disc with "
+        f"the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} with dt = "
+        f"{finest.rung.dt:.2g}. The truth is the double-double motion of the whole gas, followed for {last:.2g} "
+        f"collisions a disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times the "
+        "event-driven time.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "
         "precision by the same method, whose motion is that of the event-driven run.",
     ]

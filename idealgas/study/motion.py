@@ -106,13 +106,13 @@ def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
     return np.array(found)
 
 
-def typical_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
-    """Median over the discs, in mean diameters; last axes (N, 2)."""
-    return np.median(np.sqrt(((a - b) ** 2).sum(axis=-1)), axis=-1) / (2 * gas.radius.mean())
+def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
+    """Root mean square over the discs, in mean diameters; last axes (N, 2)."""
+    return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
 
 
 def error_on_return(start: Start, rung: Rung, duration: float) -> float:
-    """Run, reverse all velocities, run as long again: typical distance from the start, in mean diameters."""
+    """Run, reverse all velocities, run as long again: rms distance from the start, in mean diameters."""
     if rung.precision is not None:
         return _error_on_precise_return(start, rung.precision, duration)
     simulation = start.simulation(rung.make())
@@ -120,7 +120,7 @@ def error_on_return(start: Start, rung: Rung, duration: float) -> float:
     gas = simulation.gas_now()
     back = Start(replace(gas, velocity=-gas.velocity), start.effects).simulation(rung.make())
     follow(back, duration)
-    return float(typical_distance(back.gas_now().position, start.gas.position, start.gas))
+    return float(rms_distance(back.gas_now().position, start.gas.position, start.gas))
 
 
 def _error_on_precise_return(start: Start, precision: str, duration: float) -> float:
@@ -132,7 +132,7 @@ def _error_on_precise_return(start: Start, precision: str, duration: float) -> f
         columns = method.columns
         turn_back(columns, duration)
     apart = [_difference(a, b) for a, b in zip(columns[:2], origin[:2], strict=True)]
-    return float(typical_distance(np.column_stack(apart), np.zeros(2), start.gas))
+    return float(rms_distance(np.column_stack(apart), np.zeros(2), start.gas))
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:

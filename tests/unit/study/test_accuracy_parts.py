@@ -15,7 +15,7 @@ from idealgas.scene import parse_scene
 from idealgas.study.accuracy import Accuracy, Row, Timing, check, from_theory, relative
 from idealgas.study.accuracy_report import cost_of, flat_row, linear_coefficient, lost_after, sentences
 from idealgas.study.ladder import Rung, Start, follow, ladder
-from idealgas.study.motion import Missed, count_missed, error_on_return, flown_through, positions, typical_distance
+from idealgas.study.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
 
 
 def some_gas(n=100, seed=1):
@@ -122,7 +122,7 @@ def test_trajectories_in_double_precision_are_those_of_the_event_driven_run(star
         for rung in (Rung("event_driven"), Rung("brute_force", precision="float64"), ladder(start.gas, True)[-1])
     )
     assert event_driven.tolist() == double.tolist()
-    apart = typical_distance(event_driven, twice, start.gas)
+    apart = rms_distance(event_driven, twice, start.gas)
     assert 0 < apart[0] < apart[-1] < 1e-6
 
 
