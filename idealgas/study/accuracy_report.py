@@ -165,9 +165,9 @@ def _of_motion(found: Accuracy) -> list[str]:
 
     single, double, twice = found.precisions
     return [
-        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions a disc with "
-        f"the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} with dt = "
-        f"{finest.rung.dt:.2g}. The truth is the double-double motion of the whole gas, followed for {last:.2g} "
+        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions a disc "
+        f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
+        f"with dt = {finest.rung.dt:.2g}. The truth is the double-double motion of the whole gas, followed for {last:.2g} "
         f"collisions a disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times the "
         "event-driven time.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "

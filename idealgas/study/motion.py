@@ -14,8 +14,8 @@ from idealgas.events import EventBatch, Kind, empty_batch
 from idealgas.gas import Gas
 from idealgas.study.ladder import Rung, Start, follow
 
-STARTS = 24  # at most, from which collisions are compared
-ENOUGH = 10_000  # collisions compared
+STARTS = 200  # at most, from which collisions are compared
+ENOUGH = 5_000  # collisions compared
 BETWEEN = 2.0  # collisions a disc between two starts
 
 
