@@ -17,7 +17,7 @@ from idealgas.gas import Gas, make_gas
 from idealgas.scene import Scene, dump_scene, parse_scene
 
 FIRST_STEP = 0.5  # diameters that a disc of mean square speed moves in the longest step
-STEPS = 7  # each half as long as the one before
+STEPS = 8  # each half as long as the one before
 PRECISIONS = ("float32", "float64", "double-double")
 MIXING = 10.0  # collisions a disc, after which a gas is taken to have forgotten its start
 

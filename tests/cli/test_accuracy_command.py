@@ -43,7 +43,7 @@ def test_its_files_hold_all_numbers(small):
         rows = list(csv.DictReader(file))
     result = json.loads((folder / "out/accuracy.json").read_text())
     assert [row["rung"] for row in rows] == [row["rung"] for row in result["rows"]]
-    assert [row["method"] for row in rows] == ["event_driven"] + ["time_driven"] * 7
+    assert [row["method"] for row in rows] == ["event_driven"] + ["time_driven"] * 8
     assert rows[0]["rate_bias"] == ""
     coarse = rows[1]
     assert float(coarse["rate_bias"]) < -4 * float(coarse["rate_bias_error"]) < 0
