@@ -101,14 +101,14 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
     rungs = ladder(start.gas, precise=not left_out)
     timings = measure_timings(start, rungs, repeats, progress)
     averages, until = _all_averages(scene, rungs, timings, progress)
-    rate = 2 * timings[0].collisions / len(start.gas)
+    truth = averages[0]
+    assert truth is not None
+    rate = 2 * truth.rate.value / len(start.gas)
     steps = [rung for rung in rungs if rung.dt is not None]
     missed = dict(
         zip(steps, count_missed(start, steps, rate, lambda share: progress("missed collisions", share)), strict=True)
     )
     collisions, trajectories, ways_back = _motion(start, rungs, timings, rate, progress)
-    truth = averages[0]
-    assert truth is not None
     rows = [
         Row(
             rung, timing, found,
