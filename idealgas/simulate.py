@@ -28,7 +28,9 @@ from idealgas.energy import Energy, energy_of, is_conserved
 from idealgas.engine.audit import Audit
 from idealgas.engine.effects import Effects
 from idealgas.engine.monte_carlo import MonteCarlo
+from idealgas.engine.precise import PreciseBruteForce
 from idealgas.engine.simulation import LATEST, METHODS, TRAJECTORY, Method, Simulation, Stop
+from idealgas.engine.time_driven import TimeDriven
 from idealgas.events import empty_batch
 from idealgas.gas import Gas, make_gas
 from idealgas.log import Column, LogWriter
@@ -54,8 +56,8 @@ class Summary:
     completed: whether it reached its end. end_time: time. trials: of pairs, by Monte Carlo. energy_change: of the
     discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
     discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
-    starts of epochs and at the end). seconds: wall time, start-up and compilation not counted.
-    compile_seconds: to make the machine code, once for each set of effects; later runs only load it.
+    starts of epochs and at the end; in time steps the overlap is that of any collision, each of which has one).
+    seconds: wall time, start-up and compilation not counted.
     """
 
     completed: bool
@@ -101,6 +103,11 @@ def stop_of(scene: Scene, n: int) -> Stop:
 def make_method(scene: Scene, start: Gas) -> Method:
     """The method a scene calls for; start: its discs at time 0."""
     run = scene.run
+    if run.method == "time_driven":
+        assert run.dt is not None
+        return TimeDriven(run.dt)
+    if run.precision not in (None, "float64"):
+        return PreciseBruteForce(run.precision)
     if run.method != "monte_carlo":
         return METHODS[run.method]()
     v_ref = reference_speed(run, float(np.hypot(*start.velocity.T).max()))

@@ -181,6 +181,7 @@ class BruteForce:
     """The method as an object: what an epoch needs between its start and its end."""
 
     homogeneous = False
+    single_epoch = False
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""

@@ -130,6 +130,7 @@ class EventDriven:
     """The method as an object: what an epoch needs between its start and its end."""
 
     homogeneous = False
+    single_epoch = False
 
     def __init__(self, filling: float | None = None) -> None:
         """filling: discs per cell, chosen by packing fraction if not given; it changes the speed and nothing else."""

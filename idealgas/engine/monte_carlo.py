@@ -109,6 +109,7 @@ class MonteCarlo:
     """The method as an object: what an epoch needs between its start and its end."""
 
     homogeneous = True
+    single_epoch = False
 
     def __init__(self, seed: int, v_ref: float, one_sided: bool = False) -> None:
         """v_ref: relative speed at which a pair of the largest discs is accepted for certain.

@@ -1,6 +1,7 @@
 """A gas on its way through the epochs of its run."""
 
 import copy
+import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
@@ -24,10 +25,15 @@ TRAJECTORY = 1
 
 
 class Method(Protocol):
-    """What the epochs ask of a method. homogeneous: its discs have no positions; those of the gas stay as they are."""
+    """What the epochs ask of a method.
+
+    homogeneous: its discs have no positions; those of the gas stay as they are. single_epoch: it has digits that would
+    be lost between epochs.
+    """
 
     discs: Discs
     homogeneous: bool
+    single_epoch: bool
 
     def start(self, gas: Gas, effects: Effects) -> None: ...
 
@@ -83,7 +89,8 @@ class Simulation:
         begin_epoch(self.effects, self.time)
         until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
         extra_speed = speed_beyond(self.gas, self.effects)
-        self.length = min(epoch_length(self.gas, self._encounters, extra_speed), until_gate)
+        length = math.inf if self.method.single_epoch else epoch_length(self.gas, self._encounters, extra_speed)
+        self.length = min(length, until_gate)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)

@@ -1,4 +1,4 @@
-"""What only the Monte Carlo method has, and what a gas without positions cannot have."""
+"""What only one of the methods has, and what it cannot have."""
 
 from __future__ import annotations
 
@@ -13,19 +13,55 @@ from idealgas.scene.fault import Fault, Key
 if TYPE_CHECKING:
     from idealgas.scene.model import Scene
 
-MONTE_CARLO = "monte_carlo"
-KEYS = ("trials", "v_ref", "impact")
+MONTE_CARLO, TIME_DRIVEN, BRUTE_FORCE = "monte_carlo", "time_driven", "brute_force"
+OWNERS = {
+    "trials": (MONTE_CARLO, "trials"),
+    "v_ref": (MONTE_CARLO, "trials"),
+    "impact": (MONTE_CARLO, "trials"),
+    "dt": (TIME_DRIVEN, "steps"),
+    "precision": (BRUTE_FORCE, "choice of precision"),
+}
+"""The one method that each of these keys belongs to, and what the others have none of."""
+
+PLAIN = "float64"
+"""The precision that everything else has too."""
 
 
 def method_faults(scene: Scene, unsound: AbstractSet[str]) -> Iterator[Fault]:
-    """Keys of another method, effects that need positions, and gases in which no pair ever meets."""
+    """Keys of another method, what the method needs, and what it cannot have."""
     run = scene.run
-    if run.method != MONTE_CARLO:
-        for key in KEYS:
-            if (value := getattr(run, key)) is not None:
-                allowed = f'no {key}, or method = "{MONTE_CARLO}"'
-                yield Fault((("run", key), ("run", "method")), f"no trials in {run.method}", str(value), allowed)
-        return
+    for key, (owner, thing) in OWNERS.items():
+        if run.method != owner and (value := getattr(run, key)) is not None:
+            allowed = f'no {key}, or method = "{owner}"'
+            yield Fault((("run", key), ("run", "method")), f"no {thing} in {run.method}", str(value), allowed)
+    if run.method == MONTE_CARLO:
+        yield from _homogeneous_faults(scene, unsound)
+    elif run.method == TIME_DRIVEN:
+        yield from _step_faults(scene)
+    elif run.method == BRUTE_FORCE and run.precision not in (None, PLAIN):
+        yield from _precision_faults(scene, unsound)
+
+
+def _step_faults(scene: Scene) -> Iterator[Fault]:
+    got = f'method = "{TIME_DRIVEN}"'
+    if scene.run.dt is None:
+        yield Fault((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
+    places: list[Key] = [("wall", i) for i, wall in enumerate(scene.wall) if wall is not None]
+    for place in places + ([("piston",)] if scene.piston else []):
+        yield Fault((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
+
+
+def _precision_faults(scene: Scene, unsound: AbstractSet[str]) -> Iterator[Fault]:
+    got = f'precision = "{scene.run.precision}"'
+    spun = [(name,) for name in ("rotation",) if scene.rotation]
+    lossy = [("restitution",)] if scene.restitution and not scene.restitution.elastic else []
+    for place in (*_places(scene, unsound), *spun, *lossy):
+        wrong = "smooth elastic discs in a reflecting box are all there is"
+        yield Fault((place, ("run", "precision")), wrong, got, f'"{PLAIN}"')
+
+
+def _homogeneous_faults(scene: Scene, unsound: AbstractSet[str]) -> Iterator[Fault]:
+    """Effects that need positions, and gases in which no pair ever meets."""
     for place in _places(scene, unsound):
         got = f'method = "{MONTE_CARLO}"'
         yield Fault((place, ("run", "method")), "needs discs that are somewhere", got, "event_driven, brute_force")

@@ -88,7 +88,7 @@ class Disc(Table):
 class Run(Table):
     """`[run]`: the method and when to stop, whichever of the stop rules comes first; at least one is given."""
 
-    method: Literal["event_driven", "brute_force", "monte_carlo"] = Field(
+    method: Literal["event_driven", "brute_force", "time_driven", "monte_carlo"] = Field(
         default="event_driven", description="how events are found"
     )
     until: Positive | None = Field(default=None, description="time")
@@ -97,6 +97,10 @@ class Run(Table):
         default=None, description="pair collisions a disc takes part in, averaged over all discs (2 * collisions / N)"
     )
     trials: int | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
+    dt: Positive | None = Field(default=None, description="with time_driven, and required there: step, time")
+    precision: Literal["float32", "float64", "double-double"] | None = Field(
+        default=None, description="with brute_force: of its numbers, about 7, 16 (as if absent) or 32 digits"
+    )
     v_ref: Positive | None = Field(
         default=None,
         description="with monte_carlo: relative speed at which a pair of the largest discs collides for certain; "

@@ -23,7 +23,7 @@ ALLOWED = {
     "simulate": {"_jit", "scene", "gas", "effects", "resting", "energy", "columns", "engine", "log"},
     "resume": {"_jit", "scene", "effects", "energy", "columns", "engine", "log", "simulate"},
     "analysis": {"_jit", "scene", "gas", "log"},
-    "study": {"scene", "gas", "log", "simulate", "analysis"},
+    "study": {"scene", "gas", "effects", "engine", "log", "simulate", "analysis"},
     "_jit": set(),
     "errors": set(),
     "events": set(),

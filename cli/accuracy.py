@@ -1,0 +1,131 @@
+"""`idealgas accuracy`: how wrong is each way of running a scene, and what does it cost?"""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ._analysis import print_json
+from ._options import json_option, scene_argument
+
+if TYPE_CHECKING:
+    from idealgas.study.orbit import OrbitStudy
+
+
+@click.command()
+@scene_argument
+@click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and a picture (PNG).")
+@click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Timings of each rung, in turn.")
+@json_option
+def accuracy(path: str, overrides: tuple[str, ...], output: str | None, repeats: int, as_json: bool) -> None:
+    """Run a scene event-driven, by time steps and in several precisions: CPU time against errors.
+
+    Discs that stand on the unstable periodic orbit of three (configs/three-discs.toml) are followed until their
+    orbit breaks, in boxes of many sizes.
+    """
+    from idealgas.gas import make_gas
+    from idealgas.scene import load_scene
+    from idealgas.study import accuracy_figure, accuracy_report
+    from idealgas.study.accuracy import study_accuracy
+    from idealgas.study.orbit import is_on_orbit, study_orbit
+
+    scene = load_scene(path, overrides)
+    gas = make_gas(scene)
+    folder = accuracy_report.make_folder(output) if output is not None else None
+    if not scene.effects and is_on_orbit(gas):
+        with _progress_bar() as progress:
+            orbit = study_orbit(gas, seed=scene.scene.seed, progress=progress)
+        name, result = "orbit", accuracy_report.orbit_dict(orbit)
+        rows = [{key: value for key, value in row.items() if key != "times"} for row in result["survivals"]]
+        figure, show = accuracy_figure.orbit_figure(orbit), lambda: _print_orbit(orbit)
+    else:
+        with _progress_bar() as progress:
+            found = study_accuracy(scene, repeats, progress)
+        name, result = "accuracy", accuracy_report.accuracy_dict(found)
+        rows = [accuracy_report.flat_row(row, found) for row in found.rows]
+        figure, show = accuracy_figure.accuracy_figure(found), lambda: _print_rows(rows)
+    paths = accuracy_report.write_files(folder, name, result, rows, figure) if folder else []
+    if as_json:
+        print_json(result)
+        return
+    show()
+    for sentence in result["sentences"]:
+        click.echo(f"- {sentence}")
+    if paths:
+        click.echo(", ".join(map(str, paths)))
+
+
+@contextmanager
+def _progress_bar() -> Iterator[Callable[[str, float], None]]:
+    """Yield the function that shows what is being done and how far it is, on a terminal and nowhere else."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}, elapsed"), TimeElapsedColumn())
+    with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
+        task = bar.add_task("starting", total=1.0)
+        yield lambda what, share: bar.update(task, description=what, completed=min(share, 1.0))
+
+
+def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
+    from rich.console import Console
+    from rich.table import Column, Table
+
+    averages = Table(Column("", no_wrap=True), title="Time and averages", title_justify="left")
+    for head in ("ms/time", "µs/coll.", "rate bias %", "Z bias %, pairs", "Z bias %, walls", "KS (chance)"):
+        averages.add_column(head, justify="right")
+    motion = Table(Column("", no_wrap=True), title="The motion", title_justify="left")
+    for head in ("missed %", "overlap", "energy drift", "path error", "lost after", "way back"):
+        motion.add_column(head, justify="right")
+    for row in rows:
+        averages.add_row(
+            row["rung"],
+            f"{1e3 * row['cpu_s_per_time']:.3g}",
+            _number(row["cpu_s_per_collision"], "{:.3g}", 1e6),
+            *(_percent(row, name) for name in ("rate_bias", "z_pairs_bias", "z_walls_bias")),
+            _number(row["ks_distance"], "{:.3f}") + _number(row["ks_chance"], " ({:.3f})"),
+        )
+        motion.add_row(
+            row["rung"],
+            _number(row["missed_share"], "{:.3g}", 100),
+            _number(row["deepest_overlap"], "{:.1e}"),
+            _number(row["energy_drift"], "{:.1e}"),
+            _number(row["trajectory_error"], "{:.1e}"),
+            _number(row["trajectory_lost_after"], "{:.2g}"),
+            _number(row["way_back_error"], "{:.1e}"),
+        )
+    console = Console()
+    console.print(averages)
+    console.print(motion)
+    click.echo(
+        "path error: from the double-double motion after 1 collision a disc; lost: 0.1 diameters off, after these"
+    )
+    click.echo("collisions a disc; way back: after 1 collision a disc, all velocities reversed. All rms, in diameters.")
+
+
+def _number(value: float | None, form: str, factor: float = 1.0) -> str:
+    return "" if value is None else form.format(factor * value)
+
+
+def _percent(row: dict[str, Any], name: str) -> str:
+    error = row[f"{name}_error"]
+    return "" if row[name] is None or error is None else f"{100 * row[name]:+.2f} ± {100 * error:.2f}"
+
+
+def _print_orbit(orbit: "OrbitStudy") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    title = f"Unstable periodic orbit, period {orbit.period:.6g}, {orbit.placements} boxes and radii"
+    table = Table("", title=title, title_justify="left")
+    for head in ("digits", "this box", "median", "least", "most", "unbroken"):
+        table.add_column(head, justify="right")
+    for found in orbit.survivals:
+        own = "unbroken" if found.scene is None else f"{found.scene:.4g}"
+        least, most = (f"{f(found.times):.4g}" if found.times else "" for f in (min, max))
+        table.add_row(
+            found.precision, f"{found.digits:.1f}", own, f"{found.median:.4g}", least, most, f"{found.unbroken}"
+        )
+    Console().print(table)

@@ -1,0 +1,220 @@
+"""Time steps: beside the same method written plainly, in slices, over epochs; and how wrong they are, by theory."""
+
+import math
+
+import numpy as np
+import pytest
+from support import gas_of, record, same_rows
+
+from idealgas.engine.effects import Effects
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.engine.time_driven import TimeDriven
+from idealgas.events import Kind, empty_batch
+from idealgas.physics.motion import Gravity
+from idealgas.physics.periodic import Periodic
+
+BOX = (10.0, 8.0)
+
+
+def some_gas(n=60, seed=1, radius=0.25, box=BOX):
+    random = np.random.default_rng(seed)
+    columns = math.ceil(math.sqrt(n * box[0] / box[1]))
+    rows = -(-n // columns)
+    place = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)[:n]
+    position = (place + 0.5) * [box[0] / columns, box[1] / rows]
+    return gas_of(box, position, random.normal(size=(n, 2)), radius)
+
+
+def effects_of(n=60, gravity=False, periodic=(), box=BOX):
+    images = np.zeros((2, n, 2), np.int32)
+    return Effects(
+        gravity=Gravity(0.1, -0.5) if gravity else None,
+        periodic=Periodic("x" in periodic, "y" in periodic, *box, *images) if periodic else None,
+    )
+
+
+def plainly(gas, dt, steps, effects):
+    """(step, disc, partner) of all that happens: all pairs in every step, none of them twice."""
+    position, velocity = gas.position.copy(), gas.velocity.copy()
+    pull = np.array(effects.gravity or (0.0, 0.0))
+    joined = np.array(effects.periodic[:2] if effects.periodic else (False, False))
+    events = []
+    for step in range(1, steps + 1):
+        position += velocity * dt + 0.5 * pull * dt**2
+        velocity += pull * dt
+        for i in range(len(gas)):
+            for side in range(4):
+                axis, upper = divmod(side, 2)
+                gap = gas.box[axis] - position[i, axis] if upper else position[i, axis]
+                if gap < gas.radius[i] and velocity[i, axis] * (1 if upper else -1) > 0 and not joined[axis]:
+                    velocity[i, axis] *= -1
+                    events.append((step, i, -1 - side))
+        for i in range(len(gas)):
+            for j in range(i + 1, len(gas)):
+                apart = position[i] - position[j]
+                apart -= np.where(joined, gas.box * np.round(apart / gas.box), 0.0)
+                closing = (velocity[i] - velocity[j]) @ apart
+                if apart @ apart < (gas.radius[i] + gas.radius[j]) ** 2 and closing < 0:
+                    change = closing * apart / (apart @ apart)
+                    velocity[i] -= change
+                    velocity[j] += change
+                    events += [(step, i, j), (step, j, i)]
+    return sorted(events), position, velocity
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize("gravity", [False, True])
+@pytest.mark.parametrize("periodic", ["", "x", "xy"])
+def test_it_does_what_the_plain_method_does(gravity, periodic):
+    gas, dt, steps = some_gas(radius=0.2), 0.02, 120  # no three overlap: the order of collisions does not matter
+    effects = effects_of(gravity=gravity, periodic=periodic)
+    made = Simulation(gas, TimeDriven(dt), effects)
+    rows = record_with(made, Stop(time=dt * (steps + 0.5)), effects)
+    expected, position, velocity = plainly(gas, dt, steps, effects)
+    assert sorted(zip(np.rint(rows.time / dt), rows.disc, rows.partner, strict=True)) == expected
+    assert {kind.value for kind in (Kind.DISC,)} <= set(rows.kind.tolist())
+    end = made.gas_now()
+    left = dt / 2
+    position += velocity * left + 0.5 * np.array(effects.gravity or (0.0, 0.0)) * left**2
+    offset = end.position - position
+    boxes = np.round(offset / gas.box)
+    assert np.abs(offset - boxes * gas.box).max() < 1e-10
+    assert "x" in periodic or not boxes.any()
+
+
+def record_with(simulation, stop, effects, rows=65_536, events=1 << 62):
+    parts = []
+    while not simulation.finished(stop):
+        batch = empty_batch(rows, periodic=effects.periodic is not None)
+        parts.append(batch.rows(0, simulation.advance(stop, batch, events)))
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+    columns = zip(*parts, strict=True)
+    return type(parts[0])(*(None if column[0] is None else np.concatenate(column) for column in columns))
+
+
+@pytest.mark.parametrize(("rows", "events"), [(3, 1 << 62), (17, 5), (4096, 1)])
+def test_neither_batches_nor_slices_change_anything(rows, events):
+    stop = Stop(time=12.0)
+    whole = Simulation(some_gas(), TimeDriven(0.05))
+    parts = Simulation(some_gas(), TimeDriven(0.05))
+    assert same_rows(record(whole, stop), record_with(parts, stop, Effects(), rows, events))
+    assert whole.gas_now().position.tolist() == parts.gas_now().position.tolist()
+    assert whole.method.deepest_overlap() == parts.method.deepest_overlap() > 0
+
+
+def test_it_stops_in_the_middle_of_a_step():
+    made = Simulation(some_gas(), TimeDriven(0.05))
+    rows = record(made, Stop(events=101))
+    assert made.so_far.events == 101
+    assert len(rows.time) == 2 * made.so_far.disc_collisions + made.so_far.wall_hits
+    whole = record(Simulation(some_gas(), TimeDriven(0.05)), Stop(events=400))
+    assert np.array_equal(whole.velocity[: len(rows.time)], rows.velocity)
+
+
+def test_it_goes_on_from_the_start_of_any_epoch():
+    stop = Stop(time=150.0)
+    gas, dt = some_gas(), 0.03
+    whole = record(Simulation(gas, TimeDriven(dt)), stop)
+    made = Simulation(gas, TimeDriven(dt))
+    while made.epoch < 2:
+        made.advance(Stop(), None)
+        made.next_epoch()
+    again = Simulation(made.gas, TimeDriven(dt), time=made.time, epoch=made.epoch, totals=made.totals)
+    rest = record(again, stop)
+    assert same_rows(whole.rows(len(whole.time) - len(rest.time), len(whole.time)), rest)
+    assert len(rest.time) > 100
+
+
+def test_steps_end_at_multiples_of_dt_whatever_the_epochs():
+    dt = 0.03
+    rows = record(Simulation(some_gas(), TimeDriven(dt)), Stop(time=150.0))
+    assert np.abs(rows.time / dt - np.rint(rows.time / dt)).max() < 1e-10
+
+
+def test_it_neither_makes_nor_loses_energy():
+    made = Simulation(some_gas(seed=4), TimeDriven(0.1))
+    record(made, Stop(time=200.0))
+    assert made.gas_now().kinetic_energy == pytest.approx(some_gas(seed=4).kinetic_energy, rel=1e-12)
+
+
+def test_a_longer_list_is_made_where_the_first_is_too_short():
+    gas = some_gas(200, radius=0.3)
+    made = Simulation(gas, TimeDriven(0.02))
+    made.method._near = made.method._near._replace(pairs=np.empty((5, 2), np.int32))
+    assert same_rows(record(made, Stop(time=5.0)), record(Simulation(gas, TimeDriven(0.02)), Stop(time=5.0)))
+
+
+# how wrong it is
+
+
+def lanes(n, seed=2):
+    """Discs that fly to and fro between left and right, each in a lane of its own, with speeds from 1 to 2."""
+    random = np.random.default_rng(seed)
+    position = np.column_stack((random.uniform(0.2, 9.8, n), np.arange(n) + 0.5))
+    velocity = np.column_stack((random.uniform(1, 2, n), np.zeros(n)))
+    return gas_of((10.0, float(n)), position, velocity, 0.2)
+
+
+@pytest.mark.parametrize("dt", [0.8, 0.2, 0.05])
+def test_a_flight_from_wall_to_wall_takes_a_step_too_long(dt):
+    """A wall is met half a step late on the average, and takes as long to leave: the flight of ℓ/v lasts ℓ/v + dt.
+
+    So the rate of wall hits is too low by v dt/ℓ, to first order. Phases are uniform: k = 4 standard errors.
+    """
+    gas = lanes(4000)
+    rows = record(Simulation(gas, TimeDriven(dt)), Stop(time=60.0))
+    order = np.lexsort((rows.time, rows.disc))
+    same = np.diff(rows.disc[order].astype(int)) == 0
+    flight = np.diff(rows.time[order])[same]
+    disc = rows.disc[order][1:][same]
+    extra = flight - 9.6 / gas.velocity[disc, 0]
+    mean = np.bincount(disc, extra) / np.bincount(disc)
+    assert abs(mean.mean() - dt) < 4 * mean.std() / math.sqrt(len(gas))
+    assert mean.std() > 0
+
+
+def passing_pairs(n, speed, seed=3):
+    """Pairs that meet with uniform impact parameters, at uniform phases of a step of any length below 1."""
+    random = np.random.default_rng(seed)
+    height = 12.0 * np.arange(n) + 6.0  # too far apart for those that are turned aside to meet
+    gap = 1.0 + speed * random.uniform(1, 2, n)
+    offset = random.uniform(-1, 1, n)
+    left = np.column_stack((np.full(n, 10.0), height))
+    right = np.column_stack((10.0 + gap, height + offset))
+    velocity = np.concatenate((np.tile([speed, 0.0], (n, 1)), np.zeros((n, 2))))
+    return gas_of((40.0, 12.0 * n), np.concatenate((left, right)), velocity, 0.5), offset
+
+
+@pytest.mark.parametrize("dt", [1.0, 0.5, 0.25])
+def test_pairs_are_missed_as_often_as_geometry_says(dt):
+    """Approaching overlap lasts √(S² - b²)/w; with a uniform phase, a share 1 - √(S² - b²)/(w dt) falls between steps.
+
+    Averaged over b, with S = 1 and for h = w dt <= S: h²/6 + O(h⁴). Binomial, k = 4 standard errors.
+    """
+    n, speed = 20_000, 1.0
+    gas, offset = passing_pairs(n, speed)
+    rows = record(Simulation(gas, TimeDriven(dt)), Stop(time=6.0))
+    met = np.zeros(n, bool)
+    met[rows.disc[rows.kind == Kind.DISC] % n] = True
+    h = speed * dt
+    safe = math.sqrt(1 - h**2)
+    expected = (1 - safe) - (math.acos(safe) - safe * h) / (2 * h)
+    assert expected == pytest.approx(h**2 / 6, rel=0.3 * h**2)
+    assert abs(1 - met.mean() - expected) < 4 * math.sqrt(expected * (1 - expected) / n)
+    assert met[np.sqrt(1 - offset**2) > speed * dt].all()
+
+
+def test_contacts_are_found_half_a_step_late():
+    """The delay of those that cannot be missed is uniform from 0 to dt: k = 4 standard errors of its mean."""
+    n, speed, dt = 20_000, 1.0, 0.25
+    gas, offset = passing_pairs(n, speed)
+    rows = record(Simulation(gas, TimeDriven(dt)), Stop(time=6.0))
+    first = (rows.kind == Kind.DISC) & (rows.disc < n)
+    pair = rows.disc[first]
+    contact = (gas.position[n + pair, 0] - 10.0 - np.sqrt(1 - offset[pair] ** 2)) / speed
+    safe = np.sqrt(1 - offset[pair] ** 2) > speed * dt
+    delay = (rows.time[first] - contact)[safe]
+    assert delay.min() > -1e-12
+    assert delay.max() < dt * (1 + 1e-12)
+    assert abs(delay.mean() - dt / 2) < 4 * dt / math.sqrt(12 * len(delay))
