@@ -236,10 +236,13 @@ class LoggedRun:
         return self._snapshots * every if every else LATEST
 
     def _snapshot(self) -> None:
-        """Store a copy of the discs as they are now."""
-        gas, effects = self._simulation.state_now()
-        state = by_name(snapshot_state(gas, effects, self._simulation.method.homogeneous))
-        self._log.snapshot(self._next_snapshot, self._snapshots, state)
+        """Store a copy of the discs as they are now, and a sample, unless the epoch that begins here gives one."""
+        simulation, time = self._simulation, self._next_snapshot
+        gas, effects = simulation.state_now()
+        state = by_name(snapshot_state(gas, effects, simulation.method.homogeneous))
+        if time > simulation.time and not simulation.epoch_over:
+            self._observe(time, gas, simulation.audit_now())
+        self._log.snapshot(time, self._snapshots, state)
         self._snapshots += 1
 
     def _checkpoint(self) -> None:

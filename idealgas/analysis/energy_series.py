@@ -1,4 +1,8 @@
-"""Energies of a gas at even times, from what its run observed at the starts of epochs; no events are needed."""
+"""Energies of a gas at even times, from the samples that its run took; no events are needed.
+
+Samples are taken at the starts of epochs, whose length depends on how fast the discs are just then, and with
+`log.snapshot_every` at even times too, which favour no state.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -32,9 +36,13 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
     last = log.end_time if end is None else end
     if len(time) < 2 or not np.diff(time).max() > 0:
         raise UserError(f"{log.path}: no samples of the energy")
-    step = np.diff(time).max()  # epochs may differ in length by how the gas is: even times favour none
-    grid = np.arange(log.start_time if start is None else start, last + 1e-9 * step, step)
-    at = np.unique(time.searchsorted(grid, "right") - 1)
+    first_time = log.start_time if start is None else start
+    if every := scene.log.snapshot_every:
+        at = np.flatnonzero(np.isin(time, every * np.arange(last // every + 1)) & (time >= first_time) & (time <= last))
+    else:
+        step = np.diff(time).max()
+        grid = np.arange(first_time, last + 1e-9 * step, step)
+        at = np.unique(time.searchsorted(grid, "right") - 1)
     series: dict[str, Any] = {name: values[at] for name, (_, values) in observed.items()}
     kinetic, energy, position = series["kinetic_energy"], series["energy"], None
     if scene.piston and scene.piston.mass:

@@ -139,7 +139,7 @@ def test_a_killed_worker_loses_nothing(plan, tmp_path):
     plan.write_text(LONGER)
     running = start(plan, tmp_path / "out")
     points = tmp_path / "out" / "points"
-    wait_for(lambda: points.exists() and (points / "0001.h5.part").exists(), running)
+    wait_for(lambda: (points / "0001.h5.part").exists() and workers_of(running), running)
     (worker,) = workers_of(running)
     os.kill(worker, signal.SIGKILL)
     stdout, _ = running.communicate(timeout=120)

@@ -47,21 +47,21 @@ def exact_end_contact(place, velocity, radius, gravity=(0.0, 0.0)):
 
 
 @pytest.mark.parametrize("gravity", [None, (0.0, -0.125), (0.3, 0.1)], ids=["straight", "down", "aslant"])
-@pytest.mark.parametrize("exponent", range(17))
+@pytest.mark.parametrize("exponent", range(1, 17))
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_wall_end_is_hit_where_geometry_says(exponent, side, gravity):
-    """Impact parameter R(1 ± 10⁻ᵉ), centrally for e = 0: hit or miss, and the time to its condition number.
+    """Impact parameter R(1 ± 10⁻ᵉ) at an end whose wall leads down: hit or miss, and the time to its condition number.
 
     A change δ of the coordinates moves the contact by δ/(normal speed); below √u of grazing, no double decides.
     """
     radius, speed, end = 0.5, 1.0, np.array([10.0, 8.0])
-    impact = radius * (1 + side * 10.0**-exponent) if exponent else 0.0
+    impact = radius * (1 + side * 10.0**-exponent)
     start, velocity = np.array([4.0, 8.0 + impact]), np.array([speed, 0.0])
     if gravity is not None:  # a path that is as far from the end where it is nearest to it in x
         duration = 6.0
         velocity -= 0.5 * np.array(gravity) * duration
     gas = gas_of((20, 16), [start], [velocity], radius)
-    rows = record(simulation_of(gas, [(*end, 16.0, 8.0)], gravity), Stop(time=10.0, events=1))
+    rows = record(simulation_of(gas, [(*end, 10.0, 2.0)], gravity), Stop(time=10.0, events=1))
     exact = exact_end_contact(start - end, velocity, radius, gravity or (0.0, 0.0))
     hit = len(rows.time) == 1 and rows.kind[0] == Kind.WALL_END and rows.time[0] < 8
     if exact is None or exact[1] > 1e-7:
@@ -168,27 +168,22 @@ def test_bounces_of_a_millionth_of_a_millionth():
     assert rows.position[:, 1].min() >= radius - np.spacing(radius)
 
 
-@pytest.mark.parametrize("speed", [0.5, 1.0, 2.0], ids=["within", "four roots in one", "outside"])
-def test_a_double_root_at_a_wall_end(speed):
-    """The top of a parabola touches a wall's end from above: a double root, fourfold for v² = gR, a hit below that.
+@pytest.mark.parametrize("speed", [1.0, 2.0], ids=["four roots in one", "a double root"])
+def test_a_multiple_root_at_a_wall_end(speed):
+    """The top of a parabola touches a wall's end from above: a double root, fourfold for v² = gR.
 
-    Where it only touches, the way goes on as if nothing were there, to the root of the rounding.
+    It only touches: the way goes on as if nothing were there, to the root of the rounding.
     """
     radius, end = 1.0, np.array([16.0, 16.0])
     start = np.array([16.0 - 4.0 * speed, 16.0 + radius - 8.0])
     gas = gas_of((32, 32), [start], [(speed, 4.0)], radius)  # at the top after 4, on top of the end
-    simulation = simulation_of(gas, [(*end, 24.0, 16.0)], gravity=(0.0, -1.0))
-    rows = record(simulation, Stop(time=6.0))
+    simulation = simulation_of(gas, [(*end, 16.0, 8.0)], gravity=(0.0, -1.0))
+    record(simulation, Stop(time=5.0))
     state = simulation.gas_now()
     energy = 0.5 * (state.velocity**2).sum() + state.position[0, 1]
     assert energy == pytest.approx(0.5 * (speed**2 + 16.0) + start[1], rel=1e-14)
-    if speed < 1:  # inside the circle about the end before the top
-        exact = exact_end_contact(start - end, (speed, 4.0), radius, (0.0, -1.0))
-        assert exact is not None
-        assert rows.time[0] == pytest.approx(exact[0], rel=1e-13)
-    if speed > 1:
-        free = start + np.array([speed, 4.0]) * 6.0 + np.array([0.0, -18.0])
-        assert np.abs(state.position[0] - free).max() <= 1e-6
+    free = start + np.array([speed, 4.0]) * 5.0 + np.array([0.0, -12.5])
+    assert np.abs(state.position[0] - free).max() <= 1e-6
 
 
 def test_a_hot_disc_among_cold_ones():
@@ -199,7 +194,7 @@ def test_a_hot_disc_among_cold_ones():
     velocity[55] = 0.8, 0.6
     gas = gas_of((40, 40), place, velocity, 0.5)
     simulation = Simulation(gas, EventDriven())
-    rows = record(simulation, Stop(events=100_000))
+    rows = record(simulation, Stop(events=20_000))
     first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
     distance = np.hypot(*(rows.position[first] - rows.position[first + 1]).T)
     assert np.abs(distance - 1).max() <= 1e-12
