@@ -31,6 +31,7 @@ from collections import namedtuple
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, partial
 from pathlib import Path
+from time import sleep
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -46,9 +47,19 @@ from idealgas.log.superblock import is_locked
 if TYPE_CHECKING:
     from idealgas.scene import Scene
 
+_ATTEMPTS = 5
+_PAUSE = 0.02  # seconds
+
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
     """Open a log for reading. Raises LogError if it is not one or is damaged, and so do all of its methods."""
+    for _ in range(_ATTEMPTS):
+        try:
+            return Log(Source(Path(path)))
+        except LogError:
+            if not os.path.exists(path) or not is_locked(Path(path)):
+                raise
+            sleep(_PAUSE)  # a run that goes on with the log may have cut off what its record named just before
     return Log(Source(Path(path)))
 
 

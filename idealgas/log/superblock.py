@@ -9,11 +9,15 @@ import fcntl
 import io
 import os
 import struct
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
 import h5py
+
+PATIENCE = 0.5
+"""Seconds for which a reader that asks may be in a writer's way."""
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SIZE = 48
@@ -106,9 +110,16 @@ def abandon(file: h5py.File) -> None:
 def lock(file: int | IO) -> None:
     """Hold a file open for writing as its only writer, as long as the process lives. Raises OSError if another does.
 
-    HDF5 gives up its own lock in SWMR mode. This one is advisory, and readers do not look at it.
+    HDF5 gives up its own lock in SWMR mode. This one is advisory; readers only ask for a moment whether it is held.
     """
-    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        try:
+            return fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.001)
 
 
 def is_locked(path: Path) -> bool:
