@@ -9,7 +9,7 @@ from idealgas.engine.cells import Cells
 from idealgas.engine.effects import Effects
 from idealgas.engine.records import aligned
 from idealgas.engine.schedule import PREDICTION, Tree, make_tree
-from idealgas.engine.wall_cells import WallCells, make_wall_cells
+from idealgas.engine.wall_cells import WallCells
 from idealgas.physics.periodic import NO_IMAGES
 
 
@@ -28,7 +28,7 @@ class Agenda(NamedTuple):
     walls: WallCells | None
 
 
-def make_agenda(n: int, cells: Cells, effects: Effects, largest_radius: float) -> Agenda:
+def make_agenda(n: int, cells: Cells, effects: Effects, walls: WallCells | None) -> Agenda:
     """An agenda with nothing predicted."""
     leaves = n if effects.piston is None else n + 1
     room = 9 * n + 16  # in a box of one cell each disc is a candidate in nine images
@@ -38,7 +38,7 @@ def make_agenda(n: int, cells: Cells, effects: Effects, largest_radius: float) -
         aligned(leaves, PREDICTION),
         np.empty(room if effects.periodic else n + 16, np.int32),
         np.empty((room, 2), np.int32) if effects.periodic else None,
-        make_wall_cells(effects.segments, cells, largest_radius) if effects.segments else None,
+        walls,
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from idealgas._jit import borrowed, inline, njit
 from idealgas.engine.agenda import make_agenda
 from idealgas.engine.audit import deepest_overlap
-from idealgas.engine.cells import cell_index, cell_of, discs_per_cell, enter, make_cells
+from idealgas.engine.cells import Cells, cell_index, cell_of, discs_per_cell, enter, make_cells
 from idealgas.engine.effects import Effects
 from idealgas.engine.exits import change_cell, predict_exit
 from idealgas.engine.neighbours import extend_contact, predict_contact
@@ -18,8 +18,10 @@ from idealgas.engine.records import Limits, add_to_counters, check_clock, make_d
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
 from idealgas.engine.schedule import SIDE_OF_BOX, clear, contact_is_next, next_disc, schedule, segment_of
+from idealgas.engine.wall_cells import WallCells, make_wall_cells
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
+from idealgas.physics.segment import Segments
 
 U = np.uintp
 
@@ -135,6 +137,7 @@ class EventDriven:
     def __init__(self, filling: float | None = None) -> None:
         """filling: discs per cell, chosen by packing fraction if not given; it changes the speed and nothing else."""
         self._filling = filling
+        self._walls: tuple[bytes, WallCells] | None = None
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch: put the discs in memory in the order of their cells and predict everything."""
@@ -146,8 +149,17 @@ class EventDriven:
         self.discs = make_discs(gas, order)
         self.discs.record.column, self.discs.record.row = column[order], row[order]
         self._effects = effects
-        self._agenda = make_agenda(len(gas), cells, effects, largest_radius)
+        self._agenda = make_agenda(len(gas), cells, effects, self._wall_cells(effects.segments, cells, largest_radius))
         rebuild(self.discs.record, self.discs.id, self._agenda, effects)
+
+    def _wall_cells(self, segments: Segments | None, cells: Cells, largest_radius: float) -> WallCells | None:
+        """Those of the epoch before, unless a gate has opened or closed since: the cells stay as they are."""
+        if segments is None:
+            return None
+        active = segments.active.tobytes()
+        if self._walls is None or self._walls[0] != active:
+            self._walls = active, make_wall_cells(segments, cells, largest_radius)
+        return self._walls[1]
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
