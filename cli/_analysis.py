@@ -8,6 +8,8 @@ import click
 
 from idealgas.errors import UserError
 
+from ._options import json_option
+
 if TYPE_CHECKING:
     from idealgas.analysis.statistics import Estimate
     from idealgas.analysis.window import Window
@@ -32,17 +34,6 @@ def open_log(path: str) -> "Log":
     return opened
 
 
-def window_options(command: Callable) -> Callable:
-    """`--from T --to T` as `start` and `end`."""
-    end = click.option(
-        "--to", "end", type=float, metavar="T", help="End of the window, time.  [default: the log's end]"
-    )
-    start = click.option(
-        "--from", "start", type=float, metavar="T", help="Start of the window, time.  [default: detected equilibrium]"
-    )
-    return start(end(command))
-
-
 def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
     if value is not None and not value.lower().endswith(PICTURES):
         raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
@@ -52,6 +43,17 @@ def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> s
 plot_option = click.option(
     "--plot", metavar="FILE.png", callback=_check_ending, help="Draw a picture (.png, .pdf or .svg)."
 )
+
+
+def analysis_options(command: Callable) -> Callable:
+    """`--from T --to T --plot FILE.png --json` as `start`, `end`, `plot` and `as_json`."""
+    end = click.option(
+        "--to", "end", type=float, metavar="T", help="End of the window, time.  [default: the log's end]"
+    )
+    start = click.option(
+        "--from", "start", type=float, metavar="T", help="Start of the window, time.  [default: detected equilibrium]"
+    )
+    return start(end(plot_option(json_option(command))))
 
 
 @contextmanager

@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ._analysis import open_log, plot_option, print_estimates, print_json, window_options
-from ._options import json_option
+from ._analysis import analysis_options, open_log, print_estimates, print_json
 
 if TYPE_CHECKING:
     from idealgas.analysis.effusion import Effusion
@@ -13,9 +12,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("paths", metavar="RUN.h5|DIR...", nargs=-1, required=True)
-@window_options
-@plot_option
-@json_option
+@analysis_options
 def effusion(paths: tuple[str, ...], start: float | None, end: float | None, plot: str | None, as_json: bool) -> None:
     """Measure the flow through a gate that opens, and compare it with n⟨v⟩/π.
 

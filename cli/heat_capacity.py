@@ -2,15 +2,12 @@
 
 import click
 
-from ._analysis import open_log, plot_option, print_estimates, print_json, reading, window_options
-from ._options import json_option
+from ._analysis import analysis_options, open_log, print_estimates, print_json, reading
 
 
 @click.command()
 @click.argument("paths", metavar="RUN.h5|DIR...", nargs=-1, required=True)
-@window_options
-@plot_option
-@json_option
+@analysis_options
 def heat_capacity(
     paths: tuple[str, ...], start: float | None, end: float | None, plot: str | None, as_json: bool
 ) -> None:

@@ -2,17 +2,7 @@
 
 import click
 
-from ._analysis import (
-    describe,
-    log_argument,
-    open_log,
-    plot_option,
-    print_estimates,
-    print_json,
-    reading,
-    window_options,
-)
-from ._options import json_option
+from ._analysis import analysis_options, describe, log_argument, open_log, print_estimates, print_json, reading
 
 QUANTITIES = ("speed", "vx", "vy", "energy", "free-path", "free-time", "wait")
 
@@ -20,9 +10,7 @@ QUANTITIES = ("speed", "vx", "vy", "energy", "free-path", "free-time", "wait")
 @click.command()
 @log_argument
 @click.option("--quantity", type=click.Choice(QUANTITIES), default="speed", show_default=True, help="What of.")
-@window_options
-@plot_option
-@json_option
+@analysis_options
 def histogram(
     path: str, quantity: str, start: float | None, end: float | None, plot: str | None, as_json: bool
 ) -> None:

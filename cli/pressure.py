@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ._analysis import describe, open_log, plot_option, print_estimates, print_json, reading, window_options
-from ._options import json_option
+from ._analysis import analysis_options, describe, open_log, print_estimates, print_json, reading
 
 if TYPE_CHECKING:
     from idealgas.analysis.equation_of_state import EquationOfState
@@ -14,9 +13,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("paths", metavar="RUN.h5|DIR...", nargs=-1, required=True)
-@window_options
-@plot_option
-@json_option
+@analysis_options
 @click.option("--check", is_flag=True, help="Exit with 1 unless measurement and theory agree within 4 s.e.")
 def pressure(
     paths: tuple[str, ...], start: float | None, end: float | None, plot: str | None, as_json: bool, check: bool

@@ -2,17 +2,7 @@
 
 import click
 
-from ._analysis import (
-    describe,
-    log_argument,
-    open_log,
-    plot_option,
-    print_estimates,
-    print_json,
-    reading,
-    window_options,
-)
-from ._options import json_option
+from ._analysis import analysis_options, describe, log_argument, open_log, print_estimates, print_json, reading
 
 
 @click.command()
@@ -23,9 +13,7 @@ from ._options import json_option
     help="The axis.  [default: that of gravity, or of two thermal sides; else x]",
 )
 @click.option("--bins", type=click.IntRange(1, 1000), default=20, show_default=True, help="Number of strips.")
-@window_options
-@plot_option
-@json_option
+@analysis_options
 def profile(
     path: str, along: str | None, bins: int, start: float | None, end: float | None, plot: str | None, as_json: bool
 ) -> None:

@@ -2,24 +2,12 @@
 
 import click
 
-from ._analysis import (
-    describe,
-    log_argument,
-    open_log,
-    plot_option,
-    print_estimates,
-    print_json,
-    reading,
-    window_options,
-)
-from ._options import json_option
+from ._analysis import analysis_options, describe, log_argument, open_log, print_estimates, print_json, reading
 
 
 @click.command()
 @log_argument
-@window_options
-@plot_option
-@json_option
+@analysis_options
 def temperature(path: str, start: float | None, end: float | None, plot: str | None, as_json: bool) -> None:
     """Measure the temperature of every degree of freedom and species; by equipartition all are E/N."""
     from idealgas.analysis.temperature import temperature as measure

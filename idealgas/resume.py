@@ -36,7 +36,7 @@ def resume(
     with compile_timer() as compilation:
         with open_log(path) as log:
             if log.live:
-                raise LogError(f"{log.path}: another process writes this file")
+                raise LogError(f"{log.path}: another process has this file open")
             scene = _scene_to_go_on_with(log, overrides)
             if log.complete and scene == log.scene:
                 return Summary(**log.summary)

@@ -241,7 +241,7 @@ class LoggedRun:
         gas, effects = simulation.state_now()
         state = by_name(snapshot_state(gas, effects, simulation.method.homogeneous))
         if time > simulation.time and not simulation.epoch_over:
-            self._observe(time, gas, simulation.audit_now())
+            self._observe(time, gas, simulation.audit_of(gas))
         self._log.snapshot(time, self._snapshots, state)
         self._snapshots += 1
 
@@ -267,7 +267,7 @@ class LoggedRun:
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.last_event_time
         gas = simulation.gas_now()
-        self._observe(end_time, gas, simulation.audit_now())
+        self._observe(end_time, gas, simulation.audit_of(gas))
         start, end = self._start_energy, energy_of(gas, simulation.effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
         totals = simulation.so_far

@@ -6,6 +6,7 @@ energy over its largest possible value TD/2 follows Beta(1, D/2 - 1): the unifor
 """
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -112,7 +113,7 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
 
 
 @dataclass(frozen=True)
-class _FlightLaw:
+class _FlightLaw(ABC):
     """Free flight of a disc of `mass` that meets species j (`masses`) at the mean rate `rates[j]`.
 
     A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩, w thermal, and leaves a collision
@@ -139,8 +140,9 @@ class _FlightLaw:
             rate += mean_rate * mean_relative_speed_at(speed, self.temperature, other) / mean
         return speed, weight * 2 * y * np.exp(-(y**2)) * rate / sum(self.rates), rate
 
+    @abstractmethod
     def _decay(self) -> np.ndarray:
-        raise NotImplementedError
+        """Decay rate of the survival of a flight at each node: per time or per length."""
 
     @property
     def mean(self) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from idealgas._jit import borrowed, inline, njit
 from idealgas.engine.neighbours import gather_block
 from idealgas.gas import Gas
+from idealgas.physics.periodic import separation
 
 U = np.uintp
 
@@ -26,19 +27,9 @@ class Audit(NamedTuple):
 
 
 @inline
-def nearest_image(distance, length, joined):
-    """A coordinate difference, through joined sides if that is shorter."""
-    return distance - length * round(distance / length) if joined else distance
-
-
-@inline
 def overlap_of(a, b, periodic):
     """Depth to which two discs overlap, as a share of the sum of their radii; negative if they do not."""
-    x = a.x - b.x
-    y = a.y - b.y
-    if periodic is not None:
-        x = nearest_image(x, periodic.Lx, periodic.x)
-        y = nearest_image(y, periodic.Ly, periodic.y)
+    x, y = separation(a, b, periodic)
     return 1.0 - math.hypot(x, y) / (a.r + b.r)
 
 

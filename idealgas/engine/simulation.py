@@ -174,9 +174,8 @@ class Simulation:
         """What must hold, at the start of the epoch."""
         return audit(self.gas, self.overlap)
 
-    def audit_now(self) -> Audit:
-        """What must hold, where the last call of `advance` left the gas."""
-        gas = self.gas_now()
+    def audit_of(self, gas: Gas) -> Audit:
+        """What must hold, of a gas that `gas_now` or `state_now` gave."""
         method = copy.copy(self.method)
         method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
         return audit(gas, method.deepest_overlap())

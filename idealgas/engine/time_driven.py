@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import borrowed, inline, njit
-from idealgas.engine.audit import nearest_image
 from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
@@ -20,7 +19,7 @@ from idealgas.engine.rows import batch_capacity, write_pair, write_side_hit
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
 from idealgas.physics.motion import advance
-from idealgas.physics.periodic import NO_IMAGES, wrap
+from idealgas.physics.periodic import NO_IMAGES, separation, wrap
 
 U = np.uintp
 NEAR = 3.0  # mean number of discs within reach: that was fastest
@@ -76,17 +75,6 @@ def nearest(x, y, periodic):
         images_y = np.int64(round(y / periodic.Ly)) if periodic.y else 0
         return images_x, images_y
     return NO_IMAGES
-
-
-@inline
-def separation(a, b, periodic):
-    """Position of a relative to b's nearest image."""
-    x = a.x - b.x
-    y = a.y - b.y
-    if periodic is not None:
-        x = nearest_image(x, periodic.Lx, periodic.x)
-        y = nearest_image(y, periodic.Ly, periodic.y)
-    return x, y
 
 
 @inline

@@ -25,7 +25,7 @@ def storage_error(path: Path, error: Exception) -> LogError:
     if number == errno.EEXIST:
         return LogError(f"{path}: exists already (--force replaces it)")
     if number in (errno.EAGAIN, errno.EWOULDBLOCK):
-        return LogError(f"{path}: another process writes this file")
+        return LogError(f"{path}: another process has this file open")
     reason = os.strerror(number) if number else str(error).splitlines()[0]
     return LogError(f"{path}: cannot be written: {reason}", exit_code=1)
 
@@ -62,4 +62,4 @@ def check_output(path: str | os.PathLike[str], force: bool = False) -> None:
     if not os.access(path if path.exists() else path.parent, os.R_OK | os.W_OK):
         raise LogError(f"{path}: cannot be written: {os.strerror(errno.EACCES)}", exit_code=1)
     if path.exists() and is_locked(path):
-        raise LogError(f"{path}: another process writes this file")
+        raise LogError(f"{path}: another process has this file open")

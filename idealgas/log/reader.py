@@ -41,25 +41,22 @@ from idealgas.gas import Gas
 from idealgas.log.errors import LogError
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.schema import DISC_COLUMNS, Wall
-from idealgas.log.source import Source
+from idealgas.log.source import ATTEMPTS, PAUSE, Source
 from idealgas.log.superblock import is_locked
 
 if TYPE_CHECKING:
     from idealgas.scene import Scene
 
-_ATTEMPTS = 5
-_PAUSE = 0.02  # seconds
-
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
     """Open a log for reading. Raises LogError if it is not one or is damaged, and so do all of its methods."""
-    for _ in range(_ATTEMPTS):
+    for _ in range(ATTEMPTS):
         try:
             return Log(Source(Path(path)))
         except LogError:
             if not os.path.exists(path) or not is_locked(Path(path)):
                 raise
-            sleep(_PAUSE)  # a run that goes on with the log may have cut off what its record named just before
+            sleep(PAUSE)  # a run that goes on with the log may have cut off what its record named just before
     return Log(Source(Path(path)))
 
 

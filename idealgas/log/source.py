@@ -17,8 +17,8 @@ from idealgas.log.superblock import Unmarked, is_locked, is_marked
 from idealgas.log.table import StoredColumn
 
 _CACHED_CHUNKS = 8
-_ATTEMPTS = 10
-_PAUSE = 0.02
+ATTEMPTS = 10
+PAUSE = 0.02  # seconds
 
 Result = TypeVar("Result")
 
@@ -120,10 +120,10 @@ class Source:
             try:
                 return action()
             except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:
-                if attempt == _ATTEMPTS or not is_locked(self.path):
+                if attempt == ATTEMPTS or not is_locked(self.path):
                     raise LogError(f"{self.path}: damaged: {what}{_reason(error)}") from error
             attempt += 1
-            time.sleep(_PAUSE)
+            time.sleep(PAUSE)
 
 
 def _reason(error: Exception) -> str:

@@ -46,6 +46,23 @@ def through_sides(x, y, periodic, images):
 
 
 @inline
+def nearest_image(distance, length, joined):
+    """A coordinate difference, through joined sides if that is shorter."""
+    return distance - length * round(distance / length) if joined else distance
+
+
+@inline
+def separation(a, b, periodic):
+    """Position of a relative to b's nearest image."""
+    x = a.x - b.x
+    y = a.y - b.y
+    if periodic is not None:
+        x = nearest_image(x, periodic.Lx, periodic.x)
+        y = nearest_image(y, periodic.Ly, periodic.y)
+    return x, y
+
+
+@inline
 def wrap(disc, own, periodic):
     """Put a record's position back into the box and keep count."""
     if periodic is not None:

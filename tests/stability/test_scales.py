@@ -156,6 +156,6 @@ def test_a_crystal(collisions):
         first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
         distance = np.hypot(*(rows.position[first] - rows.position[first + 1]).T)
         assert np.abs(distance / (2 * gas.radius[0]) - 1).max() <= 1e-12
-        deepest = max(deepest, simulation.audit_now().overlap)
+        deepest = max(deepest, simulation.audit_of(simulation.gas_now()).overlap)
     assert deepest <= 1e-12
     assert simulation.gas_now().kinetic_energy == pytest.approx(gas.kinetic_energy, rel=1e-12)

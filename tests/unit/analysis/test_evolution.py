@@ -8,9 +8,6 @@ import pytest
 
 from idealgas.analysis.evolution import evolution
 from idealgas.errors import UserError
-from idealgas.log import open_log
-from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 GAS = """
 scene.seed = 3
@@ -20,21 +17,6 @@ species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
 """
 
 PERIODIC = [f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top")]
-
-
-@pytest.fixture
-def make(tmp_path):
-    """The log of GAS with overrides."""
-    logs = []
-
-    def run(*overrides):
-        simulate(parse_scene(GAS, overrides=overrides), tmp_path / "run.h5", force=True)
-        logs.append(open_log(tmp_path / "run.h5"))
-        return logs[-1]
-
-    yield run
-    for log in logs:
-        log.close()
 
 
 def test_temperatures_are_those_of_the_states(make):

@@ -9,9 +9,6 @@ from idealgas.analysis.composition import composition
 from idealgas.analysis.profile import profile
 from idealgas.analysis.profile_theory import column_temperature, expected_profile, natural_axis
 from idealgas.errors import UserError
-from idealgas.log import open_log
-from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 GAS = """
 scene.seed = 3
@@ -29,21 +26,6 @@ radius = 0.2
 mass = 3
 temperature = 1
 """
-
-
-@pytest.fixture
-def make(tmp_path):
-    """The log of GAS with overrides."""
-    logs = []
-
-    def run(*overrides):
-        simulate(parse_scene(GAS, overrides=overrides), tmp_path / "run.h5", force=True)
-        logs.append(open_log(tmp_path / "run.h5"))
-        return logs[-1]
-
-    yield run
-    for log in logs:
-        log.close()
 
 
 def test_strips_are_counted_by_hand(make):

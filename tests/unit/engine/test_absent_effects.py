@@ -12,7 +12,7 @@ from idealgas.scene import EFFECTS
 
 MARKERS = {
     "gravity": {"exits.accelerated_exit", "fall.landing_delay", "segment.accelerated_body_delay"},
-    "periodic sides": {"periodic.images_between", "agenda.image_of", "audit.nearest_image"},
+    "periodic sides": {"periodic.images_between", "agenda.image_of", "periodic.nearest_image"},
     "wall segments": {"segment.segment_contact", "segment.segment_normal"},
     "rotation": {"rotation.roll_off", "rotation.roll_off_wall"},
     "thermal walls": {"thermal.uniform"},

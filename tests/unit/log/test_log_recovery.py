@@ -68,7 +68,7 @@ def test_a_living_writer_is_left_alone(tmp_path):
             log.refresh()
             assert check(log) >= before
         for refused in (recover, LogWriter.resume):
-            with pytest.raises(LogError, match="another process writes this file"):
+            with pytest.raises(LogError, match="another process has this file open"):
                 refused(path)
         assert child.poll() is None
     finally:
