@@ -59,13 +59,14 @@ class Axis(Table):
 
     @property
     def steps(self) -> list[Value]:
-        """The values, one after another."""
+        """The values, one after another; whole numbers of a range as such, as keys like `count` want them."""
         if self.range:
-            return np.linspace(*self.range).tolist()
-        if self.log_range:
-            first, last, number = self.log_range
-            return np.geomspace(first, last, number).tolist()
-        return list(self.values or ())
+            steps = np.linspace(*self.range).tolist()
+        elif self.log_range:
+            steps = np.geomspace(*self.log_range).tolist()
+        else:
+            return list(self.values or ())
+        return [round(step) if math.isclose(step, round(step), rel_tol=1e-12) else step for step in steps]
 
 
 class Tables(Table):

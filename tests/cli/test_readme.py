@@ -66,7 +66,7 @@ def test_quick_start_shows_the_check(quickstart):
 
 def test_the_programs_read_the_log(quickstart):
     folder, (_, printed) = quickstart
-    plain, package = (run_program(program, folder) for program in blocks("python"))
+    plain, package = (run_program(program, folder) for program in blocks("python", section("The log")))
     whole_run = float(plain.removeprefix("P = "))
     all_walls = float(re.search(r"all walls.*?P = ([\d.]+)", printed)[1])
     assert whole_run == pytest.approx(all_walls, rel=0.02)
@@ -87,6 +87,15 @@ def test_commands_run(tmp_path):
     assert len(printed) == 12
     assert all(printed)
     assert (tmp_path / "speeds.png").exists()
+
+
+def test_the_sweep_is_one(tmp_path):
+    (text,) = blocks("toml", section("Sweeps"))
+    shutil.copytree(ROOT / "configs", tmp_path, dirs_exist_ok=True)
+    (tmp_path / "sweep.toml").write_text(text)
+    shown = idealgas("sweep", "sweep.toml", "-o", "out", "--dry-run", folder=tmp_path)
+    assert (shown.returncode, shown.stderr) == (0, "")
+    assert "36 points" in shown.stdout
 
 
 def test_every_command_is_named():

@@ -43,6 +43,12 @@ def test_axes_are_crossed_and_zipped(sweep):
     assert [point.index for point in found.points] == list(range(6))
 
 
+def test_whole_numbers_of_a_range_are_whole(sweep):
+    """As a count wants them; geometric steps in floats come to 23.999999999999993."""
+    found = sweep('axis = [{key = "species.gas.count", log_range = [3, 48, 5]}]\n' + BASE)
+    assert [point.scene.species[0].count for point in found.points] == [3, 6, 12, 24, 48]
+
+
 def test_phi_scales_the_box_after_all_other_axes(sweep):
     text = '[[axis]]\nkey = "phi"\nvalues = [0.01, 0.3]\n[[axis]]\nkey = "species.radius"\nvalues = [0.1, 0.4]\n'
     for point in sweep(text + BASE).points:
