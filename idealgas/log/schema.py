@@ -70,6 +70,8 @@ DISC_COLUMNS = (
     Column("species", "u2"),
 )
 
+SHORTEST_CHUNK = 8192
+"""Rows of events in a chunk of a run that cannot have many; another one may go on with its log."""
 DISC_RECORDS = 4096
 """A chunk of checkpoints or snapshots holds about as many disc records, and at least one state."""
 SAMPLES = 1024
@@ -139,11 +141,12 @@ def create_tables(
     observables: Sequence[Column],
     snapshot_arrays: Sequence[Column],
     text_sizes: Mapping[str, int],
+    most_rows: int,
     compression: str,
 ) -> None:
     """Empty tables and the commit record, which lists the tables' datasets. A table without columns does not exist.
 
-    text_sizes: bytes of each text in a row of `runs`.
+    text_sizes: bytes of each text in a row of `runs`. most_rows: of events.
     """
     objects = Objects(file.id, compression)
     paths: list[str] = []
@@ -170,8 +173,9 @@ def create_tables(
 
     for name in text_sizes:
         add(f"runs/{name}", Column(name, "S"), 1)
+    event_rows = max(SHORTEST_CHUNK, min(BLOCK, 1 << (most_rows - 1).bit_length()))
     for column in event_columns:
-        add(f"events/{column.name}", column, BLOCK)
+        add(f"events/{column.name}", column, event_rows)
     some = max(1, DISC_RECORDS // discs)
     for column in (*CHECKPOINT_COLUMNS, *checkpoint_values):
         add(f"checkpoints/{column.name}", column, some)
