@@ -28,6 +28,13 @@ RETRIES = 2
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """What a worker here does first: Ctrl-C is for the process that has it end in order."""
 
+LOCAL = {
+    "distributed.scheduler.allowed-failures": RETRIES,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+}
+"""Of the cluster made here, whose processes have nothing to do between points but wait."""
+
 PATIENCE = 10.0  # seconds in which a scheduler must answer
 
 
@@ -147,7 +154,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
             yield client
         return
     with (
-        dask.config.set({"distributed.scheduler.allowed-failures": RETRIES}),
+        dask.config.set(LOCAL),
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
