@@ -17,7 +17,7 @@ import numba
 import numpy as np
 from numba import types
 from numba.core.event import TimingListener, install_listener
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic, overload, register_jitable
 
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as silent as compiled code
@@ -56,8 +56,8 @@ def njit(function: Callable) -> Any:
 
 
 def inline(function: Callable) -> Any:
-    """Compile a small part that LLVM pastes into the entry points that call it; C has no need to."""
-    return numba.njit(function, forceinline=True, no_cfunc_wrapper=True, **_OPTIONS)
+    """A small part that LLVM pastes into the entry points that call it; called from Python it stays Python."""
+    return register_jitable(forceinline=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
 
 
 def compile_timer() -> AbstractContextManager[TimingListener]:

@@ -229,7 +229,7 @@ class LoggedRun:
             return
         batch = self._log.batch()
         rows = self._simulation.advance(self._stop, batch, events, self._next_snapshot)
-        self._log.write(batch, rows)
+        self._log.write(rows)
 
     @property
     def _next_snapshot(self) -> float:

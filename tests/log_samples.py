@@ -63,11 +63,11 @@ def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) 
             return
         mark(writer)
         batch = writer.batch()
-        size = min(size, stop - writer.rows)
+        size = min(size, stop - writer.rows, len(batch.time))
         for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
             if values is not None:
                 column[:size] = values
-        writer.write(batch, size)
+        writer.write(size)
 
 
 def mark(writer: LogWriter) -> None:

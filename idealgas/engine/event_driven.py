@@ -118,9 +118,9 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
             side = prediction.exit_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
-        predict(record, ids, agenda, i, time, effects)
-        if other >= 0:
-            predict(record, ids, agenda, other, time, effects)
+        while i >= 0:  # both discs at one place: a second would double the machine code
+            predict(record, ids, agenda, i, time, effects)
+            i, other = other, np.int64(-1)
         events += 1
         still = check_clock(time, now, still, record.shape[0])
         now = time

@@ -51,7 +51,7 @@ class Tree(NamedTuple):
 
 
 def make_tree(n: int) -> Tree:
-    """A tree of n leaves in which nothing is scheduled."""
+    """A tree of n leaves, to be cleared before use."""
     start = [0]
     nodes = n
     total = -(-n // 8) * 8
@@ -60,7 +60,6 @@ def make_tree(n: int) -> Tree:
         start.append(total)
         total += -(-nodes // 8) * 8
     time = aligned(total, np.dtype("f8"))
-    clear(time.view(np.int64))
     winner = aligned(total, np.dtype("i4"))
     winner[:n] = np.arange(n)
     return Tree(time, time.view(np.int64), winner, np.array(start))

@@ -36,9 +36,9 @@ class Encoder:
         self._grow(rows.nbytes)
         planes = self._planes[: rows.nbytes].reshape(rows.itemsize, -1)
         planes[:] = np.ascontiguousarray(rows).reshape(-1).view(np.uint8).reshape(-1, rows.itemsize).T
-        noise = 0
-        while noise < len(planes) and len(isal_zlib.compress(planes[noise, :_SAMPLE], 1)) > 0.98 * _SAMPLE:
-            noise += 1
+        noise = len(planes)
+        while noise and len(isal_zlib.compress(planes[noise - 1, :_SAMPLE], 1)) <= 0.98 * _SAMPLE:
+            noise -= 1
         size = self._put(0, b"\x78\x01")
         stored = planes[:noise].reshape(-1)
         for start in range(0, len(stored), _STORED_BLOCK):

@@ -71,27 +71,35 @@ class Table:
                 committed = column.read(self.whole, commit.rows[table_of(path)], commit.tails[path])
                 pending[: self.fill] = committed[: self.fill]
 
-    def append(self, rows: int, data: Sequence[np.ndarray]) -> None:
-        """Take the first `rows` of each column's data; store every chunk that becomes full."""
-        taken = 0
-        while taken < rows:
-            some = min(rows - taken, self.chunk - self.fill)
-            part = [column[taken : taken + some] for column in data]
-            taken += some
-            if some == self.chunk:
-                self._write(part, some)
-                self.whole += some
+    def append(self, start: int, stop: int, data: Sequence[np.ndarray]) -> None:
+        """Take rows `start` to `stop` of each column's data; store every chunk that becomes full.
+
+        What lies before them may be overwritten: where there is room for the rows of the growing chunk, those are put
+        there, rather than all of the new ones behind the old.
+        """
+        while start < stop:
+            some = min(stop - start, self.chunk - self.fill)
+            fill, start = self.fill, start + some
+            if fill + some == self.chunk and start >= self.chunk:
+                full = [column[start - self.chunk : start] for column in data]
+                for pending, column in zip(self._pending, full, strict=True):
+                    column[:fill] = pending[:fill]
+                self._close_chunk(full)
                 continue
-            for pending, column in zip(self._pending, part, strict=True):
-                pending[self.fill : self.fill + some] = column
+            for pending, column in zip(self._pending, data, strict=True):
+                pending[fill : fill + some] = column[start - some : start]
             self.fill += some
             if self.fill == self.chunk:
-                self._write(self._pending, self.fill)
-                self.whole += self.fill
-                self.fill = self.tail = 0
-                self._plain = False
-                for pending in self._pending:
-                    pending[:] = 0
+                self._close_chunk(self._pending)
+
+    def _close_chunk(self, data: Sequence[np.ndarray]) -> None:
+        """Store a chunk that became full, and begin the next."""
+        self._write(data, self.chunk)
+        for pending in self._pending:
+            pending[: self.fill] = 0
+        self.whole += self.chunk
+        self.fill = self.tail = 0
+        self._plain = False
 
     def store_tail(self, last: bool = False) -> None:
         """Put the growing chunk into the file: plain, to be rewritten in place as it grows, unless it is the last."""

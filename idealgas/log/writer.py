@@ -28,10 +28,11 @@ FLUSH_SECONDS = 1.0
 
 
 class _Rows(NamedTuple):
-    """Rows for a table, on their way to the thread; `buffer` goes back to the pool."""
+    """Rows `start` to `stop` of the data for a table, on their way to the thread; `buffer` goes back to the pool."""
 
     table: Table
-    rows: int
+    start: int
+    stop: int
     data: list[np.ndarray]
     buffer: Any = None
 
@@ -65,7 +66,7 @@ class LogWriter:
         force: bool = False,
         disc_columns: Mapping[Column, np.ndarray] | None = None,
         event_columns: Sequence[Column] = schema.EVENT_COLUMNS,
-        make_batch: Callable[[], Any] = empty_batch,
+        make_batch: Callable[[int], Any] = empty_batch,
         checkpoint_arrays: Sequence[Column] = schema.CHECKPOINT_ARRAYS,
         checkpoint_values: Sequence[Column] = (),
         observables: Sequence[Column] = (),
@@ -76,7 +77,7 @@ class LogWriter:
 
         gas: the start state. walls: wall k of the events. boundary: "none" or "periodic" along x and y. gravity:
         length/time². trajectory: version of the laws that move the discs. events: whether event rows are kept.
-        disc_columns: (N,) further constants and start values. make_batch: a buffer of 65 536 rows with the event
+        disc_columns: (N,) further constants and start values. make_batch: a buffer of so many rows with the event
         columns by name. checkpoint_arrays, checkpoint_values: what a checkpoint has of each disc, and of the whole.
         snapshot_arrays: what a snapshot has of each disc; without any there are none. most_rows: how many event rows
         the run may have, if that is less than a full chunk.
@@ -99,7 +100,7 @@ class LogWriter:
             commit = Commit.read(file)
             tables = open_tables(file, commit, commit.rows)
             file.swmr_mode = True
-            tables["runs"].append(1, _texts(tables["runs"], scene_text, command))
+            tables["runs"].append(0, 1, _texts(tables["runs"], scene_text, command))
             tables["runs"].store_tail()
             commit_tables(file, tables, commit.sequence + 1, fsync)
             lock(file.id.get_vfd_handle())
@@ -116,7 +117,7 @@ class LogWriter:
         path: str | os.PathLike[str],
         checkpoint: int | None = -1,
         fsync: bool = False,
-        make_batch: Callable[[], Any] = empty_batch,
+        make_batch: Callable[[int], Any] = empty_batch,
         scene_text: str | None = None,
         command: str = "",
     ) -> Self:
@@ -132,7 +133,7 @@ class LogWriter:
         writer._start(Path(path), *reopen(path, checkpoint), fsync, make_batch)
         if scene_text is not None:
             runs = writer._tables["runs"]
-            writer._put(_Rows(runs, 1, _texts(runs, scene_text, command)))
+            writer._put(_Rows(runs, 0, 1, _texts(runs, scene_text, command)))
         return writer
 
     def _start(
@@ -142,7 +143,7 @@ class LogWriter:
         tables: dict[str, Table],
         sequence: int,
         fsync: bool,
-        make_batch: Callable[[], Any],
+        make_batch: Callable[[int], Any],
     ) -> None:
         self.path, self._file, self._tables, self._sequence, self._fsync = path, file, tables, sequence, fsync
         self._events = tables.get("events")
@@ -150,7 +151,7 @@ class LogWriter:
         self._due = math.inf
         self._free: queue.SimpleQueue[Any] = queue.SimpleQueue()
         for _ in range(BUFFERS if self._events else 0):
-            self._free.put(make_batch())
+            self._free.put(make_batch(BLOCK + 1))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)
         self._error: Exception | None = None
         self._thread = threading.Thread(target=self._run, name="log writer", daemon=True)
@@ -159,17 +160,21 @@ class LogWriter:
     # ── the caller's side ──
 
     def batch(self) -> EventBatch:
-        """A buffer to fill, of 65 536 rows; waits while all four are in use."""
-        batch = self._free.get()
-        self._raise()
-        return batch
+        """A buffer to fill; one at a time. Waits while all four are in use.
 
-    def write(self, batch: EventBatch, rows: int) -> None:
-        """Hand over the first `rows` rows of a buffer got from `batch`, not to be touched any more."""
+        It ends a row behind the chunk in the file, for the second row of a pair, and begins where the chunk has got to.
+        """
+        self._lent = self._free.get()
+        self._raise()
+        return self._lent.rows(self.rows % BLOCK, BLOCK + 1)
+
+    def write(self, rows: int) -> None:
+        """Hand over the first `rows` rows of the buffer that `batch` gave, not to be touched any more."""
         assert self._events is not None, "this log keeps no events"
+        start = self.rows % BLOCK
         self.rows += rows
-        data = [getattr(batch, path.partition("/")[2]) for path in self._events.columns]
-        self._put(_Rows(self._events, rows, data, batch))
+        data = [getattr(self._lent, path.partition("/")[2]) for path in self._events.columns]
+        self._put(_Rows(self._events, start, start + rows, data, self._lent))
 
     def checkpoint(
         self, time: float, epoch: int, arrays: Mapping[str, np.ndarray], values: Mapping[str, float] | None = None
@@ -224,7 +229,7 @@ class LogWriter:
         sizes = [np.dtype(column.dtype).itemsize for column in schema.SUMMARY_COLUMNS]
         if not summary or max(map(len, names)) > sizes[0] or max(map(len, values)) > sizes[1]:
             raise ValueError("a summary has at least one entry, and short ones")
-        return _Rows(self._tables["summary"], len(summary), [np.array(names, "S"), np.array(values, "S")])
+        return _Rows(self._tables["summary"], 0, len(summary), [np.array(names, "S"), np.array(values, "S")])
 
     def _put_row(self, name: str, given: Mapping[str, Any]) -> None:
         table = self._tables[name]
@@ -233,7 +238,7 @@ class LogWriter:
             words = path.split("/")
             entry = given[words[-2] if words[-1] == "value" else words[-1]]
             data.append(np.array(entry, column.dtype).reshape(1, *column.chunk[1:]))
-        self._put(_Rows(table, 1, data))
+        self._put(_Rows(table, 0, 1, data))
 
     def _put(self, item: _Rows) -> None:
         self._raise()
@@ -264,7 +269,7 @@ class LogWriter:
     def _store(self, item: object) -> None:
         """Take one item's rows, if there is one, and commit when it is time, at once what a run can go on from."""
         if isinstance(item, _Rows):
-            item.table.append(item.rows, item.data)
+            item.table.append(item.start, item.stop, item.data)
             patience = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
             self._due = min(self._due, time.monotonic() + patience)
         if item is _END:

@@ -21,23 +21,24 @@ MARKERS = {
 """Functions that only make sense with an effect. Restitution has none: its numbers would be read in those of others."""
 
 PROGRAM = """
-import importlib, json, pkgutil, sys
-import idealgas.engine, idealgas.physics
+import json, sys
+from numba.core.event import RecordingListener, install_listener
+from idealgas.engine.event_driven import advance_events
 from idealgas.study.bench_effects import effect_scene
 from idealgas.simulate import simulate
 
 called = set()
 if sys.argv[2] == "all":
     sys.setprofile(lambda frame, event, _: called.add((frame.f_globals.get("__name__"), frame.f_code.co_name)))
-simulate(effect_scene("all" if sys.argv[2] == "all" else None, 300), sys.argv[1])
+compilations = RecordingListener()
+with install_listener("numba:compile", compilations):
+    simulate(effect_scene("all" if sys.argv[2] == "all" else None, 300), sys.argv[1])
 sys.setprofile(None)
+for _, event in compilations.buffer:
+    function = event.data["dispatcher"].py_func
+    called.add((function.__module__, function.__name__))
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
-for package in (idealgas.engine, idealgas.physics):
-    for info in pkgutil.iter_modules(package.__path__):
-        for name, value in vars(importlib.import_module(f"{package.__name__}.{info.name}")).items():
-            if getattr(value, "signatures", None) and value.py_func.__module__.endswith(info.name):
-                names.add(f"{info.name}.{name}")
-signatures = idealgas.engine.event_driven.advance_events.signatures if not called else []
+signatures = getattr(advance_events, "signatures", [])
 types = [str(kind) for kind in signatures[0][3].types] if signatures else []
 print(json.dumps([sorted(names), types]))
 """

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from idealgas._jit import njit
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.engine.records import aligned
-from idealgas.engine.schedule import PREDICTION, SIDE_OF_BOX, make_tree, next_disc, schedule
+from idealgas.engine.schedule import PREDICTION, SIDE_OF_BOX, clear, make_tree, next_disc, schedule
 
 pytestmark = pytest.mark.interpreted
 
@@ -45,6 +45,7 @@ def test_the_root_is_the_next_event(case):
     draw = np.random.default_rng(seed)
     ids = draw.permutation(n).astype(np.uint32)
     tree, predictions = make_tree(n), aligned(n, PREDICTION)
+    clear(tree.key)
     entries = [(None, None, None)] * n
 
     def renew(i):

@@ -46,9 +46,9 @@ def test_row_at_with_equal_times_across_chunks(tmp_path):
             batch = writer.batch()
             for column, values in zip(batch, rows(0, size), strict=True):
                 if values is not None:
-                    column[:] = values
+                    column[:size] = values
             batch.time[:] = 3.0
-            writer.write(batch, size)
+            writer.write(size)
     with open_log(tmp_path / "run.h5") as log:
         assert (log.row_at(3.0), log.row_at(3.0, "right")) == (0, 3 * BLOCK)
         assert (log.row_at(2.9), log.row_at(3.1)) == (0, 3 * BLOCK)
@@ -86,7 +86,7 @@ def test_states_from_the_start(tmp_path):
         for column, values in zip(batch, rows(0, 3000), strict=True):
             if values is not None:
                 column[:3000] = values
-        writer.write(batch, 3000)
+        writer.write(3000)
     with open_log(tmp_path / "run.h5") as log:
         frames = list(log.frames(TIMES))
         for time, frame, (position, velocity) in zip(TIMES, frames, states(TIMES), strict=True):
@@ -122,7 +122,7 @@ def test_half_a_pair_does_not_count(tmp_path):
         batch.kind[:6] = Kind.DISC
         batch.disc[:6] = [3, 9, 4, 8, 2, 7]
         batch.partner[:6] = [9, 3, 8, 4, 7, 2]
-        writer.write(batch, 5)
+        writer.write(5)
     with open_log(tmp_path / "run.h5") as log:
         assert len(log) == 4
         assert [len(block.time) for block in log.chunks()] == [4]
@@ -136,7 +136,7 @@ def test_a_log_is_followed(tmp_path):
         for column, values in zip(batch, rows(0, 10), strict=True):
             if values is not None:
                 column[:10] = values
-        writer.write(batch, 10)
+        writer.write(10)
         writer.close({"end_time": 1.0})
         log.refresh()
         assert (len(log), log.end_time, log.complete) == (10, 1.0, True)

@@ -141,14 +141,13 @@ def test_going_on_after_a_checkpoint(tmp_path, compression, checkpoint, more):
     writer = LogWriter.resume(path, checkpoint)
     assert writer.rows == chosen.row
     stop = chosen.row + more
-    batch = writer.batch()
-    for start in range(chosen.row, stop, 50_000):
-        size = min(50_000, stop - start)
-        for column, values in zip(batch, rows(start, start + size), strict=True):
+    while writer.rows < stop:
+        batch = writer.batch()
+        size = min(len(batch.time), 50_000, stop - writer.rows)
+        for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
             if values is not None:
                 column[:size] = values
-        writer.write(batch, size)
-        batch = writer.batch()
+        writer.write(size)
     writer.close({"end_time": stop * STEP})
     with open_log(path) as log:
         assert check(log) == stop

@@ -107,7 +107,7 @@ def test_further_columns(tmp_path):
             column[:100] = 1
         batch.angular_velocity[:100] = np.arange(100) / 7
         batch.image[:100] = np.arange(200).reshape(100, 2)
-        writer.write(batch, 100)
+        writer.write(100)
         image = np.arange(2 * DISCS).reshape(DISCS, 2)
         writer.checkpoint(1.0, 1, {"position": image, "velocity": image, "image": image}, {"hits": 0})
     with open_log(tmp_path / "run.h5") as log:
@@ -233,7 +233,8 @@ def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
     def go_on():
         for _ in range(100):
             if calls == "batches":
-                writer.write(writer.batch(), 10)
+                writer.batch()
+                writer.write(10)
             else:
                 mark(writer)
             time.sleep(0.01)
