@@ -32,8 +32,9 @@ LOCAL = {
     "distributed.scheduler.allowed-failures": RETRIES,
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
 }
-"""Of the cluster made here, whose processes have nothing to do between points but wait."""
+"""Of the cluster made here: nothing but the points takes time, and memory that one needed is there for the next."""
 
 PATIENCE = 10.0  # seconds in which a scheduler must answer
 
