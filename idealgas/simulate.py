@@ -31,7 +31,7 @@ from idealgas.engine.monte_carlo import MonteCarlo
 from idealgas.engine.precise import PreciseBruteForce
 from idealgas.engine.simulation import LATEST, METHODS, TRAJECTORY, Method, Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
-from idealgas.events import empty_batch
+from idealgas.events import BLOCK, empty_batch
 from idealgas.gas import Gas, make_gas
 from idealgas.log import Column, LogWriter
 from idealgas.scene import Scene, dump_scene
@@ -154,6 +154,7 @@ def simulate(
             checkpoint_values=(*TOTALS, *whole_state(effects)),
             observables=(*OBSERVABLES, *observed(gas, effects)),
             snapshot_arrays=tuple(snapshot_state(gas, effects, method.homogeneous)) if scene.log.snapshot_every else (),
+            most_rows=2 * (scene.run.events or BLOCK),
         ) as log:
             run = LoggedRun(scene, Simulation(gas, method, effects), log, Past(energy_of(gas, effects)), compilation)
             return run.to_the_end(on_progress, interrupted)

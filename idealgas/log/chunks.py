@@ -99,18 +99,19 @@ def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
     Its two sums, of the words and of the running sums, are taken as dot products; swapping the bytes of every word
     multiplies both by 256 modulo 65535.
     """
-    width = 256
+    width, most = 256, 65_536  # sums of so many words fit 32 bits, which takes half the time of 64
     words = np.frombuffer(data, "<u2", len(data) // 2)
     whole = len(words) // width
     table = words[: whole * width].reshape(whole, width)
-    across, down = table.sum(axis=1, dtype=np.uint64), table.sum(axis=0, dtype=np.uint64)
     rest = words[whole * width :].astype(np.uint64)
-    total = int(across.sum()) + int(rest.sum())
-    moment = (
-        int((across * (np.arange(whole, dtype=np.uint64) * width % 65535)).sum())
-        + int((down * np.arange(width, dtype=np.uint64)).sum())
-        + int((rest * np.arange(whole * width, len(words), dtype=np.uint64)).sum())
-    )
+    total = int(rest.sum())
+    moment = int((rest * np.arange(whole * width, len(words), dtype=np.uint64)).sum())
+    for first in range(0, whole, most):
+        rows = table[first : first + most]
+        across, down = (rows.sum(axis=axis, dtype=np.uint32).astype(np.uint64) for axis in (1, 0))
+        start = np.arange(first, first + len(rows), dtype=np.uint64) * width % 65535
+        total += int(across.sum())
+        moment += int((across * start).sum()) + int((down * np.arange(width, dtype=np.uint64)).sum())
     simple, running = 256 * total, 256 * (len(words) * total - moment)
     if len(data) % 2:
         simple += int(data[-1]) << 8

@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from idealgas.events import BLOCK, EventBatch, Kind
+from idealgas.events import EventBatch, Kind
 from idealgas.gas import Gas
 from idealgas.log.errors import LogError
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
@@ -94,8 +94,9 @@ class Log:
         self.complete = self.commit.complete
         self.has_events = "events" in self.commit.rows
         self._rows = self.commit.rows.get("events", 0)
+        self._block = self._source.chunk_rows("events/time") if self.has_events else 1
         if self._rows:
-            start = (self._rows - 1) // BLOCK * BLOCK
+            start = (self._rows - 1) // self._block * self._block
             disc, partner, kind = (
                 self._source.chunk(f"events/{name}", start)[self._rows - 1 - start]
                 for name in ("disc", "partner", "kind")
@@ -204,7 +205,7 @@ class Log:
         if len(self.checkpoints):
             last.append(self.checkpoints.times[-1].item())
         if len(self):
-            last.append(self._times((len(self) - 1) // BLOCK * BLOCK)[-1].item())
+            last.append(self._times((len(self) - 1) // self._block * self._block)[-1].item())
         return max(last)
 
     @property
@@ -218,7 +219,7 @@ class Log:
         return tuple(self._source.names("events"))
 
     def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
-        """Event rows from `start` up to `stop`, in blocks of at most 65 536 cut at multiples of that.
+        """Event rows from `start` up to `stop`, in blocks that are whole chunks, of at most 65 536, or parts of them.
 
         A block is an EventBatch, or a named tuple of the columns asked for. Raises LogError for one that is not there.
         """
@@ -227,24 +228,24 @@ class Log:
         if self.has_events and (missing := [name for name in names if name not in self.columns]):
             raise LogError(f"{self.path}: its events have no {' and no '.join(missing)} ({self.scene.run.method})")
         stop = len(self) if stop is None else min(stop, len(self))
-        for first in range(start // BLOCK * BLOCK, stop, BLOCK) if start < stop else ():
+        for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
             some = slice(max(start - first, 0), stop - first)
             yield block(**{name: self._source.chunk(f"events/{name}", first)[some] for name in names})
 
     def row_at(self, time: float, side: str = "left") -> int:
         """The first event row at `time` or later; with side "right", later than `time`. Reads O(log n) chunks."""
-        low, high = 0, -(-len(self) // BLOCK)  # the row lies in one of these chunks, or just behind the last
+        low, high = 0, -(-len(self) // self._block)  # the row lies in one of these chunks, or just behind the last
         while high - low > 1:
             middle = (low + high) // 2
             if middle not in self._first_times:
-                self._first_times[middle] = self._times(middle * BLOCK)[0].item()
+                self._first_times[middle] = self._times(middle * self._block)[0].item()
             first = self._first_times[middle]
             if first < time or (first == time and side == "right"):
                 low = middle
             else:
                 high = middle
-        times = self._times(low * BLOCK) if len(self) else np.empty(0)
-        return low * BLOCK + int(times.searchsorted(time, side))  # type: ignore[call-overload]
+        times = self._times(low * self._block) if len(self) else np.empty(0)
+        return low * self._block + int(times.searchsorted(time, side))  # type: ignore[call-overload]
 
     def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[Any]:
         """Event rows of one disc or all, from time `t0` until before `t1`, in blocks as `chunks` gives them."""

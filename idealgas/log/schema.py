@@ -9,6 +9,7 @@ import importlib.metadata
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from typing import Any, NamedTuple
 
 import h5py
@@ -17,8 +18,8 @@ import numpy as np
 import idealgas
 from idealgas.events import BLOCK, BOX_SIDES, COLUMN_UNITS, Kind
 from idealgas.gas import Gas
-from idealgas.log import chunks
 from idealgas.log.commit import Commit
+from idealgas.log.objects import Objects, set_attributes
 
 FORMAT = "idealgas log"
 VERSION = 1
@@ -69,6 +70,8 @@ DISC_COLUMNS = (
     Column("species", "u2"),
 )
 
+SHORTEST_CHUNK = 8192
+"""Rows of events in a chunk of a run that cannot have many; another one may go on with its log."""
 DISC_RECORDS = 4096
 """A chunk of checkpoints or snapshots holds about as many disc records, and at least one state."""
 SAMPLES = 1024
@@ -104,32 +107,21 @@ def write_header(
     compression: str,
 ) -> None:
     """What is known before the run: versions, box, discs and walls."""
-    file.attrs.update(
-        {
-            "format": np.bytes_(FORMAT),
-            "format_version": VERSION,
-            "seed": np.bytes_(str(seed)),  # a seed may have more than 64 bits
-            "created": np.bytes_(datetime.now(UTC).isoformat(timespec="seconds")),
-        }
+    objects = Objects(file.id, compression)
+    set_attributes(
+        file.id,
+        format=np.bytes_(FORMAT),
+        format_version=VERSION,
+        seed=np.bytes_(str(seed)),  # a seed may have more than 64 bits
+        created=np.bytes_(datetime.now(UTC).isoformat(timespec="seconds")),
     )
-    versions = file.create_group("versions").attrs
-    versions.update({"idealgas": np.bytes_(idealgas.__version__), "python": np.bytes_(platform.python_version())})
-    versions.update({name: np.bytes_(importlib.metadata.version(name)) for name in ("numpy", "numba", "h5py", "isal")})
-    versions["trajectory"] = trajectory
-    versions["hdf5"] = np.bytes_(h5py.version.hdf5_version)
-    h5md = file.create_group("h5md")
-    h5md.attrs["version"] = H5MD_VERSION
-    h5md.create_group("author").attrs["name"] = np.bytes_("unknown")
-    h5md.create_group("creator").attrs.update(
-        {"name": np.bytes_("idealgas"), "version": np.bytes_(idealgas.__version__)}
-    )
-
-    def store(name: str, data: np.ndarray, unit: str = "") -> None:
-        _store(file, name, data, unit, compression)
-
-    walls = surroundings.walls
-    store("box", np.array(gas.box, "f8"), "length")
-    file["box"].attrs["boundary"] = np.array(surroundings.boundary, "S")
+    set_attributes(objects.group("versions"), **_versions(), trajectory=trajectory)
+    set_attributes(objects.group("h5md"), version=H5MD_VERSION)
+    set_attributes(objects.group("h5md/author"), name=np.bytes_("unknown"))
+    set_attributes(objects.group("h5md/creator"), name=np.bytes_("idealgas"), version=np.bytes_(idealgas.__version__))
+    walls, store = surroundings.walls, objects.constant
+    box = store("box", np.array(gas.box, "f8"), "length")
+    set_attributes(box, boundary=np.array(surroundings.boundary, "S"))
     store("gravity", np.array(surroundings.gravity, "f8"), "length/time^2")
     store("discs/id", np.arange(len(gas), dtype="u4"))
     given = {column: getattr(gas, column.name) for column in DISC_COLUMNS} | dict(disc_columns)
@@ -149,12 +141,14 @@ def create_tables(
     observables: Sequence[Column],
     snapshot_arrays: Sequence[Column],
     text_sizes: Mapping[str, int],
+    most_rows: int,
     compression: str,
 ) -> None:
     """Empty tables and the commit record, which lists the tables' datasets. A table without columns does not exist.
 
-    text_sizes: bytes of each text in a row of `runs`.
+    text_sizes: bytes of each text in a row of `runs`. most_rows: of events.
     """
+    objects = Objects(file.id, compression)
     paths: list[str] = []
 
     def add(path: str, column: Column, rows: int) -> None:
@@ -163,16 +157,7 @@ def create_tables(
             dtype = h5py.enum_dtype({kind.name: kind.value for kind in Kind}, basetype="u1")
         elif path.startswith("runs/"):
             dtype = h5py.string_dtype("utf-8", text_sizes[column.name])
-        dataset = file.create_dataset(
-            path,
-            shape=(0, *column.shape),
-            maxshape=(None, *column.shape),
-            chunks=(rows, *column.shape),
-            dtype=dtype,
-            **filters(compression),
-        )
-        if column.unit:
-            dataset.attrs["unit"] = np.bytes_(column.unit)
+        objects.column(path, dtype, (rows, *column.shape), column.unit)
         paths.append(path)
 
     def add_elements(group: str, columns: Sequence[Column], rows: int) -> None:
@@ -184,12 +169,13 @@ def create_tables(
             path = f"{group}/{column.name}"
             add(f"{path}/value", column, rows)
             for shared in SAMPLE_COLUMNS if path != first else ():
-                file[f"{path}/{shared.name}"] = file[f"{first}/{shared.name}"]
+                objects.link(f"{path}/{shared.name}", f"{first}/{shared.name}")
 
     for name in text_sizes:
         add(f"runs/{name}", Column(name, "S"), 1)
+    event_rows = max(SHORTEST_CHUNK, min(BLOCK, 1 << (most_rows - 1).bit_length()))
     for column in event_columns:
-        add(f"events/{column.name}", column, BLOCK)
+        add(f"events/{column.name}", column, event_rows)
     some = max(1, DISC_RECORDS // discs)
     for column in (*CHECKPOINT_COLUMNS, *checkpoint_values):
         add(f"checkpoints/{column.name}", column, some)
@@ -200,41 +186,27 @@ def create_tables(
     if snapshot_arrays:
         arrays = [column._replace(shape=(discs, *column.shape)) for column in snapshot_arrays]
         add_elements("particles/discs", arrays, some)
-        _describe_particles(file)
+        _describe_particles(file, objects)
     for column in SUMMARY_COLUMNS:
         add(f"summary/{column.name}", column, SUMMARY_ROWS)
     Commit.create(file, paths)
 
 
-def _describe_particles(file: h5py.File) -> None:
+def _describe_particles(file: h5py.File, objects: Objects) -> None:
     """What H5MD asks for beside the snapshots: the box, and what stays the same, which is there already."""
-    particles = file["particles/discs"]
-    box = particles.create_group("box")
-    box.attrs.update({"dimension": 2, "boundary": file["box"].attrs["boundary"]})
-    box["edges"] = file["box"]
+    box = objects.group("particles/discs/box")
+    set_attributes(box, dimension=2, boundary=file["box"].attrs["boundary"])
+    objects.link("particles/discs/box/edges", "box")
     for name in ("id", "species", "mass", "radius"):
-        particles[name] = file[f"discs/{name}"]
+        objects.link(f"particles/discs/{name}", f"discs/{name}")
 
 
-def filters(compression: str) -> dict:
-    """The filter pipeline of a dataset as h5py's keywords."""
-    deflate = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if compression == "gzip" else {}
-    return {**deflate, "fletcher32": True}
-
-
-def _store(file: h5py.File, name: str, data: np.ndarray, unit: str, compression: str) -> None:
-    """A dataset that never changes, in one chunk: what is stored contiguously has no checksum."""
-    if not data.size:
-        file.create_dataset(name, data=data)
-        return
-    dataset = file.create_dataset(name, shape=data.shape, dtype=data.dtype, chunks=data.shape, **filters(compression))
-    if unit:
-        dataset.attrs["unit"] = np.bytes_(unit)
-    start = (0,) * data.ndim
-    if compression == "gzip":
-        dataset.id.write_direct_chunk(start, chunks.Encoder().compressed(data), chunks.COMPRESSED)
-    else:
-        dataset.id.write_direct_chunk(start, chunks.Encoder().plain(data))
+@cache
+def _versions() -> dict[str, np.bytes_]:
+    """Of the programs that make a log."""
+    packages = {name: importlib.metadata.version(name) for name in ("numpy", "numba", "h5py", "isal")}
+    versions = {"idealgas": idealgas.__version__, "python": platform.python_version(), **packages}
+    return {name: np.bytes_(version) for name, version in {**versions, "hdf5": h5py.version.hdf5_version}.items()}
 
 
 def _text(texts: Sequence[str]) -> np.ndarray:

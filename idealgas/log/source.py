@@ -14,7 +14,7 @@ from idealgas.log import schema
 from idealgas.log.commit import Commit, table_of
 from idealgas.log.errors import LogError
 from idealgas.log.superblock import Unmarked, is_locked, is_marked
-from idealgas.log.table import StoredColumn
+from idealgas.log.table import StoredColumn, open_dataset
 
 _CACHED_CHUNKS = 8
 ATTEMPTS = 10
@@ -69,8 +69,10 @@ class Source:
         """A dataset that was stored before the run."""
 
         def read() -> np.ndarray:
-            dataset = self._file[name]
-            return StoredColumn(dataset).read(0, len(dataset)) if dataset.size else dataset[()]
+            dataset = open_dataset(self._file, name)
+            if not dataset.get_space().get_simple_extent_npoints():
+                return self._file[name][()]
+            return StoredColumn(dataset).read(0, dataset.shape[0])
 
         return self._read(read, f"{name}: ")
 
@@ -105,7 +107,7 @@ class Source:
         size = self.path.stat().st_size
         if marked and size < self.commit.file_size:
             raise LogError(f"{self.path}: damaged: truncated, {size} bytes of {self.commit.file_size}")
-        self._columns = {path: StoredColumn(self._file[path]) for path in self.commit.tails}
+        self._columns = {path: StoredColumn(open_dataset(self._file, path)) for path in self.commit.tails}
 
     def _chunk(self, path: str, start: int) -> np.ndarray:
         column, rows, tail = self._columns[path], self.rows(table_of(path)), self.commit.tails[path]

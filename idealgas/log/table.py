@@ -14,13 +14,14 @@ from idealgas.log.commit import DATASET, Commit, table_of
 class StoredColumn:
     """A dataset, read and written in whole chunks past HDF5's own filters and cache."""
 
-    def __init__(self, dataset: h5py.Dataset, encoder: chunks.Encoder | None = None) -> None:
-        self.id = dataset.id
-        self.chunk: tuple[int, ...] = dataset.chunks
+    def __init__(self, dataset: h5py.h5d.DatasetID, encoder: chunks.Encoder | None = None) -> None:
+        self.id = dataset
+        layout = dataset.get_create_plist()
+        self.chunk: tuple[int, ...] = layout.get_chunk()
         self.dtype = np.dtype(dataset.dtype.str)
         self._encoder = encoder or chunks.Encoder()
-        self._compressed = dataset.compression is not None
-        self._origin = (0,) * (dataset.ndim - 1)
+        self._compressed = layout.get_filter_by_id(h5py.h5z.FILTER_DEFLATE) is not None
+        self._origin = (0,) * (len(self.chunk) - 1)
 
     def read(self, start: int, rows: int, tail: int = 0) -> np.ndarray:
         """Those of the first `rows` rows that lie in the chunk at row `start`; `tail` is their CRC-32 if not all do.
@@ -137,6 +138,11 @@ class Table:
             column.write(self.whole, rows, values, self._plain)
 
 
+def open_dataset(file: h5py.File, path: str) -> h5py.h5d.DatasetID:
+    """A dataset through HDF5's C interface. Raises KeyError where there is none."""
+    return h5py.h5d.open(file.id, path.encode())
+
+
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, Table]:
     """The tables of a file, ready to grow after the first `keep` rows of each.
 
@@ -145,7 +151,7 @@ def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dic
     columns: dict[str, dict[str, StoredColumn]] = {name: {} for name in commit.rows}
     encoder = chunks.Encoder()
     for path in commit.tails:
-        columns[table_of(path)][path] = column = StoredColumn(file[path], encoder)
+        columns[table_of(path)][path] = column = StoredColumn(open_dataset(file, path), encoder)
         column.id.get_num_chunks()  # reads the whole index
     return {name: Table(columns[name], commit, rows) for name, rows in keep.items()}
 

@@ -71,6 +71,7 @@ class LogWriter:
         checkpoint_values: Sequence[Column] = (),
         observables: Sequence[Column] = (),
         snapshot_arrays: Sequence[Column] = (),
+        most_rows: int = BLOCK,
     ) -> None:
         """Make the file with all its datasets. An existing one is replaced only with `force`.
 
@@ -78,7 +79,8 @@ class LogWriter:
         length/time². trajectory: version of the laws that move the discs. events: whether event rows are kept.
         disc_columns: (N,) further constants and start values. make_batch: a buffer of so many rows with the event
         columns by name. checkpoint_arrays, checkpoint_values: what a checkpoint has of each disc, and of the whole.
-        snapshot_arrays: what a snapshot has of each disc; without any there are none.
+        snapshot_arrays: what a snapshot has of each disc; without any there are none. most_rows: how many event rows
+        the run may have, if that is less than a full chunk.
         """
         check_output(path, force)
         path = Path(path)
@@ -93,7 +95,7 @@ class LogWriter:
             raise storage_error(path, error) from error
         try:
             schema.write_header(file, gas, surroundings, disc_columns or {}, seed, trajectory, compression)
-            schema.create_tables(file, len(gas), *columns, sizes, compression)
+            schema.create_tables(file, len(gas), *columns, sizes, most_rows, compression)
             file.flush()
             commit = Commit.read(file)
             tables = open_tables(file, commit, commit.rows)

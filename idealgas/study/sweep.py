@@ -28,6 +28,14 @@ RETRIES = 2
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """What a worker here does first: Ctrl-C is for the process that has it end in order."""
 
+LOCAL = {
+    "distributed.scheduler.allowed-failures": RETRIES,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
+}
+"""Of the cluster made here: nothing but the points takes time, and memory that one needed is there for the next."""
+
 PATIENCE = 10.0  # seconds in which a scheduler must answer
 
 
@@ -147,7 +155,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
             yield client
         return
     with (
-        dask.config.set({"distributed.scheduler.allowed-failures": RETRIES}),
+        dask.config.set(LOCAL),
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,

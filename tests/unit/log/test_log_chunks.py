@@ -38,6 +38,10 @@ def test_fletcher32_is_two_running_sums(data):
     assert chunks.fletcher32(data) == (carried(running) << 16 | carried(simple)).to_bytes(4, "little")
 
 
+def test_fletcher32_of_a_chunk_whose_sums_exceed_32_bits():
+    assert chunks.fletcher32(b"\xff" * (2**25 + 514)) == b"\xff" * 4
+
+
 @pytest.mark.parametrize("data", list(arrays()), ids=lambda data: f"{data.dtype}{data.shape}")
 def test_chunks_come_back(data):
     encoder = chunks.Encoder()

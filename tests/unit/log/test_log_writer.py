@@ -2,6 +2,7 @@
 
 import errno
 import json
+import math
 import os
 import subprocess
 import sys
@@ -38,6 +39,22 @@ def test_a_log_flushed_at_every_moment_comes_back(tmp_path, monkeypatch, compres
     path = write_log(tmp_path / "run.h5", 3 * BLOCK + 100, compression=compression)
     with open_log(path) as log:
         assert check(log) == 3 * BLOCK + 100
+
+
+@pytest.mark.parametrize("flush_seconds", [0.0, 1.0])
+@pytest.mark.parametrize("most_rows", [1, 8192, 8193, 30_000])
+def test_a_log_of_short_chunks_takes_any_number_of_rows(tmp_path, monkeypatch, most_rows, flush_seconds):
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", flush_seconds)
+    path = write_log(tmp_path / "run.h5", 2 * BLOCK + 100, most_rows=most_rows)
+    with h5py.File(path) as file:
+        assert file["events/time"].chunks == (max(8192, 2 ** math.ceil(math.log2(most_rows))),)
+    with open_log(path) as log:
+        assert check(log) == 2 * BLOCK + 100
+        assert log.row_at(50_000 * STEP) == 50_000
+    with LogWriter.resume(path, 5) as writer:
+        write_rows(writer, 3 * BLOCK)
+    with open_log(path) as log:
+        assert check(log) == 3 * BLOCK
 
 
 def test_with_fsync(tmp_path, monkeypatch):
