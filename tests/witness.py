@@ -1,0 +1,315 @@
+"""A witness of a run: an account of the motion of its own, held against the engine after every event.
+
+Paths follow from the rows of the log alone. Between two events no two discs may come closer than their radii, and no
+disc to a wall, a side or the piston; at each event the discs must touch and part as the law says; energies must add up.
+
+Bounds are of rounding. A coordinate is known to a few u = 2⁻⁵³ of the box and of the way that the fastest disc can have
+gone since clocks started (the epoch's for what the engine computes, the run's for what is computed from the log).
+Velocities are known to a few u of the speeds, and directions to the error of a place over the distance of the centres.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from random_walls import crossings, distances
+
+from idealgas.effects import wall_temperatures
+from idealgas.energy import energy_of, is_conserved, piston_motion
+from idealgas.engine.effects import Effects
+from idealgas.engine.simulation import Simulation
+from idealgas.events import EventBatch, Kind
+from idealgas.gas import Gas
+from idealgas.scene import Scene
+from idealgas.scene.effects import SIDES
+
+U = 2.0**-53
+FEW = 16.0
+SAMPLES = 33  # of a parabola
+MOST_IMAGES = 400  # of walls along a flight
+
+
+@dataclass
+class Worst:
+    """The largest errors seen: contact and place in units of the resolution, energy relative. events: looked at."""
+
+    contact: float = 0.0
+    place: float = 0.0
+    energy: float = 0.0
+    events: int = 0
+
+
+class Witness:
+    """Follows one run. Every method raises AssertionError where something does not hold."""
+
+    def __init__(self, scene: Scene, gas: Gas, effects: Effects, worst: Worst) -> None:
+        n = len(gas)
+        self.gas, self.worst = gas, worst
+        self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
+        self.size, self.joined = np.array(gas.box), np.array(scene.box.joined)
+        self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
+        self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
+        self.temperature = wall_temperatures(scene)
+        self.piston = scene.piston
+        self.rotation, self.restitution = effects.rotation, effects.restitution
+        self.since, self.last = np.zeros(n), np.full(n, -math.inf)
+        self.position, self.velocity = gas.position.copy(), gas.velocity.copy()  # unwrapped
+        self.omega = np.zeros(n) if effects.rotation is None else effects.rotation.omega.copy()
+        self.inertia = np.zeros(n) if effects.rotation is None else effects.rotation.inertia
+        self.first, self.second = np.triu_indices(n, 1)
+        self.reach = gas.radius[self.first] + gas.radius[self.second]
+        self.now, self.epochs, self.events = 0.0, 0, 0
+        self.conserved = is_conserved(effects)
+        self.start = energy_of(gas, effects)
+        self.lowest, self.scale = self.start.balance, self.start.scale
+
+    # ── what is known, and how well ──
+
+    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Unwrapped positions and velocities of all discs."""
+        dt = (time - self.since)[:, None]
+        return self.position + self.velocity * dt + 0.5 * self.pull * dt**2, self.velocity + self.pull * dt
+
+    def resolution(self, duration: float) -> float:
+        """How well a place is known after clocks ran for so long."""
+        fall = np.hypot(*self.pull) * duration
+        return U * (1 + self.epochs) * (self.size.max() + (self.fastest + fall) * duration)
+
+    def wrapped(self, difference: np.ndarray) -> np.ndarray:
+        """Through joined sides where that is shorter."""
+        return difference - np.where(self.joined, self.size * np.round(difference / self.size), 0.0)
+
+    # ── one event ──
+
+    def see(self, rows: EventBatch, simulation: Simulation) -> None:
+        """The rows of one event, and the simulation as the event left it."""
+        time, self.epochs = float(rows.time[0]), simulation.epoch
+        assert all(np.isfinite(column).all() for column in rows if column is not None)
+        assert (rows.time == time).all()
+        assert time >= self.now
+        place, velocity = self.at(time)
+        self.fastest = max(np.hypot(*velocity.T).max(), np.hypot(*self.at(self.now)[1].T).max())
+        self.known = FEW * self.resolution(time)
+        self.touches = FEW * self.resolution(time - simulation.time)
+        self.keep_apart(time)
+        discs = rows.disc.astype(int)
+        image = 0 if rows.image is None else rows.image
+        after = rows.position + image * self.size
+        self.note("place", np.abs(after - place[discs]).max(), self.known)
+        for disc in discs:
+            self.fly(disc, time)
+        if rows.kind[0] == Kind.DISC:
+            self.meet(rows, velocity[discs], time)
+        else:
+            self.bounce(int(rows.kind[0]), int(rows.partner[0]), rows, velocity[discs[0]], simulation, time)
+        self.position[discs], self.velocity[discs] = after, rows.velocity
+        self.since[discs] = self.last[discs] = self.now = time
+        if rows.angular_velocity is not None:
+            self.omega[discs] = rows.angular_velocity
+        self.events += 1
+        self.worst.events += 1
+        self.compare(time, simulation)
+
+    def note(self, what: str, error: float, bound: float) -> None:
+        """Assert a bound and remember how close it came."""
+        assert error <= bound, f"{what}: {error:.3g} > {bound:.3g}"
+        share = FEW * float(error / bound) if bound else 0.0
+        setattr(self.worst, what, max(getattr(self.worst, what), share))
+
+    def finish(self, time: float, simulation: Simulation) -> None:
+        """The end of the run, at its end time."""
+        self.epochs = simulation.epoch
+        self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
+        self.known = FEW * self.resolution(time)
+        self.touches = FEW * self.resolution(time - simulation.time)
+        self.keep_apart(time)
+        for disc in range(len(self.gas)):
+            self.fly(disc, time)
+        self.compare(time, simulation)
+
+    # ── flights ──
+
+    def keep_apart(self, time: float) -> None:
+        """No two discs meet from the last event to this time: relative motion is straight, also under gravity."""
+        place, velocity = self.at(self.now)
+        duration = time - self.now
+        apart = self.wrapped(place[self.first] - place[self.second])
+        closing = velocity[self.first] - velocity[self.second]
+        turns = np.where(self.joined, np.ceil(np.abs(closing).max(axis=0, initial=0) * duration / self.size) + 1, 0)
+        turns = np.minimum(turns, 4).astype(int)
+        squared = (closing**2).sum(axis=1)
+        for x in range(-turns[0], turns[0] + 1):
+            for y in range(-turns[1], turns[1] + 1):
+                shifted = apart + np.array([x, y]) * self.size
+                nearest = np.divide(-(shifted * closing).sum(axis=1), squared, out=0 * squared, where=squared > 0)
+                path = shifted + closing * np.clip(nearest, 0, duration)[:, None]
+                assert (np.hypot(*path.T) >= self.reach - self.known).all(), "discs pass through each other"
+
+    def fly(self, disc: int, time: float) -> None:
+        """The way of a disc since its last event keeps clear of the walls and inside the box."""
+        velocity, duration = self.velocity[disc], time - self.since[disc]
+        radius = self.gas.radius[disc]
+        times = np.linspace(0, duration, SAMPLES)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tops = -velocity / self.pull
+        path = self.path(disc, np.concatenate((times, tops[(tops > 0) & (tops < duration)])))
+        inside = (path >= radius - self.known) & (path <= self.size - radius + self.known)
+        assert (inside | self.joined).all(), "out of the box"
+        if not len(self.walls):
+            return
+        low, high = (np.floor(edge / self.size) for edge in (path.min(axis=0) - radius, path.max(axis=0) + radius))
+        low, high = np.where(self.joined, low, 0).astype(int), np.where(self.joined, high, 0).astype(int)
+        if (high - low + 1).prod() * len(self.walls) > MOST_IMAGES:
+            return
+        shifts = [(x, y) for x in range(low[0], high[0] + 1) for y in range(low[1], high[1] + 1)]
+        there = self.absence[:, 0] >= time
+        walls = np.concatenate([self.walls[there] + np.array(shift) * self.size for shift in shifts])
+        gates = (self.absence[:, 1] <= self.since[disc]) & ~there  # a disc may be in their way when they close
+        closed = np.concatenate([self.walls[there | gates] + np.array(shift) * self.size for shift in shifts])
+        path = self.path(disc, np.sort(np.concatenate((times, *self.nearest(disc, walls, duration)))))
+        if len(walls):
+            assert distances(path, walls).min() >= radius - self.known, "in a wall"
+        if radius > self.known and len(closed):
+            assert not crossings(path[:-1], path[1:], closed).any(), "through a wall"
+
+    def path(self, disc: int, times: np.ndarray) -> np.ndarray:
+        """Unwrapped positions (T, 2) of a disc at times after its last event."""
+        times = times[:, None]
+        return self.position[disc] + self.velocity[disc] * times + 0.5 * self.pull * times**2
+
+    def nearest(self, disc: int, walls: np.ndarray, duration: float) -> list[np.ndarray]:
+        """Times at which a disc is nearest to the ends and lines of walls, if that is on its way."""
+        velocity, times = self.velocity[disc], np.linspace(0, duration, SAMPLES)
+        ends = walls.reshape(-1, 2)
+        places = self.path(disc, times)
+        best = times[np.hypot(*np.moveaxis(places[:, None] - ends, -1, 0)).argmin(axis=0)]
+        with np.errstate(all="ignore"):
+            for _ in range(4):  # Newton's method for the derivative of the distance squared
+                away = self.path(disc, best) - ends
+                speed = velocity + self.pull * best[:, None]
+                best = best - (away * speed).sum(axis=1) / ((speed**2).sum(axis=1) + away @ self.pull)
+            along = walls[:, 1] - walls[:, 0]
+            normal = np.column_stack((-along[:, 1], along[:, 0]))
+            tops = -(normal @ velocity) / (normal @ self.pull)
+        return [found[(found > 0) & (found < duration)] for found in (best, tops)]
+
+    # ── collisions ──
+
+    def energy(self, disc: int, velocity: np.ndarray, omega: float) -> float:
+        """Of motion and spin."""
+        return float(0.5 * self.gas.mass[disc] * velocity @ velocity + 0.5 * self.inertia[disc] * omega**2)
+
+    def rebounds(self, discs, coefficient: float, time: float) -> tuple[float, ...]:
+        """The coefficients that are right; two if the last collision was about a contact duration ago."""
+        if self.restitution is None:
+            return (1.0,)
+        duration, ago = self.restitution.contact_duration, time - max(self.last[discs])
+        either = abs(ago - duration) <= 1e-6 * duration + FEW * U * time
+        return (1.0, coefficient) if either else (1.0 if ago < duration else coefficient,)
+
+    def parts(self, before: float, after: float, rebounds, bound: float, what: str) -> None:
+        """Normal speeds, away from each other, before and after."""
+        assert before <= bound, f"{what}: no approach"
+        assert min(abs(after + e * before) for e in rebounds) <= bound, f"{what}: rebound from {before} to {after}"
+
+    def meet(self, rows: EventBatch, before: np.ndarray, time: float) -> None:
+        """Two discs touch, and part by the law."""
+        i, j = (int(k) for k in rows.disc)
+        assert rows.partner.tolist() == [j, i]
+        reach, mass = self.gas.radius[[i, j]].sum(), self.gas.mass[[i, j]]
+        apart = self.wrapped(rows.position[0] - rows.position[1])
+        self.note("contact", abs(np.hypot(*apart) - reach), self.touches)
+        normal = apart / np.hypot(*apart)
+        speeds = np.hypot(*before.T).sum() + np.hypot(*rows.velocity.T).sum() + np.hypot(*self.pull) * time
+        bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / reach)
+        coefficient = 1.0 if self.restitution is None else self.restitution.normal
+        closing, parting = ((v[0] - v[1]) @ normal for v in (before, rows.velocity))
+        self.parts(closing, parting, self.rebounds([i, j], coefficient, time), bound, "discs")
+        gained = (mass[:, None] * (rows.velocity - before)).sum(axis=0)
+        assert np.abs(gained).max() <= FEW * U * (1 + self.epochs) * mass @ (
+            np.hypot(*before.T) + np.hypot(*rows.velocity.T) + np.hypot(*self.pull) * time
+        ), "momentum"
+        omegas = self.omega[[i, j]] if rows.angular_velocity is None else rows.angular_velocity
+        old = sum(self.energy(k, v, self.omega[k]) for k, v in zip((i, j), before, strict=True))
+        new = sum(self.energy(k, v, w) for k, v, w in zip((i, j), rows.velocity, omegas, strict=True))
+        slack = 4 * FEW * U * (1 + self.epochs) * (old + mass.max() * speeds * np.hypot(*self.pull) * time)
+        assert new <= old + slack, "energy gained"
+        elastic = self.restitution is None or self.restitution.normal == 1
+        if elastic and (self.rotation is None or abs(self.rotation.roughness) == 1):
+            assert new >= old - slack, "energy lost"
+
+    def bounce(self, kind, partner, rows: EventBatch, before, simulation: Simulation, time: float) -> None:
+        """A disc touches a wall or the piston, and leaves it by the law."""
+        disc, wall = int(rows.disc[0]), -1 - partner
+        place, after, radius = rows.position[0], rows.velocity[0], self.gas.radius[disc]
+        stand, normal = 0.0, np.zeros(2)
+        if wall < 4:
+            axis, upper = divmod(wall, 2)
+            normal[axis] = -1.0 if upper else 1.0
+            edge = self.size[axis] * upper
+            assert (kind == Kind.PISTON) == (self.piston is not None and self.piston.side == SIDES[wall])
+            if kind == Kind.PISTON:
+                edge, stand = piston_motion(simulation.effects.piston, time - simulation.time)
+            distance = abs(place[axis] - edge)
+        else:
+            opens, closes = self.absence[wall - 4]
+            assert not opens <= time < closes, "an open gate"
+            start, end = self.walls[wall - 4]
+            share = (self.wrapped_near(place, start, end) - start) @ (end - start) / ((end - start) @ (end - start))
+            foot = start + np.clip(share, 0, 1) * (end - start)
+            away = self.wrapped_near(place, start, end) - foot
+            distance = np.hypot(*away)
+            normal = away / distance
+            if closes < math.inf:
+                distance = max(distance, radius)  # it may have closed over the disc
+            along = self.known / np.hypot(*(end - start))
+            assert -along <= share <= 1 + along if kind == Kind.WALL else not along < share < 1 - along, "foot"
+        self.note("contact", abs(distance - radius), self.touches)
+        if kind == Kind.PISTON and self.piston.mass is not None:
+            return  # its own change is in the balance of energy
+        speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
+        bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius)
+        coefficient = 1.0 if self.restitution is None else self.restitution.wall
+        motion = np.zeros(2) if kind != Kind.PISTON else stand * np.abs(normal)
+        incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
+        if self.temperature[wall] >= 0:
+            assert incoming <= bound < math.inf
+            assert outgoing >= -bound
+        else:
+            self.parts(incoming, outgoing, self.rebounds([disc], coefficient, time), bound, "wall")
+
+    def wrapped_near(self, place, start, end) -> np.ndarray:
+        """The image of a place that is nearest to a segment."""
+        across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
+        images = place + np.array([(x, y) for x in across for y in along]) * self.size
+        return images[distances(images, np.array([[start, end]])).argmin()]
+
+    # ── the whole gas ──
+
+    def compare(self, time: float, simulation: Simulation) -> None:
+        """The engine's state is the one that follows from the log, the piston is beyond all discs, energies add up."""
+        gas, effects = simulation.state_now()
+        place, velocity = self.at(time)
+        speed = self.fastest + np.hypot(*self.pull) * time
+        assert np.abs(self.wrapped(gas.position - place)).max() <= self.known, "state"
+        assert np.abs(gas.velocity - velocity).max() <= FEW * U * (1 + self.epochs) * speed, "state"
+        if self.piston is not None:
+            self.behind_piston(place, effects.piston, time - simulation.time)
+        energy = energy_of(gas, effects, time - simulation.time)
+        self.scale = max(self.scale, energy.scale)
+        weight = self.gas.mass.sum() * np.hypot(*self.pull)
+        bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
+        assert energy.balance <= self.lowest + bound, "energy gained"
+        if self.conserved:
+            drift = abs(energy.balance - self.start.balance)
+            assert drift <= bound, f"energy drifts by {drift}"
+            self.worst.energy = max(self.worst.energy, drift / self.scale if self.scale else 0.0)
+        else:
+            self.lowest = min(self.lowest, energy.balance)
+
+    def behind_piston(self, place: np.ndarray, piston: np.ndarray, local_time: float) -> None:
+        """The piston is between all discs and its end stop."""
+        edge, _ = piston_motion(piston, local_time)
+        outward, axis = self.piston.outward, self.piston.axis
+        assert (outward * (edge - place[:, axis]) >= self.gas.radius - self.known).all(), "beyond the piston"
+        assert outward * (self.piston.stop(self.gas.box) - edge) >= -self.known, "piston beyond its stop"
