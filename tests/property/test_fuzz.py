@@ -37,6 +37,8 @@ from idealgas.simulate import stop_of
 
 PATIENCE = 500.0  # seconds for one scene: some milliseconds and, at first, compilation
 
+MOST_EPOCHS = 5_000
+
 
 @contextmanager
 def watchdog(text: str) -> Iterator[None]:
@@ -101,6 +103,7 @@ def run_scene(text: str, worst: Worst) -> None:
             witness.see(rows, simulation)
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
+            assert simulation.epoch < MOST_EPOCHS, "the clock hardly runs"
     by_time = simulation.so_far.events < stop.events
     assert simulation.so_far.events == len(seen) <= stop.events
     assert simulation.last_event_time <= stop.time
