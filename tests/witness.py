@@ -51,6 +51,7 @@ class Witness:
         self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
         self.temperature = wall_temperatures(scene)
         self.piston = scene.piston
+        self.push = abs(scene.piston.acceleration(gas.box, scene.gravity)) if scene.piston else 0.0
         self.rotation, self.restitution = effects.rotation, effects.restitution
         self.since, self.last = np.zeros(n), np.full(n, -math.inf)
         self.position, self.velocity = gas.position.copy(), gas.velocity.copy()  # unwrapped
@@ -58,6 +59,8 @@ class Witness:
         self.inertia = np.zeros(n) if effects.rotation is None else effects.rotation.inertia
         self.first, self.second = np.triu_indices(n, 1)
         self.reach = gas.radius[self.first] + gas.radius[self.second]
+        across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
+        self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.epochs, self.events = 0.0, 0, 0
         self.conserved = is_conserved(effects)
         self.start = energy_of(gas, effects)
@@ -72,7 +75,7 @@ class Witness:
 
     def resolution(self, duration: float) -> float:
         """How well a place is known after clocks ran for so long."""
-        fall = np.hypot(*self.pull) * duration
+        fall = (np.hypot(*self.pull) + self.push) * duration
         return U * (1 + self.epochs) * (self.size.max() + (self.fastest + fall) * duration)
 
     def wrapped(self, difference: np.ndarray) -> np.ndarray:
@@ -83,15 +86,12 @@ class Witness:
 
     def see(self, rows: EventBatch, simulation: Simulation) -> None:
         """The rows of one event, and the simulation as the event left it."""
-        time, self.epochs = float(rows.time[0]), simulation.epoch
+        time = float(rows.time[0])
         assert all(np.isfinite(column).all() for column in rows if column is not None)
         assert (rows.time == time).all()
         assert time >= self.now
         place, velocity = self.at(time)
-        self.fastest = max(np.hypot(*velocity.T).max(), np.hypot(*self.at(self.now)[1].T).max())
-        self.known = FEW * self.resolution(time)
-        self.touches = FEW * self.resolution(time - simulation.time)
-        self.keep_apart(time)
+        self.look(time, simulation)
         discs = rows.disc.astype(int)
         image = 0 if rows.image is None else rows.image
         after = rows.position + image * self.size
@@ -118,14 +118,22 @@ class Witness:
 
     def finish(self, time: float, simulation: Simulation) -> None:
         """The end of the run, at its end time."""
-        self.epochs = simulation.epoch
-        self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
-        self.known = FEW * self.resolution(time)
-        self.touches = FEW * self.resolution(time - simulation.time)
-        self.keep_apart(time)
+        self.look(time, simulation)
         for disc in range(len(self.gas)):
             self.fly(disc, time)
         self.compare(time, simulation)
+
+    def look(self, time: float, simulation: Simulation) -> None:
+        """How well all is known now; what happened since the last event."""
+        self.epochs = simulation.epoch
+        self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
+        if self.piston is not None:
+            self.fastest += max(
+                abs(piston_motion(simulation.effects.piston, t - simulation.time)[1]) for t in (self.now, time)
+            )
+        self.known = FEW * self.resolution(time)
+        self.touches = FEW * self.resolution(time - simulation.time)
+        self.keep_apart(time)
 
     # ── flights ──
 
@@ -207,9 +215,9 @@ class Witness:
         either = abs(ago - duration) <= 1e-6 * duration + FEW * U * time
         return (1.0, coefficient) if either else (1.0 if ago < duration else coefficient,)
 
-    def parts(self, before: float, after: float, rebounds, bound: float, what: str) -> None:
-        """Normal speeds, away from each other, before and after."""
-        assert before <= bound, f"{what}: no approach"
+    def parts(self, before: float, after: float, rebounds, bound: float, grazing: float, what: str) -> None:
+        """Normal speeds, away from each other, before and after. grazing: what a graze may turn out to be."""
+        assert before <= bound + grazing, f"{what}: no approach"
         assert min(abs(after + e * before) for e in rebounds) <= bound, f"{what}: rebound from {before} to {after}"
 
     def meet(self, rows: EventBatch, before: np.ndarray, time: float) -> None:
@@ -217,14 +225,18 @@ class Witness:
         i, j = (int(k) for k in rows.disc)
         assert rows.partner.tolist() == [j, i]
         reach, mass = self.gas.radius[[i, j]].sum(), self.gas.mass[[i, j]]
-        apart = self.wrapped(rows.position[0] - rows.position[1])
-        self.note("contact", abs(np.hypot(*apart) - reach), self.touches)
+        images = rows.position[0] - rows.position[1] + self.shifts
+        error = np.abs(np.hypot(*images.T) - reach)
+        touching = images[error <= max(error.min(), self.touches)]
+        apart = touching[(touching @ (before[0] - before[1])).argmin()]
+        self.note("contact", error.min(), self.touches)
         normal = apart / np.hypot(*apart)
         speeds = np.hypot(*before.T).sum() + np.hypot(*rows.velocity.T).sum() + np.hypot(*self.pull) * time
         bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / reach)
         coefficient = 1.0 if self.restitution is None else self.restitution.normal
         closing, parting = ((v[0] - v[1]) @ normal for v in (before, rows.velocity))
-        self.parts(closing, parting, self.rebounds([i, j], coefficient, time), bound, "discs")
+        grazing = np.hypot(*(before[0] - before[1])) * math.sqrt(2 * self.touches / reach)
+        self.parts(closing, parting, self.rebounds([i, j], coefficient, time), bound, grazing, "discs")
         gained = (mass[:, None] * (rows.velocity - before)).sum(axis=0)
         assert np.abs(gained).max() <= FEW * U * (1 + self.epochs) * mass @ (
             np.hypot(*before.T) + np.hypot(*rows.velocity.T) + np.hypot(*self.pull) * time
@@ -272,16 +284,16 @@ class Witness:
         coefficient = 1.0 if self.restitution is None else self.restitution.wall
         motion = np.zeros(2) if kind != Kind.PISTON else stand * np.abs(normal)
         incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
+        grazing = math.sqrt(2 * self.touches * (np.hypot(*self.pull) + self.push + before @ before / radius))
         if self.temperature[wall] >= 0:
-            assert incoming <= bound < math.inf
-            assert outgoing >= -bound
+            assert incoming <= bound + grazing, "thermal wall: no approach"
+            assert outgoing >= -bound, "thermal wall: into it"
         else:
-            self.parts(incoming, outgoing, self.rebounds([disc], coefficient, time), bound, "wall")
+            self.parts(incoming, outgoing, self.rebounds([disc], coefficient, time), bound, grazing, "wall")
 
     def wrapped_near(self, place, start, end) -> np.ndarray:
         """The image of a place that is nearest to a segment."""
-        across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
-        images = place + np.array([(x, y) for x in across for y in along]) * self.size
+        images = place + self.shifts
         return images[distances(images, np.array([[start, end]])).argmin()]
 
     # ── the whole gas ──
