@@ -149,7 +149,7 @@ def tables_of(draw) -> dict[str, Any]:
         for k in range(n)
     ]
     tables = {"box": {"size": list(size)}, "disc": discs, "run": {"until": pick(draw, 3.0, 0.3, 30.0)}}
-    tables["run"]["events"] = pick(draw, 30, 60, 120, 300)
+    tables["run"]["events"] = pick(draw, 10, 30, 30, 100)
     for axis in range(2):
         for side in SIDES[2 * axis : 2 * axis + 2]:
             if joined[axis]:

@@ -61,7 +61,7 @@ class Witness:
         self.reach = gas.radius[self.first] + gas.radius[self.second]
         across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
-        self.now, self.epochs, self.events = 0.0, 0, 0
+        self.now, self.known, self.epochs, self.events = 0.0, 0.0, 0, 0
         self.conserved = is_conserved(effects)
         self.start = energy_of(gas, effects)
         self.lowest, self.scale = self.start.balance, self.start.scale
@@ -131,7 +131,7 @@ class Witness:
             self.fastest += max(
                 abs(piston_motion(simulation.effects.piston, t - simulation.time)[1]) for t in (self.now, time)
             )
-        self.known = FEW * self.resolution(time)
+        self.known = max(self.known, FEW * self.resolution(time))  # a place keeps its error
         self.touches = FEW * self.resolution(time - simulation.time)
         self.keep_apart(time)
 

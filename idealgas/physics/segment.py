@@ -88,18 +88,6 @@ def straight_end_delay(x, y, disc):
 
 
 @inline
-def accelerated_end_delay(x, y, vx, vy, r, gravity):
-    """Delay until a disc at (x, y) on a parabola meets the origin: the first descent of |r(t)|² - R² through zero."""
-    return first_descent(
-        0.25 * (gravity.x * gravity.x + gravity.y * gravity.y),
-        gravity.x * vx + gravity.y * vy,
-        vx * vx + vy * vy + gravity.x * x + gravity.y * y,
-        2.0 * (x * vx + y * vy),
-        x * x + y * y - r * r,
-    )
-
-
-@inline
 def segment_normal(disc, segments, k, periodic, images):
     """Unit normal towards a disc that touches segment k, and whether it touches an end."""
     u = U(k)
@@ -146,8 +134,8 @@ def segment_contact(disc, own, segments, k, gravity, restitution, periodic, imag
         an = tx * gravity.y - ty * gravity.x
         at = tx * gravity.x + ty * gravity.y
         delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
-        delay = min(delay, accelerated_end_delay(x, y, disc.vx, disc.vy, disc.r, gravity))
-        delay = min(delay, accelerated_end_delay(far_x, far_y, disc.vx, disc.vy, disc.r, gravity))
+        delay = min(delay, first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r))
+        delay = min(delay, first_descent(far_x, far_y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r))
     else:
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
         delay = min(delay, straight_end_delay(x, y, disc))
