@@ -52,6 +52,7 @@ class Witness:
         self.temperature = wall_temperatures(scene)
         self.piston = scene.piston
         self.push = abs(scene.piston.acceleration(gas.box, scene.gravity)) if scene.piston else 0.0
+        self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
         self.rotation, self.restitution = effects.rotation, effects.restitution
         self.since, self.last = np.zeros(n), np.full(n, -math.inf)
         self.position, self.velocity = gas.position.copy(), gas.velocity.copy()  # unwrapped
@@ -309,7 +310,7 @@ class Witness:
             self.behind_piston(place, effects.piston, time - simulation.time)
         energy = energy_of(gas, effects, time - simulation.time)
         self.scale = max(self.scale, energy.scale)
-        weight = self.gas.mass.sum() * np.hypot(*self.pull)
+        weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
         bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
         assert energy.balance <= self.lowest + bound, "energy gained"
         if self.conserved:
