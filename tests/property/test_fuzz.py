@@ -8,6 +8,7 @@ import math
 import os
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,26 +36,27 @@ from idealgas.physics.thermal import Thermal
 from idealgas.scene import Scene
 from idealgas.simulate import stop_of
 
-PATIENCE = 500.0  # seconds for one scene: some milliseconds and, at first, compilation
-
-MOST_EPOCHS = 5_000
+PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
+MOST_EPOCHS = 5_000  # no scene has many
 
 
 @contextmanager
 def watchdog(text: str) -> Iterator[None]:
     """Ends the process if a scene hangs, and leaves the scene behind. The engine lets other threads run."""
 
-    def give_up() -> None:
-        path = Path(tempfile.gettempdir()) / "idealgas-hangs.toml"
-        path.write_text(text)
-        os.abort()
+    done, started = threading.Event(), time.process_time()
 
-    timer = threading.Timer(PATIENCE, give_up)
-    timer.start()
+    def watch() -> None:
+        while not done.wait(1.0):
+            if time.process_time() - started > PATIENCE:
+                (Path(tempfile.gettempdir()) / "idealgas-hangs.toml").write_text(text)
+                os.abort()
+
+    threading.Thread(target=watch, daemon=True).start()
     try:
         yield
     finally:
-        timer.cancel()
+        done.set()
 
 
 def fresh_effects(scene: Scene, gas: Gas) -> Effects:
