@@ -216,6 +216,11 @@ class Witness:
         either = abs(ago - duration) <= 1e-6 * duration + FEW * U * time
         return (1.0, coefficient) if either else (1.0 if ago < duration else coefficient,)
 
+    def fitting(self, normals: np.ndarray, before: np.ndarray, after: np.ndarray, rebounds) -> np.ndarray:
+        """The one of several normals (M, 2) along which a rebound fits best."""
+        misfits = [np.abs(normals @ after + e * (normals @ before)) for e in rebounds]
+        return normals[np.min(misfits, axis=0).argmin()]
+
     def parts(self, before: float, after: float, rebounds, bound: float, grazing: float, what: str) -> None:
         """Normal speeds, away from each other, before and after. grazing: what a graze may turn out to be."""
         assert before <= bound + grazing, f"{what}: no approach"
@@ -228,16 +233,17 @@ class Witness:
         reach, mass = self.gas.radius[[i, j]].sum(), self.gas.mass[[i, j]]
         images = rows.position[0] - rows.position[1] + self.shifts
         error = np.abs(np.hypot(*images.T) - reach)
-        touching = images[error <= max(error.min(), self.touches)]
-        apart = touching[(touching @ (before[0] - before[1])).argmin()]
         self.note("contact", error.min(), self.touches)
-        normal = apart / np.hypot(*apart)
+        touching = images[error <= self.touches]  # in two images at once, if the box has room for no more
+        normals = touching / np.hypot(*touching.T)[:, None]
+        coefficient = 1.0 if self.restitution is None else self.restitution.normal
+        rebounds = self.rebounds([i, j], coefficient, time)
+        normal = self.fitting(normals, before[0] - before[1], rows.velocity[0] - rows.velocity[1], rebounds)
         speeds = np.hypot(*before.T).sum() + np.hypot(*rows.velocity.T).sum() + np.hypot(*self.pull) * time
         bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / reach)
-        coefficient = 1.0 if self.restitution is None else self.restitution.normal
         closing, parting = ((v[0] - v[1]) @ normal for v in (before, rows.velocity))
         grazing = np.hypot(*(before[0] - before[1])) * math.sqrt(2 * self.touches / reach)
-        self.parts(closing, parting, self.rebounds([i, j], coefficient, time), bound, grazing, "discs")
+        self.parts(closing, parting, rebounds, bound, grazing, "discs")
         gained = (mass[:, None] * (rows.velocity - before)).sum(axis=0)
         assert np.abs(gained).max() <= FEW * U * (1 + self.epochs) * mass @ (
             np.hypot(*before.T) + np.hypot(*rows.velocity.T) + np.hypot(*self.pull) * time
@@ -256,6 +262,8 @@ class Witness:
         disc, wall = int(rows.disc[0]), -1 - partner
         place, after, radius = rows.position[0], rows.velocity[0], self.gas.radius[disc]
         stand, normal = 0.0, np.zeros(2)
+        coefficient = 1.0 if self.restitution is None else self.restitution.wall
+        rebounds = self.rebounds([disc], coefficient, time)
         if wall < 4:
             axis, upper = divmod(wall, 2)
             normal[axis] = -1.0 if upper else 1.0
@@ -268,11 +276,12 @@ class Witness:
             opens, closes = self.absence[wall - 4]
             assert not opens <= time < closes, "an open gate"
             start, end = self.walls[wall - 4]
-            share = (self.wrapped_near(place, start, end) - start) @ (end - start) / ((end - start) @ (end - start))
-            foot = start + np.clip(share, 0, 1) * (end - start)
-            away = self.wrapped_near(place, start, end) - foot
-            distance = np.hypot(*away)
-            normal = away / distance
+            share, away = self.near(place, start, end)
+            distances = np.hypot(*away.T)
+            nearest = np.abs(distances - radius).argmin()
+            touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
+            normal = self.fitting(away[touching] / distances[touching, None], before, after, rebounds)
+            share, distance = share[nearest], distances[nearest]
             if closes < math.inf:
                 distance = max(distance, radius)  # it may have closed over the disc
             along = self.known / np.hypot(*(end - start))
@@ -282,7 +291,6 @@ class Witness:
             return  # its own change is in the balance of energy
         speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
         bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius)
-        coefficient = 1.0 if self.restitution is None else self.restitution.wall
         motion = np.zeros(2) if kind != Kind.PISTON else stand * np.abs(normal)
         incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
         grazing = math.sqrt(2 * self.touches * (np.hypot(*self.pull) + self.push + before @ before / radius))
@@ -290,12 +298,13 @@ class Witness:
             assert incoming <= bound + grazing, "thermal wall: no approach"
             assert outgoing >= -bound, "thermal wall: into it"
         else:
-            self.parts(incoming, outgoing, self.rebounds([disc], coefficient, time), bound, grazing, "wall")
+            self.parts(incoming, outgoing, rebounds, bound, grazing, "wall")
 
-    def wrapped_near(self, place, start, end) -> np.ndarray:
-        """The image of a place that is nearest to a segment."""
-        images = place + self.shifts
-        return images[distances(images, np.array([[start, end]])).argmin()]
+    def near(self, place, start, end) -> tuple[np.ndarray, np.ndarray]:
+        """For each image of a place: where along a segment its foot is, as a share, and how it stands from there."""
+        along, images = end - start, place + self.shifts
+        share = (images - start) @ along / (along @ along)
+        return share, images - start - np.clip(share, 0, 1)[:, None] * along
 
     # ── the whole gas ──
 

@@ -5,8 +5,8 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.engine.agenda import copy_image, image_of, note_image
 from idealgas.engine.cells import cell_index
-from idealgas.engine.order import precedes
-from idealgas.engine.schedule import NO_CONTACT, partner_rank, segment_partner
+from idealgas.engine.order import image_precedes, precedes
+from idealgas.engine.schedule import NO_CONTACT, images_of, partner_rank, segment_partner
 from idealgas.engine.wall_cells import images_to_item
 from idealgas.physics.disc_disc import contact_time, first_touch
 from idealgas.physics.periodic import NO_IMAGES, images_between
@@ -129,6 +129,8 @@ def test_carefully(record, ids, agenda, count, i, effects):
         earlier = time < prediction.contact
         if time == prediction.contact:
             earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))
+            if prediction.partner == j:
+                earlier = image_precedes(own, other, images, images_of(prediction))
         if earlier:
             store_contact(agenda, record, ids, i, j, k, time, effects.periodic)
 
@@ -148,8 +150,10 @@ def test_segments(record, ids, agenda, i, segments, effects):
             )
             earlier = time < prediction.contact
             if time == prediction.contact:
-                rank = partner_rank(ids, prediction.partner)
-                earlier = precedes(own, partner_rank(ids, segment_partner(k)), own, rank)
+                rank = partner_rank(ids, segment_partner(k))
+                earlier = precedes(own, rank, own, partner_rank(ids, prediction.partner))
+                if prediction.partner == segment_partner(k):
+                    earlier = image_precedes(own, rank, images, images_of(prediction))
             if earlier:
                 prediction.contact = time
                 prediction.partner = segment_partner(k)
