@@ -1,4 +1,4 @@
-"""Case files as parameters: `invalid_case`, `valid_case` and `shipped_scene` go through the folders of scenes.
+"""Case files as parameters: `invalid_case` and those of FOLDERS go through the folders of scenes.
 
 Hypothesis sets no deadlines: the first example of a test may have to compile.
 """
@@ -14,6 +14,7 @@ settings.load_profile("no-deadline")
 
 ROOT = Path(__file__).parent.parent
 CASES = ROOT / "tests" / "cases"
+FOLDERS = {"valid_case": CASES / "valid", "once_broke": CASES / "once_broke", "shipped_scene": ROOT / "configs"}
 
 
 class InvalidCase(NamedTuple):
@@ -38,7 +39,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "invalid_case" in metafunc.fixturenames:
         paths = sorted((CASES / "invalid").glob("*.toml"))
         metafunc.parametrize("invalid_case", [read_invalid(path) for path in paths], ids=[path.stem for path in paths])
-    for name, folder in (("valid_case", CASES / "valid"), ("shipped_scene", ROOT / "configs")):
+    for name, folder in FOLDERS.items():
         if name in metafunc.fixturenames:
             paths = sorted(folder.glob("*.toml"))
             metafunc.parametrize(name, paths, ids=[path.stem for path in paths])

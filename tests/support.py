@@ -65,6 +65,12 @@ def same_rows(a: EventBatch, b: EventBatch) -> bool:
     return all(np.array_equal(x, y) for x, y in zip(a, b, strict=True) if x is not None or y is not None)
 
 
+def within(what: str, error: float, bound: float) -> None:
+    """Assert a bound, and print how near to it an error came; `pytest -s` shows it."""
+    print(f"worst | {what} | {error:.2g} | {bound:.2g}")
+    assert error <= bound
+
+
 def idealgas(*arguments: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
     """The command, run in a folder to its end."""
     return subprocess.run(

@@ -17,7 +17,7 @@ from idealgas.gas import Gas
 from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
-from idealgas.physics.periodic import images_between
+from idealgas.physics.periodic import images_between, images_to_wall
 from idealgas.physics.piston import piston_contact, stop_contact
 from idealgas.physics.segment import segment_contact
 
@@ -52,13 +52,18 @@ def piston_hit(disc, piston, gravity):
 
 @inline
 def segment_event(disc, i, segments, effects, best):
-    """The earlier of `best` and disc i's meetings with wall segments."""
+    """The earlier of `best` and disc i's meetings with wall segments in every image."""
     if segments is not None:
         for k in range(segments.x.shape[0]):
             if segments.active[U(k)]:
-                time = segment_contact(disc, i, segments, k, effects.gravity, effects.restitution)
-                if time < best[0]:
-                    best = (time, SEGMENT, i, k, 0, 0)
+                for image_x in range(*image_range(effects.periodic, False)):
+                    for image_y in range(*image_range(effects.periodic, True)):
+                        images = images_to_wall(effects.periodic, i, (image_x, image_y))
+                        time = segment_contact(
+                            disc, i, segments, k, effects.gravity, effects.restitution, effects.periodic, images
+                        )
+                        if time < best[0]:
+                            best = (time, SEGMENT, i, k, image_x, image_y)
     return best
 
 
@@ -165,7 +170,8 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
             resolve_side(disc, i, partner, time, effects)
             rows += write_side_hit(batch, rows, clock, i, partner, disc, effects)
         elif what == SEGMENT:
-            at_end = resolve_segment(disc, i, partner, time, effects.segments, effects)
+            images = images_to_wall(effects.periodic, i, (image_x, image_y))
+            at_end = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
             rows += write_segment_hit(batch, rows, clock, i, partner, at_end, disc, effects)
         else:
             resolve_piston(disc, i, time, effects.piston, effects)

@@ -1,6 +1,7 @@
 """Epochs: how long local clocks run before all discs are brought to one time and the clocks start again."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -12,8 +13,11 @@ LONGEST_WAY = 6144  # of the fastest disc, in diameters: contacts are missed by 
 FEWEST_PER_DISC = 4  # events, however long the way: an epoch costs about as much as one event a disc
 
 
-def encounters_per_length(gas: Gas) -> float:
-    """Encounters of all discs with discs and sides per length that each moves: a kinetic-theory estimate, 1/length."""
+def encounters_per_length(gas: Gas, joined: Sequence[bool] = (False, False)) -> float:
+    """Encounters of all discs with discs and sides per length that each moves: a kinetic-theory estimate, 1/length.
+
+    joined: along which axes sides are. Sides that leave a disc less than its diameter: see `narrow_encounters`.
+    """
     n = len(gas)
     largest_radius = float(gas.radius.max())
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
@@ -21,11 +25,27 @@ def encounters_per_length(gas: Gas) -> float:
     contact_value = (1.0 - 7.0 * phi / 16.0) / (1.0 - phi) ** 2
     pairs = math.sqrt(2.0) * mean_diameter * (n - 1) / gas.area * contact_value
     room = [length - 2.0 * largest_radius for length in gas.box]
-    sides = sum(2.0 / (math.pi * length) for length in room if length > 0.0)
+    far = [
+        way if way > 2.0 * largest_radius else length * on
+        for way, length, on in zip(room, gas.box, joined, strict=True)
+    ]
+    sides = sum(2.0 / (math.pi * way) for way in far if way > 0.0)
     return n * (pairs + sides)
 
 
-def epoch_length(gas: Gas, encounters: float, extra_speed: float = 0.0) -> float:
+def narrow_encounters(gas: Gas, joined: Sequence[bool]) -> float:
+    """Hits of sides that leave the largest disc less than its diameter, 1/time: the direction of motion decides."""
+    rate = 0.0
+    for axis, (length, on) in enumerate(zip(gas.box, joined, strict=True)):
+        room = length - 2.0 * gas.radius
+        if not on and 0.0 < room.min() <= 2.0 * gas.radius.max():
+            rate += math.fsum((np.abs(gas.velocity[:, axis]) / room).tolist())
+    return rate
+
+
+def epoch_length(
+    gas: Gas, encounters: float, extra_speed: float = 0.0, joined: Sequence[bool] = (False, False)
+) -> float:
     """A power of two of time in which 32 to 64 events a disc happen, fewer in a thin gas; infinite if nothing moves.
 
     encounters: see `encounters_per_length`. extra_speed: length/time, what gravity or a piston may add to a speed.
@@ -33,7 +53,7 @@ def epoch_length(gas: Gas, encounters: float, extra_speed: float = 0.0) -> float
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
-    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters
+    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, joined)
     if rate == 0.0:
         return math.inf
     way = 2.0 * LONGEST_WAY * float(gas.radius.min()) / (float(speeds.max()) + extra_speed)

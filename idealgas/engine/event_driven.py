@@ -17,11 +17,10 @@ from idealgas.engine.piston_leaf import is_piston, offer_to_piston, predict_pist
 from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
-from idealgas.engine.schedule import SIDE_OF_BOX, clear, contact_is_next, next_disc, schedule, segment_of
+from idealgas.engine.schedule import SIDE_OF_BOX, clear, contact_is_next, images_of, next_disc, schedule, segment_of
 from idealgas.engine.wall_cells import WallCells, make_wall_cells
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
-from idealgas.physics.segment import Segments
 
 U = np.uintp
 
@@ -101,13 +100,15 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
                 predict_contact(record, ids, agenda, i, time, effects)
                 schedule(agenda.tree, agenda.prediction, ids, i)
                 continue
-            images = (np.int64(prediction.image_x), np.int64(prediction.image_y))
+            images = images_of(prediction)
             resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
             rows += write_pair(batch, rows, epoch_start + time, record, ids, i, other, effects)
             collisions += 1
         elif at_contact:
             wall = segment_of(prediction.partner)
-            at_end = resolve_segment(record[U(i)], ids[U(i)], wall, time, effects.segments, effects)
+            at_end = resolve_segment(
+                record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
+            )
             rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
         elif prediction.exit_code < SIDE_OF_BOX:
             crossings += 1
@@ -149,16 +150,16 @@ class EventDriven:
         self.discs = make_discs(gas, order)
         self.discs.record.column, self.discs.record.row = column[order], row[order]
         self._effects = effects
-        self._agenda = make_agenda(len(gas), cells, effects, self._wall_cells(effects.segments, cells, largest_radius))
+        self._agenda = make_agenda(len(gas), cells, effects, self._wall_cells(effects, cells, largest_radius))
         rebuild(self.discs.record, self.discs.id, self._agenda, effects)
 
-    def _wall_cells(self, segments: Segments | None, cells: Cells, largest_radius: float) -> WallCells | None:
+    def _wall_cells(self, effects: Effects, cells: Cells, largest_radius: float) -> WallCells | None:
         """Those of the epoch before, unless a gate has opened or closed since: the cells stay as they are."""
-        if segments is None:
+        if effects.segments is None:
             return None
-        active = segments.active.tobytes()
+        active = effects.segments.active.tobytes()
         if self._walls is None or self._walls[0] != active:
-            self._walls = active, make_wall_cells(segments, cells, largest_radius)
+            self._walls = active, make_wall_cells(effects.segments, effects.periodic, cells, largest_radius)
         return self._walls[1]
 
     def advance(

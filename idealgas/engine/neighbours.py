@@ -5,8 +5,9 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.engine.agenda import copy_image, image_of, note_image
 from idealgas.engine.cells import cell_index
-from idealgas.engine.order import precedes
-from idealgas.engine.schedule import NO_CONTACT, partner_rank, segment_partner
+from idealgas.engine.order import image_precedes, precedes
+from idealgas.engine.schedule import NO_CONTACT, images_of, partner_rank, segment_partner
+from idealgas.engine.wall_cells import images_to_item
 from idealgas.physics.disc_disc import contact_time, first_touch
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.segment import segment_contact
@@ -63,16 +64,21 @@ def images_to(agenda, k, ids, i, j, periodic):
 
 
 @inline
+def store_images(prediction, images, periodic):
+    """Remember how many box lengths away a disc meets its partner."""
+    if periodic is not None:
+        prediction.image_x = images[0]
+        prediction.image_y = images[1]
+
+
+@inline
 def store_contact(agenda, record, ids, i, j, k, time, periodic):
     """Make disc j, candidate k, the partner of disc i's contact."""
     prediction = agenda.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
-    if periodic is not None:
-        images = images_to(agenda, k, ids, i, j, periodic)
-        prediction.image_x = images[0]
-        prediction.image_y = images[1]
+    store_images(prediction, images_to(agenda, k, ids, i, j, periodic), periodic)
 
 
 @inline
@@ -123,6 +129,8 @@ def test_carefully(record, ids, agenda, count, i, effects):
         earlier = time < prediction.contact
         if time == prediction.contact:
             earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))
+            if prediction.partner == j:
+                earlier = image_precedes(own, other, images, images_of(prediction))
         if earlier:
             store_contact(agenda, record, ids, i, j, k, time, effects.periodic)
 
@@ -136,14 +144,20 @@ def test_segments(record, ids, agenda, i, segments, effects):
         own = np.int64(ids[U(i)])
         for entry in range(agenda.walls.start[cell], agenda.walls.start[cell + U(1)]):
             k = agenda.walls.item[U(entry)]
-            time = segment_contact(record[U(i)], own, segments, k, effects.gravity, effects.restitution)
+            images = images_to_item(agenda.walls, U(entry), ids[U(i)], effects.periodic)
+            time = segment_contact(
+                record[U(i)], own, segments, k, effects.gravity, effects.restitution, effects.periodic, images
+            )
             earlier = time < prediction.contact
             if time == prediction.contact:
-                rank = partner_rank(ids, prediction.partner)
-                earlier = precedes(own, partner_rank(ids, segment_partner(k)), own, rank)
+                rank = partner_rank(ids, segment_partner(k))
+                earlier = precedes(own, rank, own, partner_rank(ids, prediction.partner))
+                if prediction.partner == segment_partner(k):
+                    earlier = image_precedes(own, rank, images, images_of(prediction))
             if earlier:
                 prediction.contact = time
                 prediction.partner = segment_partner(k)
+                store_images(prediction, images, effects.periodic)
 
 
 @inline

@@ -68,11 +68,11 @@ def resolve_side(disc, own, side, time, effects):
 
 
 @inline
-def resolve_segment(disc, own, segment, time, segments, effects):
-    """A disc meets a wall segment; returns whether it met an end."""
+def resolve_segment(disc, own, segment, time, images, segments, effects):
+    """A disc meets a wall segment, `images` box lengths away from its record; returns whether it met an end."""
     if segments is not None:
         advance(disc, time, effects.gravity)
-        nx, ny, at_end = segment_normal(disc, segments, segment)
+        nx, ny, at_end = segment_normal(disc, segments, segment, effects.periodic, images)
         bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
         return at_end
     return False

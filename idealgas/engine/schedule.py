@@ -22,7 +22,7 @@ PREDICTION = np.dtype(
             "partner_count",
             "u4",
         ),  # the partner's count then: once it has moved on, the contact is stale
-        ("image_x", "i2"),  # box lengths between the two records, where sides are periodic
+        ("image_x", "i2"),  # box lengths to the other's record or the segment, where sides are periodic
         ("image_y", "i2"),
         ("exit_code", "i4"),  # 0-3: into the cell on the left, right, below, above; 4-7: meets that side of the box
     ],
@@ -82,6 +82,12 @@ def segment_partner(segment):
 def segment_of(partner):
     """The wall segment that a partner stands for."""
     return -2 - partner
+
+
+@inline
+def images_of(prediction):
+    """Box lengths between the record and what it meets."""
+    return np.int64(prediction.image_x), np.int64(prediction.image_y)
 
 
 @inline

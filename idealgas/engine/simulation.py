@@ -20,7 +20,7 @@ from idealgas.physics.periodic import Periodic
 
 UNLIMITED = 1 << 62
 LATEST = 0.25 * NEVER
-TRAJECTORY = 1
+TRAJECTORY = 2
 """Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
 
 
@@ -82,15 +82,16 @@ class Simulation:
     totals: Totals = field(default_factory=Totals)
 
     def __post_init__(self) -> None:
-        self._encounters = encounters_per_length(self.gas)
+        self._joined = (self.effects.periodic or (False, False))[:2]
+        self._encounters = encounters_per_length(self.gas, self._joined)
         self._begin()
 
     def _begin(self) -> None:
         begin_epoch(self.effects, self.time)
         until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
         extra_speed = speed_beyond(self.gas, self.effects)
-        length = math.inf if self.method.single_epoch else epoch_length(self.gas, self._encounters, extra_speed)
-        self.length = min(length, until_gate)
+        length = epoch_length(self.gas, self._encounters, extra_speed, self._joined)
+        self.length = min(math.inf if self.method.single_epoch else length, until_gate)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)

@@ -4,35 +4,51 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas._jit import inline
 from idealgas.engine.cells import Cells
+from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall
 from idealgas.physics.segment import Segments
 
 
 class WallCells(NamedTuple):
-    """The segments of cell c are item[start[c] : start[c + 1]]; both i4."""
+    """The segments of cell c are item[start[c] : start[c + 1]]; both i4. image: (…, 2) i4, box lengths that each
+    stands away from its place, as seen from the cell.
+    """
 
     start: np.ndarray
     item: np.ndarray
+    image: np.ndarray
 
 
-def make_wall_cells(segments: Segments, cells: Cells, largest_radius: float) -> WallCells:
+def make_wall_cells(segments: Segments, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
     """Every active segment, in every cell of which some point is within the largest radius of it or nearly so."""
     reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
-    cell_parts, item_parts = [], []
+    across, along = (range(-1, 2) if periodic and joined else (0,) for joined in (periodic or (False, False))[:2])
+    cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
     for k in np.flatnonzero(segments.active):
-        found = _cells_near(segments, int(k), cells, reach)
-        cell_parts.append(found)
-        item_parts.append(np.full(len(found), k, np.int32))
-    cell = np.concatenate([*cell_parts, np.empty(0, np.int64)])
-    item = np.concatenate([*item_parts, np.empty(0, np.int32)])
+        for image in ((x, y) for x in across for y in along):
+            found = _cells_near(segments, int(k), image, cells, reach)
+            cell_parts.append(found)
+            item_parts.append(np.full((len(found), 3), (k, *image), np.int32))
+    cell, item = np.concatenate(cell_parts), np.concatenate(item_parts)
     order = np.argsort(cell, kind="stable")
     start = np.searchsorted(cell[order], np.arange(cells.columns * cells.rows + 1))
-    return WallCells(start.astype(np.int32), item[order])
+    return WallCells(
+        start.astype(np.int32), np.ascontiguousarray(item[order, 0]), np.ascontiguousarray(item[order, 1:])
+    )
 
 
-def _cells_near(segments: Segments, k: int, cells: Cells, reach: float) -> np.ndarray:
-    """Indices of the cells whose centre is near enough to segment k for a corner to be within reach."""
-    start = np.array([segments.x[k], segments.y[k]])
+@inline
+def images_to_item(walls, entry, own, periodic):
+    """Box lengths between a disc's record and an entry of its cell."""
+    if periodic is not None:
+        return images_to_wall(periodic, own, (walls.image[entry, 0], walls.image[entry, 1]))
+    return NO_IMAGES
+
+
+def _cells_near(segments: Segments, k: int, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
+    """Indices of the cells whose centre is near enough to an image of segment k for a corner to be within reach."""
+    start = np.array([segments.x[k] + image[0] * cells.Lx, segments.y[k] + image[1] * cells.Ly])
     tangent = np.array([segments.tx[k], segments.ty[k]])
     length = segments.length[k]
     size = np.array([cells.width, cells.height])

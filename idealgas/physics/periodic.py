@@ -38,8 +38,16 @@ def images_between(periodic, a_id, b_id, image):
 
 
 @inline
+def images_to_wall(periodic, own, image):
+    """Box lengths between a disc's record and a wall that stands `image` box lengths away from its place now."""
+    if periodic is not None:
+        return np.int64(periodic.turns[U(own), 0] + image[0]), np.int64(periodic.turns[U(own), 1] + image[1])
+    return NO_IMAGES
+
+
+@inline
 def through_sides(x, y, periodic, images):
-    """The relative position of two discs whose records are so many box lengths apart."""
+    """A relative position across so many box lengths."""
     if periodic is not None:
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
     return x, y

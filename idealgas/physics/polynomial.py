@@ -1,4 +1,4 @@
-"""The first time at which a quartic falls through zero."""
+"""The first time at which a body on a parabola comes within reach of a point: a quartic falls through zero."""
 
 import math
 
@@ -9,20 +9,20 @@ BISECTIONS = 200  # more than enough to close any interval of floats
 
 
 @inline
-def horner(a, b, c, d, e, t):
-    """a t⁴ + b t³ + c t² + d t + e."""
-    return (((a * t + b) * t + c) * t + d) * t + e
+def cubic(b, c, d, e, t):
+    """b t³ + c t² + d t + e."""
+    return ((b * t + c) * t + d) * t + e
 
 
 @inline
-def bisect(a, b, c, d, e, low, high):
-    """The point of [low, high] where the polynomial changes sign, to the last bit; the signs at the ends differ."""
-    rising = horner(a, b, c, d, e, low) < horner(a, b, c, d, e, high)
+def bisect(b, c, d, e, low, high):
+    """The point of [low, high] where the cubic changes sign, to the last bit; the signs at the ends differ."""
+    rising = cubic(b, c, d, e, low) < cubic(b, c, d, e, high)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        if (horner(a, b, c, d, e, middle) > 0.0) == rising:
+        if (cubic(b, c, d, e, middle) > 0.0) == rising:
             high = middle
         else:
             low = middle
@@ -58,10 +58,10 @@ def cubic_turns(b, c, d, e, last):
         elif k == 1:
             high = min(max(right, 0.0), last)
         if high > low:
-            at_low = horner(0.0, b, c, d, e, low)
-            at_high = horner(0.0, b, c, d, e, high)
+            at_low = cubic(b, c, d, e, low)
+            at_high = cubic(b, c, d, e, high)
             if (at_low < 0.0) != (at_high < 0.0):
-                zero = bisect(0.0, b, c, d, e, low, high)
+                zero = bisect(b, c, d, e, low, high)
                 if found == 0:
                     first = zero
                 elif found == 1:
@@ -74,12 +74,28 @@ def cubic_turns(b, c, d, e, last):
 
 
 @inline
-def first_descent(a, b, c, d, e):
-    """Smallest t ≥ 0 at which p(t) = a t⁴ + b t³ + c t² + d t + e is zero or less and falls; NEVER if there is none.
-
-    a > 0. Between the turning points, the zeros of p', p is monotonic; the first stretch that ends at or below zero
-    holds the root. A p that is zero or less at 0 and falls there gives 0; if it rises there, the next descent counts.
+def gap(x, y, vx, vy, gx, gy, r, t):
+    """Square of the distance from the origin at time t on a parabola, less r²: from the place, so that no digit is lost
+    where r is small.
     """
+    there_x = x + t * (vx + 0.5 * gx * t)
+    there_y = y + t * (vy + 0.5 * gy * t)
+    return there_x * there_x + there_y * there_y - r * r
+
+
+@inline
+def first_descent(x, y, vx, vy, gx, gy, r):
+    """Smallest t ≥ 0 at which a parabola is within r of the origin and comes nearer; NEVER if there is none.
+
+    The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
+    stretch that ends at or below zero holds the root. A gap that is zero or less at 0 and falls there gives 0; if it
+    rises there, the next descent counts.
+    """
+    a = 0.25 * (gx * gx + gy * gy)
+    b = gx * vx + gy * vy
+    c = vx * vx + vy * vy + gx * x + gy * y
+    d = 2.0 * (x * vx + y * vy)
+    e = gap(x, y, vx, vy, gx, gy, r, 0.0)
     if e <= 0.0 and d < 0.0:
         return 0.0
     largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
@@ -91,9 +107,19 @@ def first_descent(a, b, c, d, e):
     for k in range(4):
         high = first if k == 0 else (second if k == 1 else (third if k == 2 else last))
         if high > low:
-            at_low = horner(a, b, c, d, e, low)
-            at_high = horner(a, b, c, d, e, high)
+            at_low = gap(x, y, vx, vy, gx, gy, r, low)
+            at_high = gap(x, y, vx, vy, gx, gy, r, high)
             if at_high <= 0.0 and at_high < at_low:
-                return bisect(a, b, c, d, e, low, high) if at_low > 0.0 else low
+                if at_low <= 0.0:
+                    return low
+                for _ in range(BISECTIONS):
+                    middle = 0.5 * (low + high)
+                    if middle <= low or middle >= high:
+                        break
+                    if gap(x, y, vx, vy, gx, gy, r, middle) > 0.0:
+                        low = middle
+                    else:
+                        high = middle
+                return high
             low = high
     return NEVER

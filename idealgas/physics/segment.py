@@ -8,6 +8,7 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import touch
+from idealgas.physics.periodic import through_sides
 from idealgas.physics.polynomial import first_descent
 from idealgas.physics.restitution import wall_rebound
 
@@ -87,25 +88,12 @@ def straight_end_delay(x, y, disc):
 
 
 @inline
-def accelerated_end_delay(x, y, vx, vy, r, gravity):
-    """Delay until a disc at (x, y) on a parabola meets the origin: the first descent of |r(t)|² - R² through zero."""
-    return first_descent(
-        0.25 * (gravity.x * gravity.x + gravity.y * gravity.y),
-        gravity.x * vx + gravity.y * vy,
-        vx * vx + vy * vy + gravity.x * x + gravity.y * y,
-        2.0 * (x * vx + y * vy),
-        x * x + y * y - r * r,
-    )
-
-
-@inline
-def segment_normal(disc, segments, k):
+def segment_normal(disc, segments, k, periodic, images):
     """Unit normal towards a disc that touches segment k, and whether it touches an end."""
     u = U(k)
     tx = segments.tx[u]
     ty = segments.ty[u]
-    x = disc.x - segments.x[u]
-    y = disc.y - segments.y[u]
+    x, y = through_sides(disc.x - segments.x[u], disc.y - segments.y[u], periodic, images)
     s = tx * x + ty * y
     if foot_inside(s, segments.length[u]):
         return (-ty, tx, False) if tx * y - ty * x > 0.0 else (ty, -tx, False)
@@ -125,17 +113,17 @@ def reflection_changes(disc, own, nx, ny, restitution):
 
 
 @inline
-def segment_contact(disc, own, segments, k, gravity, restitution):
+def segment_contact(disc, own, segments, k, gravity, restitution, periodic, images):
     """Time at which a disc meets segment k, body or end; NEVER if it does not.
 
+    images: box lengths between record and segment, where sides are periodic.
     A touching disc whose reflection would not change a digit of its velocity is done, unless gravity presses it on.
     """
     u = U(k)
     tx = segments.tx[u]
     ty = segments.ty[u]
     length = segments.length[u]
-    x = disc.x - segments.x[u]
-    y = disc.y - segments.y[u]
+    x, y = through_sides(disc.x - segments.x[u], disc.y - segments.y[u], periodic, images)
     d = tx * y - ty * x
     s = tx * x + ty * y
     vn = tx * disc.vy - ty * disc.vx
@@ -146,14 +134,14 @@ def segment_contact(disc, own, segments, k, gravity, restitution):
         an = tx * gravity.y - ty * gravity.x
         at = tx * gravity.x + ty * gravity.y
         delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
-        delay = min(delay, accelerated_end_delay(x, y, disc.vx, disc.vy, disc.r, gravity))
-        delay = min(delay, accelerated_end_delay(far_x, far_y, disc.vx, disc.vy, disc.r, gravity))
+        delay = min(delay, first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r))
+        delay = min(delay, first_descent(far_x, far_y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r))
     else:
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
         delay = min(delay, straight_end_delay(x, y, disc))
         delay = min(delay, straight_end_delay(far_x, far_y, disc))
         if delay == 0.0:
-            nx, ny, _ = segment_normal(disc, segments, k)
+            nx, ny, _ = segment_normal(disc, segments, k, periodic, images)
             if not reflection_changes(disc, own, nx, ny, restitution):
                 return NEVER
     return disc.t + delay if delay < NEVER else NEVER

@@ -1,0 +1,228 @@
+"""Scenes drawn at random: any effects that go together, at nasty scales, dense and thin, with ties and without.
+
+What a scene is made of is drawn by hypothesis, places and velocities by a seed that it draws. Units come last: at first
+a box is about 6 wide.
+"""
+
+import math
+from contextlib import suppress
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from hypothesis import reject
+from hypothesis import strategies as st
+from random_walls import HEIGHT, WIDTH, distances, some_walls
+
+from idealgas.gas import Gas, make_gas
+from idealgas.scene import Scene, SceneError, parse_scene
+from idealgas.scene.dump import toml_value
+from idealgas.scene.effects import SIDES
+
+EFFECTS = ("joined x", "joined y", "walls", "gravity", "rotation", "restitution", "thermal", "piston")
+LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
+SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
+MASSES = (1.0, 1e-8, 1e8)
+
+
+def room_of(size, piston) -> tuple[float, float, float, float]:
+    """Where discs may be: up to the piston."""
+    low, high = [0.0, 0.0], list(size)
+    if piston:
+        axis, upper = divmod(SIDES.index(piston["side"]), 2)
+        (high if upper else low)[axis] = piston["position"]
+    return (*low, *high)
+
+
+def place(random, size, joined, room, walls, number, share, gridded, factors):
+    """Positions (M, 2) and radii (M,) of discs on a lattice, moved a little unless gridded.
+
+    Those in walls are left out. share: of the pitch that the largest discs take up.
+    """
+    low, span = np.array(room[:2]), np.array(room[2:]) - room[:2]
+    columns = max(round(math.sqrt(number * span[0] / span[1])), 1)
+    shape = np.array([columns, -(-number // columns)])
+    pitch = span / shape
+    site = np.column_stack(np.divmod(np.arange(number), columns)[::-1])
+    radius = 0.5 * share * pitch.min() * random.choice(factors, number)
+    position = low + (site + 0.5) * pitch
+    if not gridded:
+        position += 0.99 * random.uniform(-1, 1, (number, 2)) * (pitch / 2 - radius[:, None])
+        shift = random.uniform(0, 1, 2) * joined * size
+        position = np.where(joined, (position + shift) % size, position)
+    if len(walls):
+        shifts = [(x, y) for x in ((-1, 0, 1) if joined[0] else (0,)) for y in ((-1, 0, 1) if joined[1] else (0,))]
+        images = np.concatenate([walls + np.array(s) * size for s in shifts])
+        clear = distances(position, images).min(axis=1) >= radius
+        position, radius = position[clear], radius[clear]
+    return position, radius
+
+
+def move(random, how: str, number: int) -> np.ndarray:
+    """Velocities (N, 2) in units of the scene's speed."""
+    if how == "few directions":
+        return random.choice([-1.0, 0.0, 1.0], (number, 2))
+    velocity = random.normal(size=(number, 2))
+    if how == "one hot":
+        velocity[1:] *= 1e-6
+    if how == "one moves":
+        velocity[1:] = 0.0
+    if how == "all speeds":
+        velocity *= 10.0 ** random.uniform(-8, 0, (number, 1))
+    return velocity
+
+
+@st.composite
+def walls_in(draw, size) -> np.ndarray:
+    """(W, 2, 2), both ends inside the box."""
+    walls = np.array(draw(some_walls)).reshape(-1, 2, 2)
+    walls = np.clip(walls * np.array(size) / (WIDTH, HEIGHT), 0, size)
+    along_side = ((walls[:, 0] == walls[:, 1]) & ((walls[:, 0] == 0) | (walls[:, 0] == size))).any(axis=1)
+    return walls[(np.hypot(*(walls[:, 1] - walls[:, 0]).T) > 1.1e-9 * max(size)) & ~along_side]
+
+
+def pick(draw, *values):
+    return draw(st.sampled_from(values))
+
+
+def draw_gate(draw) -> dict[str, float]:
+    """When a wall opens and closes, if it does."""
+    opens, lasts = pick(draw, None, None, 0.1, 1.0), pick(draw, None, 0.01, 0.5)
+    gate = {} if opens is None else {"opens_at": opens}
+    return gate if lasts is None else gate | {"closes_at": (opens or 0.0) + lasts}
+
+
+def draw_piston(draw, size, mass: float) -> dict[str, Any]:
+    side = pick(draw, *SIDES)
+    axis, upper = divmod(SIDES.index(side), 2)
+    share = pick(draw, 1.0, 0.9, 0.5)
+    piston = {"side": side, "position": size[axis] * (share if upper else 1 - share)}
+    if draw(st.booleans()):
+        return piston | {"velocity": pick(draw, 0.0, 0.1, -0.1, -0.003)}
+    return piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3), "pressure": mass * pick(draw, 1.0, 0.01, 30.0)}
+
+
+def keep_clear_of_piston(walls, size, piston) -> None:
+    """Press walls together at the side that the piston cannot reach."""
+    axis, upper = divmod(SIDES.index(piston["side"]), 2)
+    walls[:, :, axis] *= 0.1
+    if not upper:
+        walls[:, :, axis] += 0.9 * size[axis]
+
+
+def draw_species(draw, size, mass: float, largest: float, spins: bool) -> list[dict[str, Any]]:
+    """A few small discs more, put where there is room."""
+    table = {"name": "gas", "count": pick(draw, 1, 3, 6), "radius": min(0.2 * largest, 0.02 * min(size)), "mass": mass}
+    table |= pick(draw, {"temperature": mass}, {"speed": 0.5}, {"temperature": 1e-6 * mass})
+    table |= {"placement": pick(draw, "random", "lattice")}
+    return [table | ({"spin_temperature": mass} if spins else {})]
+
+
+@st.composite
+def tables_of(draw) -> dict[str, Any]:
+    """A scene's tables in units of its length, speed and mass."""
+    called = {name for name in EFFECTS if draw(st.booleans())}
+    random = np.random.default_rng(draw(st.integers(0, 2**32)))
+    size = pick(draw, (6.0, 5.0), (6.0, 6.0), (6.0, 1.5), (1.0, 6.0))
+    joined = np.array(["joined x" in called, "joined y" in called])
+    masses = pick(draw, [1.0], [1.0, 3.0], [1.0, 1e8], [1e-8, 1.0, 1e4])
+    piston = draw_piston(draw, size, masses[0]) if "piston" in called else None
+    if piston:
+        joined[SIDES.index(piston["side"]) // 2] = False
+    walls = draw(walls_in(size)) if "walls" in called else np.empty((0, 2, 2))
+    if piston:
+        keep_clear_of_piston(walls, size, piston)
+    number = pick(draw, 4, 1, 2, 3, 9, 16, 40)
+    share = pick(draw, 0.5, 1.0, 1 - 1e-9, 0.97, 0.1, 1e-3, 1e-6)
+    factors = pick(draw, [1.0], [1.0, 0.5], [1.0, 0.1, 1e-3])
+    gridded = draw(st.booleans())
+    position, radius = place(
+        random, np.array(size), joined, room_of(size, piston), walls, number, share, gridded, factors
+    )
+    n = len(position)
+    velocity = move(random, pick(draw, "normal", "few directions", "one hot", "one moves", "all speeds"), n)
+    mass = random.choice(masses, n)
+    spins = "rotation" in called
+    discs = [
+        {"position": position[k].tolist(), "velocity": velocity[k].tolist(), "radius": radius[k], "mass": mass[k]}
+        | ({"angular_velocity": random.normal() / radius[k]} if spins else {})
+        for k in range(n)
+    ]
+    tables = {"box": {"size": list(size)}, "disc": discs, "run": {"until": pick(draw, 3.0, 0.3, 30.0)}}
+    tables["run"]["events"] = pick(draw, 10, 30, 30, 100)
+    for axis in range(2):
+        for side in SIDES[2 * axis : 2 * axis + 2]:
+            if joined[axis]:
+                tables["box"][side] = "periodic"
+            elif "thermal" in called and draw(st.booleans()) and not (piston and piston["side"] == side):
+                tables["box"][side] = {"thermal": masses[-1] * pick(draw, 1.0, 1e-4, 100.0)}
+    if len(walls):
+        hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}
+        gates = draw(st.booleans())
+        tables["wall"] = [
+            {"from": a, "to": b} | (draw_gate(draw) if gates else {}) | (hot if k == 0 else {})
+            for k, (a, b) in enumerate(walls.tolist())
+        ]
+    if "gravity" in called and not joined.all():
+        pull = pick(draw, 1.0, 0.01, 1e-6, 100.0)
+        direction = np.where(joined, 0.0, pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0)))
+        tables["gravity"] = {"acceleration": (pull * direction).tolist()}
+    if spins:
+        tables["rotation"] = {"inertia": pick(draw, 0.5, 1.0, 1e-6), "roughness": pick(draw, 1.0, 0.0, -0.5, 0.99)}
+        tables["rotation"]["wall_roughness"] = pick(draw, -1.0, 1.0, 0.5)
+    if "restitution" in called:
+        tables["restitution"] = {"normal": pick(draw, 0.9, 1.0, 0.3, 0.0), "wall": pick(draw, 1.0, 0.9, 0.0)}
+        tables["restitution"]["contact_duration"] = pick(draw, 1e-6, 1e-3)
+    if piston:
+        tables["piston"] = piston
+    if n and n <= 9 and share <= 0.5 and draw(st.booleans()):
+        tables["species"] = draw_species(draw, size, masses[0], radius.max(), spins)
+    return tables
+
+
+def dimension(path: tuple[str, ...]) -> tuple[int, int, int]:
+    """Powers of length, speed and mass in the unit of a key."""
+    key = path[-1]
+    powers = {
+        "size": (1, 0, 0), "position": (1, 0, 0), "radius": (1, 0, 0), "from": (1, 0, 0), "to": (1, 0, 0),
+        "velocity": (0, 1, 0), "speed": (0, 1, 0), "mass": (0, 0, 1), "angular_velocity": (-1, 1, 0),
+        "temperature": (0, 2, 1), "thermal": (0, 2, 1), "spin_temperature": (0, 2, 1), "acceleration": (-1, 2, 0),
+        "pressure": (-2, 2, 1), "until": (1, -1, 0), "opens_at": (1, -1, 0), "closes_at": (1, -1, 0),
+        "contact_duration": (1, -1, 0),
+    }  # fmt: skip
+    return powers.get(key, (0, 0, 0))
+
+
+def in_units(value, units, path=()):
+    """The tables in other units."""
+    if isinstance(value, dict):
+        return {key: in_units(item, units, (*path, key)) for key, item in value.items()}
+    if isinstance(value, list):
+        return [in_units(item, units, path) for item in value]
+    if isinstance(value, (float, np.floating)):
+        return float(value) * math.prod(unit**power for unit, power in zip(units, dimension(path), strict=True))
+    return value
+
+
+def text_of(tables: dict[str, Any]) -> str:
+    return "\n".join(f"{key} = {toml_value(table)}" for key, table in tables.items())
+
+
+@lru_cache(maxsize=1)
+def scene_and_gas(text: str) -> tuple[Scene, Gas]:
+    """SceneError if the scene is refused."""
+    scene = parse_scene(text)
+    return scene, make_gas(scene)
+
+
+@st.composite
+def scene_texts(draw) -> str:
+    """The text of a scene that is accepted: what the checks refuse is first tried again with less in it."""
+    tables = draw(tables_of())
+    units = (pick(draw, *LENGTHS), pick(draw, *SPEEDS), pick(draw, *MASSES))
+    for omitted in ((), ("wall",), ("piston",), ("wall", "piston"), ("species",), ("gravity",), tuple(tables)[3:]):
+        text = text_of(in_units({key: table for key, table in tables.items() if key not in omitted}, units))
+        with suppress(SceneError):
+            scene_and_gas(text)
+            return text
+    reject()

@@ -1,0 +1,154 @@
+"""Scenes with any effects at nasty scales: a witness looks at every event, and brute force writes the same log.
+
+All effects go into one compilation, those that a scene does not call for with numbers that change nothing; only gravity
+is there or not. A scene that once broke something is kept in tests/cases/once_broke.
+"""
+
+import math
+import os
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fuzz_scenes import scene_and_gas, scene_texts
+from hypothesis import HealthCheck, given, settings
+from witness import Witness, Worst
+
+from idealgas.effects import make_effects
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.effects import Effects
+from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.records import aligned
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import EventBatch, empty_batch
+from idealgas.gas import Gas
+from idealgas.physics.periodic import Periodic
+from idealgas.physics.piston import PISTON
+from idealgas.physics.restitution import Restitution
+from idealgas.physics.rotation import Rotation
+from idealgas.physics.segment import Segments
+from idealgas.physics.thermal import Thermal
+from idealgas.scene import Scene
+from idealgas.simulate import stop_of
+
+PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
+MOST_EPOCHS = 5_000  # no scene has many
+
+
+@contextmanager
+def watchdog(text: str) -> Iterator[None]:
+    """Ends the process if a scene hangs, and leaves the scene behind. The engine lets other threads run."""
+
+    done, started = threading.Event(), time.process_time()
+
+    def watch() -> None:
+        while not done.wait(1.0):
+            if time.process_time() - started > PATIENCE:
+                (Path(tempfile.gettempdir()) / "idealgas-hangs.toml").write_text(text)
+                os.abort()
+
+    threading.Thread(target=watch, daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
+
+
+def fresh_effects(scene: Scene, gas: Gas) -> Effects:
+    """All effects but gravity, those not called for without any effect."""
+    n, walls = len(gas), len(scene.wall)
+    called = make_effects(scene, gas)
+    beyond = aligned(1, PISTON)
+    beyond[0].x = beyond[0].stop = math.inf
+    beyond[0].side = 5
+    neutral = Effects(
+        periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
+        segments=Segments(*np.empty((7, 0)), np.empty(0, bool)),
+        rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
+        restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
+        thermal=Thermal(np.full(4 + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
+        piston=beyond,
+        ledger=np.zeros(4 + walls),
+    )
+    return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
+
+
+def columns_of(scene: Scene, gas: Gas, stop: Stop) -> list[np.ndarray]:
+    """The whole log by brute force."""
+    simulation, parts = Simulation(gas, BruteForce(), fresh_effects(scene, gas)), []
+    while not simulation.finished(stop):
+        batch = empty_batch(1024, True, True)
+        parts.append(batch.rows(0, simulation.advance(stop, batch)))
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+    return [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
+
+
+def run_scene(text: str, worst: Worst) -> None:
+    """Run a scene event by event before a witness, to exactly where it should end, then by brute force."""
+    scene, gas = scene_and_gas(text)
+    stop = stop_of(scene, len(gas))
+    effects = fresh_effects(scene, gas)
+    simulation = Simulation(gas, EventDriven(), effects)
+    witness = Witness(scene, gas, effects, worst)
+    seen: list[EventBatch] = []
+    while not simulation.finished(stop):
+        batch = empty_batch(4, True, True)
+        rows = batch.rows(0, simulation.advance(stop, batch, events=1))
+        if len(rows.time):
+            seen.append(rows)
+            witness.see(rows, simulation)
+        if simulation.epoch_over and not simulation.finished(stop):
+            simulation.next_epoch()
+            assert simulation.epoch < MOST_EPOCHS, "the clock hardly runs"
+    by_time = simulation.so_far.events < stop.events
+    assert simulation.so_far.events == len(seen) <= stop.events
+    assert simulation.last_event_time <= stop.time
+    if by_time:
+        witness.finish(stop.time, simulation)
+    oracle = columns_of(scene, gas, stop)
+    if seen:
+        columns = [np.concatenate(column) for column in zip(*seen, strict=True) if column[0] is not None]
+        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True)), "not the log of brute force"
+    else:
+        assert not len(oracle[0])
+
+
+scenes = given(scene_texts())
+quick = settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+
+
+@quick
+@scenes
+def test_scenes_with_any_effects(text):
+    with watchdog(text):
+        run_scene(text, Worst())
+
+
+@pytest.mark.long
+def test_many_scenes_with_any_effects():
+    """Prints what the bounds were compared with at worst."""
+    worst, count = Worst(), 0
+
+    @settings(quick, max_examples=20_000)
+    @scenes
+    def run(text):
+        nonlocal count
+        with watchdog(text):
+            run_scene(text, worst)
+        count += 1
+
+    run()
+    print(f"{count} scenes, {worst}")
+
+
+def test_what_once_broke(once_broke):
+    """Scenes whose first line says what went wrong."""
+    text = once_broke.read_text()
+    with watchdog(text):
+        run_scene(text, Worst())

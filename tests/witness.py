@@ -1,0 +1,337 @@
+"""A witness of a run: an account of the motion of its own, held against the engine after every event.
+
+Paths follow from the rows of the log alone. Between two events no two discs may come closer than their radii, and no
+disc to a wall, a side or the piston; at each event the discs must touch and part as the law says; energies must add up.
+
+Bounds are of rounding. A coordinate is known to a few u = 2⁻⁵³ of the box and of the way that the fastest disc can have
+gone since clocks started (the epoch's for what the engine computes, the run's for what is computed from the log).
+Velocities are known to a few u of the speeds, and directions to the error of a place over the distance of the centres.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from random_walls import crossings, distances
+
+from idealgas.effects import wall_temperatures
+from idealgas.energy import energy_of, is_conserved, piston_motion
+from idealgas.engine.effects import Effects
+from idealgas.engine.simulation import Simulation
+from idealgas.events import EventBatch, Kind
+from idealgas.gas import Gas
+from idealgas.scene import Scene
+from idealgas.scene.effects import SIDES
+
+U = 2.0**-53
+FEW = 16.0
+SAMPLES = 33  # of a parabola
+MOST_IMAGES = 400  # of walls along a flight
+
+
+@dataclass
+class Worst:
+    """The largest errors seen: contact and place in units of the resolution, energy relative. events: looked at."""
+
+    contact: float = 0.0
+    place: float = 0.0
+    energy: float = 0.0
+    events: int = 0
+
+
+class Witness:
+    """Follows one run. Every method raises AssertionError where something does not hold."""
+
+    def __init__(self, scene: Scene, gas: Gas, effects: Effects, worst: Worst) -> None:
+        n = len(gas)
+        self.gas, self.worst = gas, worst
+        self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
+        self.size, self.joined = np.array(gas.box), np.array(scene.box.joined)
+        self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
+        self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
+        self.temperature = wall_temperatures(scene)
+        self.piston = scene.piston
+        self.push = abs(scene.piston.acceleration(gas.box, scene.gravity)) if scene.piston else 0.0
+        self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
+        self.rotation, self.restitution = effects.rotation, effects.restitution
+        self.since, self.last = np.zeros(n), np.full(n, -math.inf)
+        self.position, self.velocity = gas.position.copy(), gas.velocity.copy()  # unwrapped
+        self.omega = np.zeros(n) if effects.rotation is None else effects.rotation.omega.copy()
+        self.inertia = np.zeros(n) if effects.rotation is None else effects.rotation.inertia
+        self.first, self.second = np.triu_indices(n, 1)
+        self.reach = gas.radius[self.first] + gas.radius[self.second]
+        across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
+        self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
+        self.now, self.known, self.epochs, self.events = 0.0, 0.0, 0, 0
+        self.conserved = is_conserved(effects)
+        self.start = energy_of(gas, effects)
+        self.lowest, self.scale = self.start.balance, self.start.scale
+
+    # ── what is known, and how well ──
+
+    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Unwrapped positions and velocities of all discs."""
+        dt = (time - self.since)[:, None]
+        return self.position + self.velocity * dt + 0.5 * self.pull * dt**2, self.velocity + self.pull * dt
+
+    def resolution(self, duration: float) -> float:
+        """How well a place is known after clocks ran for so long."""
+        fall = (np.hypot(*self.pull) + self.push) * duration
+        return U * (1 + self.epochs) * (self.size.max() + (self.fastest + fall) * duration)
+
+    def wrapped(self, difference: np.ndarray) -> np.ndarray:
+        """Through joined sides where that is shorter."""
+        return difference - np.where(self.joined, self.size * np.round(difference / self.size), 0.0)
+
+    # ── one event ──
+
+    def see(self, rows: EventBatch, simulation: Simulation) -> None:
+        """The rows of one event, and the simulation as the event left it."""
+        time = float(rows.time[0])
+        assert all(np.isfinite(column).all() for column in rows if column is not None)
+        assert (rows.time == time).all()
+        assert time >= self.now
+        place, velocity = self.at(time)
+        self.look(time, simulation)
+        discs = rows.disc.astype(int)
+        image = 0 if rows.image is None else rows.image
+        after = rows.position + image * self.size
+        self.note("place", np.abs(after - place[discs]).max(), self.known)
+        for disc in discs:
+            self.fly(disc, time)
+        if rows.kind[0] == Kind.DISC:
+            self.meet(rows, velocity[discs], time)
+        else:
+            self.bounce(int(rows.kind[0]), int(rows.partner[0]), rows, velocity[discs[0]], simulation, time)
+        self.position[discs], self.velocity[discs] = after, rows.velocity
+        self.since[discs] = self.last[discs] = self.now = time
+        if rows.angular_velocity is not None:
+            self.omega[discs] = rows.angular_velocity
+        self.events += 1
+        self.worst.events += 1
+        self.compare(time, simulation)
+
+    def note(self, what: str, error: float, bound: float) -> None:
+        """Assert a bound and remember how close it came."""
+        assert error <= bound, f"{what}: {error:.3g} > {bound:.3g}"
+        share = FEW * float(error / bound) if bound else 0.0
+        setattr(self.worst, what, max(getattr(self.worst, what), share))
+
+    def finish(self, time: float, simulation: Simulation) -> None:
+        """The end of the run, at its end time."""
+        self.look(time, simulation)
+        for disc in range(len(self.gas)):
+            self.fly(disc, time)
+        self.compare(time, simulation)
+
+    def look(self, time: float, simulation: Simulation) -> None:
+        """How well all is known now; what happened since the last event."""
+        self.epochs = simulation.epoch
+        self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
+        if self.piston is not None:
+            self.fastest += max(
+                abs(piston_motion(simulation.effects.piston, t - simulation.time)[1]) for t in (self.now, time)
+            )
+        self.known = max(self.known, FEW * self.resolution(time))  # a place keeps its error
+        self.touches = FEW * self.resolution(time - simulation.time)
+        self.keep_apart(time)
+
+    # ── flights ──
+
+    def keep_apart(self, time: float) -> None:
+        """No two discs meet from the last event to this time: relative motion is straight, also under gravity."""
+        place, velocity = self.at(self.now)
+        duration = time - self.now
+        apart = self.wrapped(place[self.first] - place[self.second])
+        closing = velocity[self.first] - velocity[self.second]
+        turns = np.where(self.joined, np.ceil(np.abs(closing).max(axis=0, initial=0) * duration / self.size) + 1, 0)
+        turns = np.minimum(turns, 4).astype(int)
+        squared = (closing**2).sum(axis=1)
+        for x in range(-turns[0], turns[0] + 1):
+            for y in range(-turns[1], turns[1] + 1):
+                shifted = apart + np.array([x, y]) * self.size
+                nearest = np.divide(-(shifted * closing).sum(axis=1), squared, out=0 * squared, where=squared > 0)
+                path = shifted + closing * np.clip(nearest, 0, duration)[:, None]
+                assert (np.hypot(*path.T) >= self.reach - self.known).all(), "discs pass through each other"
+
+    def fly(self, disc: int, time: float) -> None:
+        """The way of a disc since its last event keeps clear of the walls and inside the box."""
+        velocity, duration = self.velocity[disc], time - self.since[disc]
+        radius = self.gas.radius[disc]
+        times = np.linspace(0, duration, SAMPLES)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tops = -velocity / self.pull
+        path = self.path(disc, np.concatenate((times, tops[(tops > 0) & (tops < duration)])))
+        inside = (path >= radius - self.known) & (path <= self.size - radius + self.known)
+        assert (inside | self.joined).all(), "out of the box"
+        if not len(self.walls):
+            return
+        low, high = (np.floor(edge / self.size) for edge in (path.min(axis=0) - radius, path.max(axis=0) + radius))
+        low, high = np.where(self.joined, low, 0).astype(int), np.where(self.joined, high, 0).astype(int)
+        if (high - low + 1).prod() * len(self.walls) > MOST_IMAGES:
+            return
+        shifts = [(x, y) for x in range(low[0], high[0] + 1) for y in range(low[1], high[1] + 1)]
+        there = self.absence[:, 0] >= time
+        walls = np.concatenate([self.walls[there] + np.array(shift) * self.size for shift in shifts])
+        gates = (self.absence[:, 1] <= self.since[disc]) & ~there  # a disc may be in their way when they close
+        closed = np.concatenate([self.walls[there | gates] + np.array(shift) * self.size for shift in shifts])
+        path = self.path(disc, np.sort(np.concatenate((times, *self.nearest(disc, walls, duration)))))
+        if len(walls):
+            assert distances(path, walls).min() >= radius - self.known, "in a wall"
+        if radius > self.known and len(closed):
+            assert not crossings(path[:-1], path[1:], closed).any(), "through a wall"
+
+    def path(self, disc: int, times: np.ndarray) -> np.ndarray:
+        """Unwrapped positions (T, 2) of a disc at times after its last event."""
+        times = times[:, None]
+        return self.position[disc] + self.velocity[disc] * times + 0.5 * self.pull * times**2
+
+    def nearest(self, disc: int, walls: np.ndarray, duration: float) -> list[np.ndarray]:
+        """Times at which a disc is nearest to the ends and lines of walls, if that is on its way."""
+        velocity, times = self.velocity[disc], np.linspace(0, duration, SAMPLES)
+        ends = walls.reshape(-1, 2)
+        places = self.path(disc, times)
+        best = times[np.hypot(*np.moveaxis(places[:, None] - ends, -1, 0)).argmin(axis=0)]
+        with np.errstate(all="ignore"):
+            for _ in range(4):  # Newton's method for the derivative of the distance squared
+                away = self.path(disc, best) - ends
+                speed = velocity + self.pull * best[:, None]
+                best = best - (away * speed).sum(axis=1) / ((speed**2).sum(axis=1) + away @ self.pull)
+            along = walls[:, 1] - walls[:, 0]
+            normal = np.column_stack((-along[:, 1], along[:, 0]))
+            tops = -(normal @ velocity) / (normal @ self.pull)
+        return [found[(found > 0) & (found < duration)] for found in (best, tops)]
+
+    # ── collisions ──
+
+    def energy(self, disc: int, velocity: np.ndarray, omega: float) -> float:
+        """Of motion and spin."""
+        return float(0.5 * self.gas.mass[disc] * velocity @ velocity + 0.5 * self.inertia[disc] * omega**2)
+
+    def rebounds(self, discs, coefficient: float, time: float) -> tuple[float, ...]:
+        """The coefficients that are right; two if the last collision was about a contact duration ago."""
+        if self.restitution is None:
+            return (1.0,)
+        duration, ago = self.restitution.contact_duration, time - max(self.last[discs])
+        either = abs(ago - duration) <= 1e-6 * duration + FEW * U * time
+        return (1.0, coefficient) if either else (1.0 if ago < duration else coefficient,)
+
+    def fitting(self, normals: np.ndarray, before: np.ndarray, after: np.ndarray, rebounds) -> np.ndarray:
+        """The one of several normals (M, 2) along which a rebound fits best."""
+        misfits = [np.abs(normals @ after + e * (normals @ before)) for e in rebounds]
+        return normals[np.min(misfits, axis=0).argmin()]
+
+    def parts(self, before: float, after: float, rebounds, bound: float, grazing: float, what: str) -> None:
+        """Normal speeds, away from each other, before and after. grazing: what a graze may turn out to be."""
+        assert before <= bound + grazing, f"{what}: no approach"
+        assert min(abs(after + e * before) for e in rebounds) <= bound, f"{what}: rebound from {before} to {after}"
+
+    def meet(self, rows: EventBatch, before: np.ndarray, time: float) -> None:
+        """Two discs touch, and part by the law."""
+        i, j = (int(k) for k in rows.disc)
+        assert rows.partner.tolist() == [j, i]
+        reach, mass = self.gas.radius[[i, j]].sum(), self.gas.mass[[i, j]]
+        images = rows.position[0] - rows.position[1] + self.shifts
+        error = np.abs(np.hypot(*images.T) - reach)
+        self.note("contact", error.min(), self.touches)
+        touching = images[error <= self.touches]  # in two images at once, if the box has room for no more
+        normals = touching / np.hypot(*touching.T)[:, None]
+        coefficient = 1.0 if self.restitution is None else self.restitution.normal
+        rebounds = self.rebounds([i, j], coefficient, time)
+        normal = self.fitting(normals, before[0] - before[1], rows.velocity[0] - rows.velocity[1], rebounds)
+        speeds = np.hypot(*before.T).sum() + np.hypot(*rows.velocity.T).sum() + np.hypot(*self.pull) * time
+        bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / reach)
+        closing, parting = ((v[0] - v[1]) @ normal for v in (before, rows.velocity))
+        grazing = np.hypot(*(before[0] - before[1])) * math.sqrt(2 * self.touches / reach)
+        self.parts(closing, parting, rebounds, bound, grazing, "discs")
+        gained = (mass[:, None] * (rows.velocity - before)).sum(axis=0)
+        assert np.abs(gained).max() <= FEW * U * (1 + self.epochs) * mass @ (
+            np.hypot(*before.T) + np.hypot(*rows.velocity.T) + np.hypot(*self.pull) * time
+        ), "momentum"
+        omegas = self.omega[[i, j]] if rows.angular_velocity is None else rows.angular_velocity
+        old = sum(self.energy(k, v, self.omega[k]) for k, v in zip((i, j), before, strict=True))
+        new = sum(self.energy(k, v, w) for k, v, w in zip((i, j), rows.velocity, omegas, strict=True))
+        slack = 4 * FEW * U * (1 + self.epochs) * (old + mass.max() * speeds * np.hypot(*self.pull) * time)
+        assert new <= old + slack, "energy gained"
+        elastic = self.restitution is None or self.restitution.normal == 1
+        if elastic and (self.rotation is None or abs(self.rotation.roughness) == 1):
+            assert new >= old - slack, "energy lost"
+
+    def bounce(self, kind, partner, rows: EventBatch, before, simulation: Simulation, time: float) -> None:
+        """A disc touches a wall or the piston, and leaves it by the law."""
+        disc, wall = int(rows.disc[0]), -1 - partner
+        place, after, radius = rows.position[0], rows.velocity[0], self.gas.radius[disc]
+        stand, normal = 0.0, np.zeros(2)
+        coefficient = 1.0 if self.restitution is None else self.restitution.wall
+        rebounds = self.rebounds([disc], coefficient, time)
+        if wall < 4:
+            axis, upper = divmod(wall, 2)
+            normal[axis] = -1.0 if upper else 1.0
+            edge = self.size[axis] * upper
+            assert (kind == Kind.PISTON) == (self.piston is not None and self.piston.side == SIDES[wall])
+            if kind == Kind.PISTON:
+                edge, stand = piston_motion(simulation.effects.piston, time - simulation.time)
+            distance = abs(place[axis] - edge)
+        else:
+            opens, closes = self.absence[wall - 4]
+            assert not opens <= time < closes, "an open gate"
+            start, end = self.walls[wall - 4]
+            share, away = self.near(place, start, end)
+            distances = np.hypot(*away.T)
+            nearest = np.abs(distances - radius).argmin()
+            touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
+            normal = self.fitting(away[touching] / distances[touching, None], before, after, rebounds)
+            share, distance = share[nearest], distances[nearest]
+            if closes < math.inf:
+                distance = max(distance, radius)  # it may have closed over the disc
+            along = self.known / np.hypot(*(end - start))
+            assert -along <= share <= 1 + along if kind == Kind.WALL else not along < share < 1 - along, "foot"
+        self.note("contact", abs(distance - radius), self.touches)
+        if kind == Kind.PISTON and self.piston.mass is not None:
+            return  # its own change is in the balance of energy
+        speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
+        bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius)
+        motion = np.zeros(2) if kind != Kind.PISTON else stand * np.abs(normal)
+        incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
+        grazing = math.sqrt(2 * self.touches * (np.hypot(*self.pull) + self.push + before @ before / radius))
+        if self.temperature[wall] >= 0:
+            assert incoming <= bound + grazing, "thermal wall: no approach"
+            assert outgoing >= -bound, "thermal wall: into it"
+        else:
+            self.parts(incoming, outgoing, rebounds, bound, grazing, "wall")
+
+    def near(self, place, start, end) -> tuple[np.ndarray, np.ndarray]:
+        """For each image of a place: where along a segment its foot is, as a share, and how it stands from there."""
+        along, images = end - start, place + self.shifts
+        share = (images - start) @ along / (along @ along)
+        return share, images - start - np.clip(share, 0, 1)[:, None] * along
+
+    # ── the whole gas ──
+
+    def compare(self, time: float, simulation: Simulation) -> None:
+        """The engine's state is the one that follows from the log, the piston is beyond all discs, energies add up."""
+        gas, effects = simulation.state_now()
+        place, velocity = self.at(time)
+        speed = self.fastest + np.hypot(*self.pull) * time
+        assert np.abs(self.wrapped(gas.position - place)).max() <= self.known, "state"
+        assert np.abs(gas.velocity - velocity).max() <= FEW * U * (1 + self.epochs) * speed, "state"
+        if self.piston is not None:
+            self.behind_piston(place, effects.piston, time - simulation.time)
+        energy = energy_of(gas, effects, time - simulation.time)
+        self.scale = max(self.scale, energy.scale)
+        weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
+        bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
+        assert energy.balance <= self.lowest + bound, "energy gained"
+        if self.conserved:
+            drift = abs(energy.balance - self.start.balance)
+            assert drift <= bound, f"energy drifts by {drift}"
+            self.worst.energy = max(self.worst.energy, drift / self.scale if self.scale else 0.0)
+        else:
+            self.lowest = min(self.lowest, energy.balance)
+
+    def behind_piston(self, place: np.ndarray, piston: np.ndarray, local_time: float) -> None:
+        """The piston is between all discs and its end stop."""
+        edge, _ = piston_motion(piston, local_time)
+        outward, axis = self.piston.outward, self.piston.axis
+        assert (outward * (edge - place[:, axis]) >= self.gas.radius - self.known).all(), "beyond the piston"
+        assert outward * (self.piston.stop(self.gas.box) - edge) >= -self.known, "piston beyond its stop"
