@@ -270,7 +270,7 @@ class Witness:
             edge = self.size[axis] * upper
             assert (kind == Kind.PISTON) == (self.piston is not None and self.piston.side == SIDES[wall])
             if kind == Kind.PISTON:
-                edge, stand = piston_motion(simulation.effects.piston, time - simulation.time)
+                edge, stand = simulation.effects.piston[0].x, simulation.effects.piston[0].v
             distance = abs(place[axis] - edge)
         else:
             opens, closes = self.absence[wall - 4]
@@ -278,12 +278,13 @@ class Witness:
             start, end = self.walls[wall - 4]
             share, away = self.near(place, start, end)
             distances = np.hypot(*away.T)
+            normals = away / distances[:, None]
+            if closes < math.inf:
+                distances = np.maximum(distances, radius)  # it may have closed over the disc
             nearest = np.abs(distances - radius).argmin()
             touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
-            normal = self.fitting(away[touching] / distances[touching, None], before, after, rebounds)
+            normal = self.fitting(normals[touching], before, after, rebounds)
             share, distance = share[nearest], distances[nearest]
-            if closes < math.inf:
-                distance = max(distance, radius)  # it may have closed over the disc
             along = self.known / np.hypot(*(end - start))
             assert -along <= share <= 1 + along if kind == Kind.WALL else not along < share < 1 - along, "foot"
         self.note("contact", abs(distance - radius), self.touches)
