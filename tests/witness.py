@@ -284,9 +284,11 @@ class Witness:
             nearest = np.abs(distances - radius).argmin()
             touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
             normal = self.fitting(normals[touching], before, after, rebounds)
-            share, distance = share[nearest], distances[nearest]
+            share, distance = share[touching], distances[nearest]
             along = self.known / np.hypot(*(end - start))
-            assert -along <= share <= 1 + along if kind == Kind.WALL else not along < share < 1 - along, "foot"
+            inside = (share > along) & (share < 1 - along)
+            beyond = (share < -along) | (share > 1 + along)
+            assert not (beyond if kind == Kind.WALL else inside).all(), "foot"
         self.note("contact", abs(distance - radius), self.touches)
         if kind == Kind.PISTON and self.piston.mass is not None:
             return  # its own change is in the balance of energy
