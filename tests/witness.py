@@ -219,7 +219,7 @@ class Witness:
     def fitting(self, normals: np.ndarray, before: np.ndarray, after: np.ndarray, rebounds) -> np.ndarray:
         """The one of several normals (M, 2) along which a rebound fits best."""
         misfits = [np.abs(normals @ after + e * (normals @ before)) for e in rebounds]
-        return normals[np.min(misfits, axis=0).argmin()]
+        return normals[(np.min(misfits, axis=0) + np.maximum(normals @ before, 0.0)).argmin()]  # towards each other
 
     def parts(self, before: float, after: float, rebounds, bound: float, grazing: float, what: str) -> None:
         """Normal speeds, away from each other, before and after. grazing: what a graze may turn out to be."""
