@@ -219,7 +219,7 @@ class Witness:
     def fitting(self, normals: np.ndarray, before: np.ndarray, after: np.ndarray, rebounds) -> np.ndarray:
         """The one of several normals (M, 2) along which a rebound fits best."""
         misfits = [np.abs(normals @ after + e * (normals @ before)) for e in rebounds]
-        return normals[np.min(misfits, axis=0).argmin()]
+        return normals[(np.min(misfits, axis=0) + np.maximum(normals @ before, 0.0)).argmin()]  # towards each other
 
     def parts(self, before: float, after: float, rebounds, bound: float, grazing: float, what: str) -> None:
         """Normal speeds, away from each other, before and after. grazing: what a graze may turn out to be."""
@@ -270,7 +270,7 @@ class Witness:
             edge = self.size[axis] * upper
             assert (kind == Kind.PISTON) == (self.piston is not None and self.piston.side == SIDES[wall])
             if kind == Kind.PISTON:
-                edge, stand = piston_motion(simulation.effects.piston, time - simulation.time)
+                edge, stand = simulation.effects.piston[0].x, simulation.effects.piston[0].v
             distance = abs(place[axis] - edge)
         else:
             opens, closes = self.absence[wall - 4]
@@ -278,14 +278,17 @@ class Witness:
             start, end = self.walls[wall - 4]
             share, away = self.near(place, start, end)
             distances = np.hypot(*away.T)
+            normals = away / distances[:, None]
+            if closes < math.inf:
+                distances = np.maximum(distances, radius)  # it may have closed over the disc
             nearest = np.abs(distances - radius).argmin()
             touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
-            normal = self.fitting(away[touching] / distances[touching, None], before, after, rebounds)
-            share, distance = share[nearest], distances[nearest]
-            if closes < math.inf:
-                distance = max(distance, radius)  # it may have closed over the disc
+            normal = self.fitting(normals[touching], before, after, rebounds)
+            share, distance = share[touching], distances[nearest]
             along = self.known / np.hypot(*(end - start))
-            assert -along <= share <= 1 + along if kind == Kind.WALL else not along < share < 1 - along, "foot"
+            inside = (share > along) & (share < 1 - along)
+            beyond = (share < -along) | (share > 1 + along)
+            assert not (beyond if kind == Kind.WALL else inside).all(), "foot"
         self.note("contact", abs(distance - radius), self.touches)
         if kind == Kind.PISTON and self.piston.mass is not None:
             return  # its own change is in the balance of energy

@@ -40,14 +40,15 @@ def touch(x, y, vx, vy, reach):
     """Whether (x, y), moving with (vx, vy), comes within reach of the origin, and after what delay; 0 if it is there.
 
     The root c/(√D - b) of the distance equation has no cancellation for small c, and D = v²S² - (v × r)² keeps its
-    digits in a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). Free of branches.
+    digits in a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). D = 0 is no contact: it would change
+    nothing, and of discs that slide off each other rounding would say c/|b|, any time at all. Free of branches.
     """
     approach = x * vx + y * vy
     gap = x * x + y * y - reach * reach
     cross = vx * y - vy * x
     discriminant = (vx * vx + vy * vy) * (reach * reach) - cross * cross
     delay = max(gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) - approach)
-    return (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0)), delay
+    return (approach < 0.0) & ((discriminant > 0.0) | (gap <= 0.0)), delay
 
 
 @inline
