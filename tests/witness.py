@@ -63,6 +63,7 @@ class Witness:
         across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.known, self.epochs, self.events = 0.0, 0.0, 0, 0
+        self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston, 0.0)[1])
         self.conserved = is_conserved(effects)
         self.start = energy_of(gas, effects)
         self.lowest, self.scale = self.start.balance, self.start.scale
@@ -129,9 +130,9 @@ class Witness:
         self.epochs = simulation.epoch
         self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
         if self.piston is not None:
-            self.fastest += max(
-                abs(piston_motion(simulation.effects.piston, t - simulation.time)[1]) for t in (self.now, time)
-            )
+            before = self.pace  # after the last event: a light piston may give all of it to the disc that it meets
+            self.pace = abs(piston_motion(simulation.effects.piston, time - simulation.time)[1])
+            self.fastest += max(before, self.pace) + self.push * (time - self.now)
         self.known = max(self.known, FEW * self.resolution(time))  # a place keeps its error
         self.touches = FEW * self.resolution(time - simulation.time)
         self.keep_apart(time)
