@@ -118,7 +118,7 @@ def pair_time(c, i, j):
     if less(zero, gap):
         cross = subtract(multiply(vx, y), multiply(vy, x))
         discriminant = subtract(multiply(dot(vx, vy, vx, vy), square), multiply(cross, cross))
-        if less(discriminant, zero):
+        if not less(zero, discriminant):
             return never
         touch = add(time, divide(gap, subtract(root(discriminant), approach)))
     if not less(time, touch):

