@@ -279,6 +279,8 @@ class Witness:
             start, end = self.walls[wall - 4]
             share, away = self.near(place, start, end)
             distances = np.hypot(*away.T)
+            if closes < math.inf and distances.min() <= self.touches:
+                return  # it closed on the very centre: neither side is that of the disc
             normals = away / distances[:, None]
             if closes < math.inf:
                 distances = np.maximum(distances, radius)  # it may have closed over the disc

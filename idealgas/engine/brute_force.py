@@ -145,7 +145,7 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
     events = 0
     collisions = 0
     now = counters[0].time
-    still = 0
+    still = counters[0].still
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
@@ -180,6 +180,7 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
         still = check_clock(time, now, still, record.shape[0])
         now = time
     add_to_counters(counters[0], events, collisions, 0, 0, now)
+    counters[0].still = still
     return rows, reached
 
 

@@ -70,7 +70,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
     stale = 0
     rows = 0
     now = counters[0].time
-    still = 0
+    still = counters[0].still
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
@@ -126,6 +126,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
         still = check_clock(time, now, still, record.shape[0])
         now = time
     add_to_counters(counters[0], events, collisions, crossings, stale, now)
+    counters[0].still = still
     return rows, reached
 
 

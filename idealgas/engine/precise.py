@@ -244,7 +244,7 @@ def advance_precisely(
     events = 0
     collisions = 0
     now = counters[0].time
-    still = 0
+    still = counters[0].still
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
@@ -273,6 +273,7 @@ def advance_precisely(
         still = check_clock(clock, now, still, record.shape[0])
         now = clock
     add_to_counters(counters[0], events, collisions, 0, 0, now)
+    counters[0].still = still
     return rows, reached
 
 

@@ -26,6 +26,7 @@ COUNTERS = np.dtype(
     [
         ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),
         ("crossings", "i8"), ("stale", "i8"), ("time", "f8"),  # local time of the last event
+        ("still", "i8"),  # events since the clock last moved
         ("trials", "i8"), ("trial_time", "f8"),  # of Monte Carlo: since time 0; local time of the last one
     ]
 )  # fmt: skip

@@ -13,6 +13,7 @@ from idealgas.engine.effects import Effects, begin_epoch, copy_of, end_epoch, sp
 from idealgas.engine.epoch import encounters_per_length, epoch_length
 from idealgas.engine.event_driven import EventDriven
 from idealgas.engine.records import COUNTERS, Discs, Limits, synchronise
+from idealgas.errors import UserError
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
 from idealgas.physics.constants import NEVER
@@ -103,7 +104,7 @@ class Simulation:
         """Process events until the epoch is over, the stop is reached or the batch is full; return the rows filled.
 
         events: a further limit for this call. pause: time at which to return with `paused` set, unless it is later
-        than the end of the epoch or the stop; it changes no event.
+        than the end of the epoch or the stop; it changes no event. UserError if the clock stands still.
         """
         done = self.so_far
         end = min(self.length, stop.time - self.time, LATEST)
@@ -114,7 +115,10 @@ class Simulation:
             stop.disc_collisions - done.disc_collisions,
             stop.trials - done.trials,
         )
-        rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
+        try:
+            rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
+        except ValueError as error:  # of a kernel, which can say no more
+            raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0].time)
         return rows

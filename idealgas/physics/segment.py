@@ -88,6 +88,19 @@ def straight_end_delay(x, y, disc):
 
 
 @inline
+def unless_off_the_body(delay, d, s, vn, vt, an, at, length):
+    """The delay until a disc meets an end; NEVER if it moves off the body then, with its foot on it.
+
+    Only a disc that a gate closed over comes to an end from within.
+    """
+    if delay < NEVER and foot_inside(s + (vt + 0.5 * at * delay) * delay, length):
+        speed = vn + an * delay
+        if (speed >= 0.0) if d + (vn + 0.5 * an * delay) * delay > 0.0 else (speed <= 0.0):
+            return NEVER
+    return delay
+
+
+@inline
 def segment_normal(disc, segments, k, periodic, images):
     """Unit normal towards a disc that touches segment k, and whether it touches an end."""
     u = U(k)
@@ -134,12 +147,15 @@ def segment_contact(disc, own, segments, k, gravity, restitution, periodic, imag
         an = tx * gravity.y - ty * gravity.x
         at = tx * gravity.x + ty * gravity.y
         delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
-        delay = min(delay, first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r))
-        delay = min(delay, first_descent(far_x, far_y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r))
+        near_end = first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r)
+        far_end = first_descent(far_x, far_y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r)
+        delay = min(delay, unless_off_the_body(near_end, d, s, vn, vt, an, at, length))
+        delay = min(delay, unless_off_the_body(far_end, d, s, vn, vt, an, at, length))
     else:
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
-        delay = min(delay, straight_end_delay(x, y, disc))
-        delay = min(delay, straight_end_delay(far_x, far_y, disc))
+        near_end, far_end = straight_end_delay(x, y, disc), straight_end_delay(far_x, far_y, disc)
+        delay = min(delay, unless_off_the_body(near_end, d, s, vn, vt, 0.0, 0.0, length))
+        delay = min(delay, unless_off_the_body(far_end, d, s, vn, vt, 0.0, 0.0, length))
         if delay == 0.0:
             nx, ny, _ = segment_normal(disc, segments, k, periodic, images)
             if not reflection_changes(disc, own, nx, ny, restitution):
