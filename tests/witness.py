@@ -62,7 +62,7 @@ class Witness:
         self.reach = gas.radius[self.first] + gas.radius[self.second]
         across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
-        self.now, self.known, self.epochs, self.events = 0.0, 0.0, 0, 0
+        self.now, self.known, self.epochs, self.events, self.fastest = 0.0, 0.0, 0, 0, 0.0
         self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston, 0.0)[1])
         self.conserved = is_conserved(effects)
         self.start = energy_of(gas, effects)
@@ -127,12 +127,14 @@ class Witness:
 
     def look(self, time: float, simulation: Simulation) -> None:
         """How well all is known now; what happened since the last event."""
+        earlier = self.fastest if self.epochs == simulation.epoch else 0.0  # what was fast left its errors behind
         self.epochs = simulation.epoch
         self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
         if self.piston is not None:
             before = self.pace  # after the last event: a light piston may give all of it to the disc that it meets
             self.pace = abs(piston_motion(simulation.effects.piston, time - simulation.time)[1])
             self.fastest += max(before, self.pace) + self.push * (time - self.now)
+        self.fastest = max(self.fastest, earlier)
         self.known = max(self.known, FEW * self.resolution(time))  # a place keeps its error
         self.touches = FEW * self.resolution(time - simulation.time)
         self.keep_apart(time)
