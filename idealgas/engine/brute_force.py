@@ -179,8 +179,7 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
         events += 1
         still = check_clock(time, now, still, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, 0, 0, now)
-    counters[0].still = still
+    add_to_counters(counters[0], events, collisions, 0, 0, now, still)
     return rows, reached
 
 

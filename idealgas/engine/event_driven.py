@@ -125,8 +125,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
         events += 1
         still = check_clock(time, now, still, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, crossings, stale, now)
-    counters[0].still = still
+    add_to_counters(counters[0], events, collisions, crossings, stale, now, still)
     return rows, reached
 
 

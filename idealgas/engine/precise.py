@@ -272,8 +272,7 @@ def advance_precisely(
         events += 1
         still = check_clock(clock, now, still, record.shape[0])
         now = clock
-    add_to_counters(counters[0], events, collisions, 0, 0, now)
-    counters[0].still = still
+    add_to_counters(counters[0], events, collisions, 0, 0, now, still)
     return rows, reached
 
 

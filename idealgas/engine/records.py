@@ -40,6 +40,10 @@ def aligned(n: int, dtype: np.dtype, boundary: int = 64) -> Any:
     return array.view(np.recarray) if dtype.names else array
 
 
+class StandingClock(Exception):
+    """A disc collides without end at one instant."""
+
+
 class Limits(NamedTuple):
     """until: local time. events, collisions, trials: how many more of them."""
 
@@ -70,25 +74,29 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 @inline
 def check_clock(time, now, still, n):
-    """How many events in a row have happened at one instant. ValueError if time runs backwards or does not run on."""
+    """How many events in a row have happened at one instant.
+
+    Raises StandingClock if it is to be without end, ValueError if time runs backwards.
+    """
     if time < now:
         raise ValueError("time ran backwards")
     if time > now:
         return 0
     if still > MOST_AT_ONCE * n:
-        raise ValueError("the clock stands still: a disc collides without end at one instant")
+        raise StandingClock("the clock stands still: a disc collides without end at one instant")
     return still + 1
 
 
 @inline
-def add_to_counters(counter, events, disc_collisions, crossings, stale, now):
-    """Count what happened in one call of a kernel."""
+def add_to_counters(counter, events, disc_collisions, crossings, stale, now, still):
+    """Count what happened in one call of a kernel; still: events since the clock last moved."""
     counter.events += events
     counter.disc_collisions += disc_collisions
     counter.wall_hits += events - disc_collisions
     counter.crossings += crossings
     counter.stale += stale
     counter.time = now
+    counter.still = still
 
 
 @njit

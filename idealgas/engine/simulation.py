@@ -12,12 +12,12 @@ from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.effects import Effects, begin_epoch, copy_of, end_epoch, speed_beyond, time_of_next_gate
 from idealgas.engine.epoch import encounters_per_length, epoch_length
 from idealgas.engine.event_driven import EventDriven
-from idealgas.engine.records import COUNTERS, Discs, Limits, synchronise
+from idealgas.engine.records import COUNTERS, Discs, Limits, StandingClock, synchronise
 from idealgas.errors import UserError
 from idealgas.events import EventBatch
 from idealgas.gas import Gas
 from idealgas.physics.constants import NEVER
-from idealgas.physics.periodic import Periodic
+from idealgas.physics.periodic import Periodic, joined_axes
 
 UNLIMITED = 1 << 62
 LATEST = 0.25 * NEVER
@@ -83,16 +83,16 @@ class Simulation:
     totals: Totals = field(default_factory=Totals)
 
     def __post_init__(self) -> None:
-        self._joined = (self.effects.periodic or (False, False))[:2]
-        self._encounters = encounters_per_length(self.gas, self._joined)
+        self._encounters = encounters_per_length(self.gas, joined_axes(self.effects.periodic))
         self._begin()
 
     def _begin(self) -> None:
         begin_epoch(self.effects, self.time)
         until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
-        extra_speed = speed_beyond(self.gas, self.effects)
-        length = epoch_length(self.gas, self._encounters, extra_speed, self._joined)
-        self.length = min(math.inf if self.method.single_epoch else length, until_gate)
+        self.length = until_gate
+        if not self.method.single_epoch:
+            joined, extra_speed = joined_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
+            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, joined), until_gate)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
@@ -117,7 +117,7 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-        except ValueError as error:  # of a kernel, which can say no more
+        except StandingClock as error:  # of a kernel, which cannot say when
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0].time)

@@ -26,6 +26,11 @@ class Periodic(NamedTuple):
     image: np.ndarray
 
 
+def joined_axes(periodic: Periodic | None) -> tuple[bool, bool]:
+    """Along which axes sides are joined."""
+    return (periodic.x, periodic.y) if periodic else (False, False)
+
+
 @inline
 def images_between(periodic, a_id, b_id, image):
     """Box lengths between the records of a and b, which stand `image` box lengths apart now."""

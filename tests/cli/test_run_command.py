@@ -105,7 +105,7 @@ def test_an_existing_output_is_refused_and_left_alone(tmp_path):
         ("file/run.h5", 2, "file/run.h5: no folder file\n"),
         pytest.param(
             "/proc/run.h5", 1, "/proc/run.h5: cannot be written: ",
-            marks=pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder where nobody may write"),
+            marks=pytest.mark.skipif(not Path("/proc/self").exists(), reason="no other folder is closed to root"),
         ),
     ],
 )  # fmt: skip

@@ -16,7 +16,9 @@ SETS += [set(triple) for triple in combinations(NAMES, 3) if allowed(set(triple)
 ALL = set(NAMES) - {"periodic"}
 ALL_PERIODIC = set(NAMES) - {"piston"}
 
-interpreted_only = pytest.mark.skipif(not numba.config.DISABLE_JIT, reason="one compilation per set: run interpreted")
+interpreted_only = pytest.mark.skipif(
+    not numba.config.DISABLE_JIT, reason="would compile for each of 91 sets: NUMBA_DISABLE_JIT=1 pytest -m interpreted"
+)
 
 
 def assert_same_log(names: set[str], seed: int, events: int, shape=(4, 3)) -> None:
