@@ -1,7 +1,6 @@
 """A gas on its way through the epochs of its run."""
 
 import copy
-import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
