@@ -20,6 +20,7 @@ class StoredColumn:
         self.chunk: tuple[int, ...] = layout.get_chunk()
         self.dtype = np.dtype(dataset.dtype.str)
         self._encoder = encoder or chunks.Encoder()
+        self.extent: int = dataset.shape[0]  # asking HDF5 each time takes as long as storing some planes
         self._compressed = layout.get_filter_by_id(h5py.h5z.FILTER_DEFLATE) is not None
         self._origin = (0,) * (len(self.chunk) - 1)
 
@@ -39,9 +40,8 @@ class StoredColumn:
 
     def write(self, start: int, rows: int, data: np.ndarray, plain: bool = False) -> None:
         """Store the chunk at row `start`, of which `rows` count. HDF5 demands that the extent grows first."""
-        shape = self.id.shape
-        if shape[0] < start + rows:
-            self.id.set_extent((start + rows, *shape[1:]))
+        if self.extent < start + rows:
+            self.resize(start + rows)
         offset = (start, *self._origin)
         data = np.asarray(data, self.dtype)
         if not self._compressed:
@@ -50,6 +50,10 @@ class StoredColumn:
             self.id.write_direct_chunk(offset, self._encoder.plain(data), chunks.PLAIN)
         else:
             self.id.write_direct_chunk(offset, self._encoder.compressed(data), chunks.COMPRESSED)
+
+    def resize(self, rows: int) -> None:
+        self.id.set_extent((rows, *self.chunk[1:]))
+        self.extent = rows
 
 
 class Table:
@@ -114,9 +118,8 @@ class Table:
         HDF5 is not left to cut within a chunk: it forgets the filter mask of one written past it.
         """
         for column in self.columns.values():
-            shape = column.id.shape
-            if shape[0] > self.whole + self.fill:
-                column.id.set_extent((self.whole, *shape[1:]))
+            if column.extent > self.whole + self.fill:
+                column.resize(self.whole)
         if self.fill:
             self._plain = True
             self._write(self._pending, self.fill)
