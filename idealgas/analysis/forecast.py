@@ -12,10 +12,10 @@ from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 from idealgas.scene.geometry import room
 
-BYTES_A_ROW = {"gzip": 36, "none": 49}
+BYTES_A_ROW = {"gzip": 38, "none": 49}
 """Size of an event's row in the log, by compression..."""
 
-MORE_BYTES = {"rotation": {"gzip": 9, "none": 8}, "periodic sides": {"gzip": 2, "none": 8}}
+MORE_BYTES = {"rotation": {"gzip": 7, "none": 8}, "periodic sides": {"gzip": 2, "none": 8}}
 """...and what columns of effects add to it."""
 
 

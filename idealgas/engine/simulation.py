@@ -20,7 +20,7 @@ from idealgas.physics.periodic import Periodic, joined_axes
 
 UNLIMITED = 1 << 62
 LATEST = 0.25 * NEVER
-TRAJECTORY = 2
+TRAJECTORY = 3
 """Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
 
 

@@ -84,8 +84,9 @@ def gap(x, y, vx, vy, gx, gy, r, t):
 
 
 @inline
-def first_descent(x, y, vx, vy, gx, gy, r):
-    """Smallest t ≥ 0 at which a parabola is within r of the origin and comes nearer; NEVER if there is none.
+def first_descent(x, y, vx, vy, gx, gy, r, after):
+    """Smallest t ≥ 0 at which a parabola is within r of the origin and comes nearer, in a descent that begins after
+    the time `after`; NEVER if there is none.
 
     The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
     stretch that ends at or below zero holds the root. A gap that is zero or less at 0 and falls there gives 0; if it
@@ -96,7 +97,7 @@ def first_descent(x, y, vx, vy, gx, gy, r):
     c = vx * vx + vy * vy + gx * x + gy * y
     d = 2.0 * (x * vx + y * vy)
     e = gap(x, y, vx, vy, gx, gy, r, 0.0)
-    if e <= 0.0 and d < 0.0:
+    if e <= 0.0 and d < 0.0 and after < 0.0:
         return 0.0
     largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
     last = 1.0 + largest / a  # Cauchy's bound on the roots
@@ -109,7 +110,7 @@ def first_descent(x, y, vx, vy, gx, gy, r):
         if high > low:
             at_low = gap(x, y, vx, vy, gx, gy, r, low)
             at_high = gap(x, y, vx, vy, gx, gy, r, high)
-            if at_high <= 0.0 and at_high < at_low:
+            if low > after and at_high <= 0.0 and at_high < at_low:
                 if at_low <= 0.0:
                     return low
                 for _ in range(BISECTIONS):

@@ -88,16 +88,33 @@ def straight_end_delay(x, y, disc):
 
 
 @inline
-def unless_off_the_body(delay, d, s, vn, vt, an, at, length):
-    """The delay until a disc meets an end; NEVER if it moves off the body then, with its foot on it.
+def moves_off(delay, far, d, s, vn, vt, an, at, length):
+    """Whether a disc that comes to an end then moves away from where the segment is nearest, its body or other end.
 
     Only a disc that a gate closed over comes to an end from within.
     """
-    if delay < NEVER and foot_inside(s + (vt + 0.5 * at * delay) * delay, length):
-        speed = vn + an * delay
-        if (speed >= 0.0) if d + (vn + 0.5 * an * delay) * delay > 0.0 else (speed <= 0.0):
-            return NEVER
-    return delay
+    foot = s + (vt + 0.5 * at * delay) * delay
+    height = d + (vn + 0.5 * an * delay) * delay
+    speed = vn + an * delay
+    if foot_inside(foot, length):
+        return (speed >= 0.0) if height > 0.0 else (speed <= 0.0)
+    if far:
+        return (foot <= 0.0) & (foot * (vt + at * delay) + height * speed >= 0.0)
+    return (foot >= length) & ((foot - length) * (vt + at * delay) + height * speed >= 0.0)
+
+
+@inline
+def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
+    """Delay until a disc, at (x, y) from an end of the wall, meets it; d, s, vn, vt, an, at: normal and tangential."""
+    delay = -1.0
+    for _ in range(2):  # a parabola comes down to a point at most twice
+        if gravity is not None:
+            delay = first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r, delay)
+        else:
+            delay = straight_end_delay(x, y, disc)
+        if delay == NEVER or not moves_off(delay, far, d, s, vn, vt, an, at, length):
+            return delay
+    return NEVER
 
 
 @inline
@@ -141,23 +158,18 @@ def segment_contact(disc, own, segments, k, gravity, restitution, periodic, imag
     s = tx * x + ty * y
     vn = tx * disc.vy - ty * disc.vx
     vt = tx * disc.vx + ty * disc.vy
-    far_x = x - length * tx
-    far_y = y - length * ty
+    an = at = 0.0
     if gravity is not None:
         an = tx * gravity.y - ty * gravity.x
         at = tx * gravity.x + ty * gravity.y
         delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
-        near_end = first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r)
-        far_end = first_descent(far_x, far_y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r)
-        delay = min(delay, unless_off_the_body(near_end, d, s, vn, vt, an, at, length))
-        delay = min(delay, unless_off_the_body(far_end, d, s, vn, vt, an, at, length))
     else:
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
-        near_end, far_end = straight_end_delay(x, y, disc), straight_end_delay(far_x, far_y, disc)
-        delay = min(delay, unless_off_the_body(near_end, d, s, vn, vt, 0.0, 0.0, length))
-        delay = min(delay, unless_off_the_body(far_end, d, s, vn, vt, 0.0, 0.0, length))
-        if delay == 0.0:
-            nx, ny, _ = segment_normal(disc, segments, k, periodic, images)
-            if not reflection_changes(disc, own, nx, ny, restitution):
-                return NEVER
+    for far in range(2):
+        end_x, end_y = x - far * length * tx, y - far * length * ty
+        delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, gravity))
+    if gravity is None and delay == 0.0:
+        nx, ny, _ = segment_normal(disc, segments, k, periodic, images)
+        if not reflection_changes(disc, own, nx, ny, restitution):
+            return NEVER
     return disc.t + delay if delay < NEVER else NEVER
