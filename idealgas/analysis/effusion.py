@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from idealgas.analysis import theory
 from idealgas.analysis.composition import composition
@@ -14,6 +15,7 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 INSTANTS = 256
+TINY = 1e-12
 
 
 @dataclass(frozen=True)
@@ -21,8 +23,8 @@ class Effusion:
     """time: (INSTANTS,), from the opening on; beyond: (INSTANTS,), discs on the side that had fewer at first.
 
     density: of the fuller side if all were there. expected: (INSTANTS,), beyond by theory. speed: discs per time and
-    open length, over the difference of the densities; theory: ⟨v⟩/π. Its error is that of a Poisson number of passages
-    both ways.
+    open length, over the difference of the densities, each times the mean speed on its side over that of the gas;
+    theory: ⟨v⟩/π. Its error is that of a Poisson number of passages both ways.
     """
 
     density: float
@@ -54,6 +56,7 @@ class Effusion:
 def effusion(log: Log, start: float | None = None, end: float | None = None) -> Effusion:
     """Measure a log of two chambers and one gate, by default from its opening to the end.
 
+    The theory is that of a slit much narrower than the mean free path; through a wider one more discs pass.
     UserError if there is no gate along an axis, or discs of several species.
     """
     gates = [wall for wall in log.scene.wall if wall.opens_at is not None]
@@ -68,22 +71,39 @@ def effusion(log: Log, start: float | None = None, end: float | None = None) -> 
     place, radius, number = ends[0, across], discs.radius[0], len(log.discs)
     opening = max(gate.opens_at or 0.0, log.start_time)
     time = np.linspace(opening if start is None else start, log.end_time if end is None else end, INSTANTS)
-    above = np.array([(state.position[:, across] > place).sum() for state in log.frames(time)])
-    if above[0] > number / 2:
-        above, place = number - above, log.box[across] - place
+    beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
+    for k, state in enumerate(log.frames(time)):
+        side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
+        beyond[k], flux[:, k] = side.sum(), (pace[~side].sum(), pace[side].sum())
+    if beyond[0] > number / 2:
+        beyond, flux, place = number - beyond, flux[::-1], log.box[across] - place
     height = log.box[1 - across] - 2 * radius
     inner, outer = (place - 2 * radius) * height, (log.box[across] - place - 2 * radius) * height
     slit = float(np.ptp(ends[:, 1 - across])) - 2 * radius
-    drive = np.trapezoid((number - above) / inner - above / outer, time)
-    both = np.trapezoid((number - above) / inner + above / outer, time)
+    mean_speed = theory.mean_speed(equilibrium.temperature, discs.mass[0], equilibrium.dof)
+    there, back = flux / mean_speed / [[inner], [outer]]
+    drive, both = np.trapezoid(there - back, time), np.trapezoid(there + back, time)
     if not slit > 0 or not drive > 0:
         raise UserError(f"{log.path}: no effusion: a slit that lets no disc pass, or chambers in balance")
-    expected = theory.mean_speed(equilibrium.temperature, discs.mass[0], equilibrium.dof) / math.pi
-    passed = float(above[-1] - above[0])
+    expected = mean_speed / math.pi
+    passed = float(beyond[-1] - beyond[0])
     speed = passed / (slit * drive)
     error = math.sqrt(expected * slit * both) / (slit * drive)
-    decay = expected * slit * (1 / inner + 1 / outer)
-    rest = number * outer / (inner + outer)
-    course = rest + (above[0] - rest) * np.exp(-decay * (time - time[0]))
+    rate = expected * slit
+    course = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
     found = Estimate(speed, error, max(passed, 1.0), expected)
-    return Effusion(number / inner, equilibrium.temperature, time, above, course, found)
+    return Effusion(number / inner, equilibrium.temperature, time, beyond, course, found)
+
+
+def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
+    """(INSTANTS,): of all discs, from rates at equal temperature. Discs that pass carry 3T/2 on the average, not T, so
+    that one side gets colder and the other hotter.
+    """
+
+    def change(_: float, shares: np.ndarray) -> np.ndarray:
+        """Of the discs and of the energy: a side with n and e sends √(ne), and 3/2 √(e³/n) of the energy."""
+        (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
+        discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
+        return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])
+
+    return solve_ivp(change, (time[0], time[-1]), [at_first, at_first], t_eval=time, rtol=1e-8).y[0]
