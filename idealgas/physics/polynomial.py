@@ -90,7 +90,7 @@ def first_descent(x, y, vx, vy, gx, gy, r, after):
 
     The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
     stretch that ends at or below zero holds the root. A gap that is zero or less at 0 and falls there gives 0; if it
-    rises there, the next descent counts.
+    rises there, the next descent counts: to zero, or, if the gap stays below zero until then, to what it is at 0.
     """
     a = 0.25 * (gx * gx + gy * gy)
     b = gx * vx + gy * vy
@@ -110,14 +110,15 @@ def first_descent(x, y, vx, vy, gx, gy, r, after):
         if high > low:
             at_low = gap(x, y, vx, vy, gx, gy, r, low)
             at_high = gap(x, y, vx, vy, gx, gy, r, high)
-            if low > after and at_high <= 0.0 and at_high < at_low:
-                if at_low <= 0.0:
+            level = min(e, 0.0) if low > 0.0 and at_low <= 0.0 else 0.0
+            if low > after and at_high <= level and at_high < at_low:
+                if at_low <= level:
                     return low
                 for _ in range(BISECTIONS):
                     middle = 0.5 * (low + high)
                     if middle <= low or middle >= high:
                         break
-                    if gap(x, y, vx, vy, gx, gy, r, middle) > 0.0:
+                    if gap(x, y, vx, vy, gx, gy, r, middle) > level:
                         low = middle
                     else:
                         high = middle

@@ -50,7 +50,10 @@ def straight_body_delay(d, s, v_normal, v_tangent, r, length):
 
 @inline
 def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
-    """The same on a parabola: the earliest approach to either face with the foot inside."""
+    """The same on a parabola: the earliest approach to either face with the foot inside.
+
+    A disc that a gate closed over, and that cannot rise out of it, bounces as deep in it as it is.
+    """
     best = NEVER
     for face in range(2):
         sign = 1.0 if face == 0 else -1.0
@@ -58,7 +61,7 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
         speed = sign * vn
         pull = sign * an
         discriminant = speed * speed - 2.0 * pull * height
-        root = math.sqrt(max(discriminant, 0.0))
+        root = math.sqrt(discriminant) if discriminant >= 0.0 else abs(speed)
         if height > 0.0:
             if speed < 0.0 and discriminant >= 0.0:
                 delay = 2.0 * height / (root - speed)

@@ -30,7 +30,8 @@ class Wall(Table):
     """`[[wall]]`: a segment whose body and ends are solid, at rest. One that opens or closes is a gate.
 
     It is there until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then. A disc
-    in the way of a closing gate stays on the side of its centre.
+    in the way of a closing gate stays on the side of its centre: it may leave, and bounces where it comes nearer. One
+    that cannot rise out against gravity bounces as deep in the gate as it is.
     """
 
     start: Vector = Field(alias="from", description="[x, y] of one end, length")

@@ -184,9 +184,9 @@ def test_wrong_usage(arguments, tmp_path):
 
 
 def test_a_clock_that_stands_still_is_one_line(tmp_path):
-    """A gate closes over a disc that gravity presses into it: it comes to rest, colliding without end."""
+    """A gate closes over a disc at the top of its flight: at rest, it collides with it without end."""
     (tmp_path / "scene.toml").write_text("""
-disc = [{ position = [2.4, 0.55], velocity = [0.1, 0], radius = 0.2 }]
+disc = [{ position = [2.4, 0.55], velocity = [0.1, 0.1], radius = 0.2 }]
 wall = [{ from = [0, 0.5], to = [6, 0.5], closes_at = 0.1 }]
 box.size = [6, 1.5]
 gravity.acceleration = [0, -1]
@@ -194,5 +194,5 @@ run = { until = 3, method = "brute_force" }
 """)
     result = idealgas("run", "scene.toml", "-o", "run.h5", folder=tmp_path)
     assert result.returncode == 2
-    assert result.stderr.splitlines()[-1].startswith("after t = 0.2: the clock stands still: a disc collides without")
+    assert result.stderr.splitlines()[-1].startswith("after t = 0.1: the clock stands still: a disc collides without")
     assert idealgas("info", "run.h5", folder=tmp_path).returncode == 0
