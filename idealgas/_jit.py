@@ -15,14 +15,16 @@ from typing import Any
 
 import numba
 import numpy as np
-from numba import types
 from numba.core.event import TimingListener, install_listener
-from numba.extending import intrinsic, overload, register_jitable
+from numba.extending import register_jitable
 
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as silent as compiled code
 
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
+"""Without numba's runtime arrays are not reference-counted, and none can be made: the caller keeps them alive. Counting
+takes an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time, and a fifth of the
+compilation's."""
 
 
 @cache
@@ -63,35 +65,3 @@ def inline(function: Callable) -> Any:
 def compile_timer() -> AbstractContextManager[TimingListener]:
     """Measure, as `duration` if `done`, the seconds spent on making machine code or loading it."""
     return install_listener("numba:compile", TimingListener())
-
-
-def borrowed(arrays):
-    """The same array or tuple of arrays without reference counts; whoever called the entry point keeps them alive.
-
-    Counting costs an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time.
-    """
-    return arrays
-
-
-@intrinsic
-def _borrowed(_context: Any, arrays: Any) -> Any:
-    def strip(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-        if isinstance(kind, types.Array):
-            array = context.make_array(kind)(context, builder, value)
-            array.meminfo = array.meminfo.type(None)
-            array.parent = array.parent.type(None)
-            return array._getvalue()
-        if isinstance(kind, types.BaseTuple):
-            for k, part in enumerate(kind.types):
-                value = builder.insert_value(value, strip(context, builder, part, builder.extract_value(value, k)), k)
-        return value
-
-    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return strip(context, builder, signature.args[0], values[0])
-
-    return arrays(arrays), generate
-
-
-@overload(borrowed)
-def _overload_borrowed(arrays):
-    return lambda arrays: _borrowed(arrays)

@@ -12,7 +12,7 @@ from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.segment import Segments
+from idealgas.physics.segment import SEGMENT
 from idealgas.physics.thermal import Thermal
 from idealgas.scene import Scene, ThermalSide
 from idealgas.scene.defaults import contact_duration
@@ -46,21 +46,32 @@ def wall_temperatures(scene: Scene) -> np.ndarray:
     return np.array([*sides, *(wall.temperature or -1.0 for wall in scene.wall)])
 
 
+def make_segments(
+    start: np.ndarray, end: np.ndarray, opens: np.ndarray | float = math.inf, closes: np.ndarray | float = math.inf
+) -> np.recarray:
+    """(S,) SEGMENT at time 0. start, end: (S, 2). opens, closes: from when to when each is not there."""
+    segments = aligned(len(start), SEGMENT)
+    segments.x, segments.y = start.T
+    segments.length = np.hypot(*(end - start).T)
+    segments.tx, segments.ty = ((end - start) / segments.length[:, None]).T
+    segments.opens, segments.closes = opens, closes
+    segments.active = segments.opens > 0
+    return segments
+
+
 def _periodic(scene: Scene, n: int) -> Periodic | None:
     if not any(scene.box.joined):
         return None
     return Periodic(*scene.box.joined, *scene.box.size, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32))
 
 
-def _segments(scene: Scene) -> Segments | None:
+def _segments(scene: Scene) -> np.recarray | None:
     if not scene.wall:
         return None
-    start, end = (np.array([getattr(wall, name) for wall in scene.wall]) for name in ("start", "end"))
-    length = np.hypot(*(end - start).T)
-    tangent = (end - start) / length[:, None]
-    opens, closes = np.array([wall.absence for wall in scene.wall]).T
-    columns = (*start.T, *tangent.T, length, opens, closes, opens > 0)
-    return Segments(*map(np.ascontiguousarray, columns))
+    start, end, absence = (
+        np.array([getattr(wall, name) for wall in scene.wall]) for name in ("start", "end", "absence")
+    )
+    return make_segments(start, end, *absence.T)
 
 
 def _rotation(scene: Scene, gas: Gas) -> Rotation | None:

@@ -159,12 +159,10 @@ def insert(grid, position, radius, ids):
 
 
 @njit
-def free_sites(grid, position, radius, sites, reach):
-    """Mask (M,) of the sites (M, 2) where a disc of radius `reach` would overlap none of the grid."""
-    free = np.empty(len(sites), np.bool_)
+def find_free(grid, position, radius, sites, reach, free):
+    """Set the mask `free` (M,) of the sites (M, 2) where a disc of radius `reach` would overlap none of the grid."""
     for n in range(len(sites)):
         free[n] = _is_free(grid, position, radius, sites[n, 0], sites[n, 1], reach, -1)
-    return free
 
 
 @njit
@@ -203,7 +201,9 @@ def insert_on_lattice(grid, position, radius, bounds, ids) -> bool:
     largest = radius[ids].max()
     wanted = len(ids)
     while (sites := make_lattice(bounds[:2], bounds[2:], 2 * largest, wanted)) is not None:
-        sites = sites[free_sites(grid, position, radius, sites, largest)]
+        free = np.empty(len(sites), bool)
+        find_free(grid, position, radius, sites, largest, free)
+        sites = sites[free]
         if len(sites) >= len(ids):
             position[ids] = sites[np.arange(len(ids)) * len(sites) // len(ids)]
             return insert(grid, position, radius, ids) == len(ids)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from idealgas.effects import make_segments
 from idealgas.engine.effects import Effects
 from idealgas.engine.records import aligned
 from idealgas.engine.simulation import Simulation, Stop
@@ -14,22 +15,11 @@ from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.segment import Segments
 from idealgas.physics.thermal import Thermal
 
 BOX = (12.0, 9.0)
 
 NAMES = ("gravity", "periodic", "segments", "gates", "rotation", "restitution", "thermal", "piston")
-
-
-def make_segments(*walls: tuple[float, float, float, float, float, float]) -> Segments:
-    """Walls from (x0, y0, x1, y1, opens, closes)."""
-    table = np.array(walls, float)
-    along = table[:, 2:4] - table[:, :2]
-    length = np.hypot(*along.T)
-    tangent = along / length[:, None]
-    columns = (table[:, 0], table[:, 1], *tangent.T, length, table[:, 4], table[:, 5])
-    return Segments(*(np.ascontiguousarray(c) for c in columns), active=np.ones(len(walls), bool))
 
 
 def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
@@ -59,6 +49,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         walls += [(9.0, 1.0, 10.0, 4.0, math.inf, math.inf), (9.5, 7.0, 10.5, 7.0, math.inf, math.inf)]
     if "gates" in names:
         walls += [(8.6, 4.5, 8.6, 8.8, 3.0, 7.0), (0.5, 8.6, 3.5, 8.6, 0.0, 4.0)]
+    table = np.array(walls).reshape(-1, 6)
     inertia = 0.5 * gas.mass * gas.radius**2
     temperature = np.full(4 + len(walls), -1.0)
     temperature[2] = 1.5
@@ -71,7 +62,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         )
         if "periodic" in names
         else None,
-        segments=make_segments(*walls) if walls else None,
+        segments=make_segments(table[:, :2], table[:, 2:4], *table[:, 4:].T) if walls else None,
         rotation=Rotation(draw.normal(size=n), inertia, 0.6, 0.3) if "rotation" in names else None,
         restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
         thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,

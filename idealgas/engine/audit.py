@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import borrowed, inline, njit
+from idealgas._jit import inline, njit
 from idealgas.engine.neighbours import gather_block
 from idealgas.gas import Gas
 from idealgas.physics.periodic import separation
@@ -36,7 +36,6 @@ def overlap_of(a, b, periodic):
 @njit
 def deepest_overlap(record, ids, agenda, periodic):
     """Deepest overlap among records at one time that stand in their cells."""
-    record, ids, agenda, periodic = borrowed((record, ids, agenda, periodic))
     deepest = 0.0
     for i in range(record.shape[0]):
         disc = record[U(i)]

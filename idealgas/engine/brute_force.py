@@ -54,13 +54,13 @@ def piston_hit(disc, piston, gravity):
 def segment_event(disc, i, segments, effects, best):
     """The earlier of `best` and disc i's meetings with wall segments in every image."""
     if segments is not None:
-        for k in range(segments.x.shape[0]):
-            if segments.active[U(k)]:
+        for k in range(segments.shape[0]):
+            if segments[U(k)].active:
                 for image_x in range(*image_range(effects.periodic, False)):
                     for image_y in range(*image_range(effects.periodic, True)):
                         images = images_to_wall(effects.periodic, i, (image_x, image_y))
                         time = segment_contact(
-                            disc, i, segments, k, effects.gravity, effects.restitution, effects.periodic, images
+                            disc, i, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
                         )
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)

@@ -15,16 +15,18 @@ from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import advance_piston
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.segment import Segments
 from idealgas.physics.thermal import Thermal
 
 
 class Effects(NamedTuple):
-    """piston: (1,) PISTON. ledger: (walls,) f8, energy that each wall gave to discs; where any wall can give some."""
+    """segments: (S,) SEGMENT. piston: (1,) PISTON.
+
+    ledger: (walls,) f8, energy that each wall gave to discs; where any wall can give some.
+    """
 
     gravity: Gravity | None = None
     periodic: Periodic | None = None
-    segments: Segments | None = None
+    segments: np.recarray | None = None
     rotation: Rotation | None = None
     restitution: Restitution | None = None
     thermal: Thermal | None = None
@@ -49,7 +51,7 @@ def speed_beyond(gas: Gas, effects: Effects) -> float:
     return speed
 
 
-def time_of_next_gate(segments: Segments | None, time: float) -> float:
+def time_of_next_gate(segments: np.recarray | None, time: float) -> float:
     """When a gate next opens or closes after a time; infinite if none does."""
     if segments is None:
         return math.inf

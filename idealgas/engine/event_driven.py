@@ -6,7 +6,7 @@ batches. The disc that predicted last owns a pair; a contact whose partner has m
 
 import numpy as np
 
-from idealgas._jit import borrowed, inline, njit
+from idealgas._jit import inline, njit
 from idealgas.engine.agenda import make_agenda
 from idealgas.engine.audit import deepest_overlap
 from idealgas.engine.cells import Cells, cell_index, cell_of, discs_per_cell, enter, make_cells
@@ -45,7 +45,6 @@ def step_into_next_cell(record, ids, agenda, i, exit_code, now, effects):
 @njit
 def rebuild(record, ids, agenda, effects):
     """Fill cells, predictions and schedule from records whose column and row are set."""
-    record, ids, agenda, effects = borrowed((record, ids, agenda, effects))
     agenda.cells.head[:] = -1
     for i in range(record.shape[0]):
         enter(agenda.cells, i, cell_index(agenda.cells, record[U(i)]))
@@ -63,7 +62,6 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
 
     batch: None where no log is kept. counters: (1,) COUNTERS, updated.
     """
-    record, ids, agenda, effects, batch = borrowed((record, ids, agenda, effects, batch))
     events = 0
     collisions = 0
     crossings = 0

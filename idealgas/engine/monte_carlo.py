@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from idealgas._jit import borrowed, inline, njit
+from idealgas._jit import inline, njit
 from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, make_discs
 from idealgas.engine.rows import batch_capacity, write_pair, write_trial
@@ -67,7 +67,6 @@ def advance_trials(
     key: of the epoch's random numbers. trial_time: mean. batch: None where no log is kept. counters: (1,) COUNTERS,
     updated.
     """
-    record, ids, effects, batch = borrowed((record, ids, effects, batch))
     counter = counters[0]
     number = record.shape[0]
     capacity = batch_capacity(batch)

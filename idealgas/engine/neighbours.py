@@ -146,7 +146,7 @@ def test_segments(record, ids, agenda, i, segments, effects):
             k = agenda.walls.item[U(entry)]
             images = images_to_item(agenda.walls, U(entry), ids[U(i)], effects.periodic)
             time = segment_contact(
-                record[U(i)], own, segments, k, effects.gravity, effects.restitution, effects.periodic, images
+                record[U(i)], own, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
             )
             earlier = time < prediction.contact
             if time == prediction.contact:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import borrowed, inline, njit
+from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
 from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
@@ -175,7 +175,6 @@ def offer(c, coming, i, j):
 @njit
 def find_all(c, coming):
     """The next event of every disc."""
-    c, coming = borrowed((c, coming))
     for i in range(c.t.shape[0]):
         find_next(c, coming, i)
 
@@ -239,7 +238,6 @@ def advance_precisely(
     c, coming, record, ids, effects, until, most_events, most_collisions, epoch_start, batch, counters
 ):
     """As `brute_force.advance_events`; record: the discs rounded, kept so."""
-    c, coming, record, ids, effects, batch = borrowed((c, coming, record, ids, effects, batch))
     rows = 0
     events = 0
     collisions = 0

@@ -72,7 +72,7 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
     """A disc meets a wall segment, `images` box lengths away from its record; returns whether it met an end."""
     if segments is not None:
         advance(disc, time, effects.gravity)
-        nx, ny, at_end = segment_normal(disc, segments, segment, effects.periodic, images)
+        nx, ny, at_end = segment_normal(disc, segments[U(segment)], effects.periodic, images)
         bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
         return at_end
     return False

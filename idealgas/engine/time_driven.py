@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import borrowed, inline, njit
+from idealgas._jit import inline, njit
 from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
@@ -120,7 +120,6 @@ def neighbour_cell(near, column, row, k, periodic):
 @njit
 def list_pairs(record, ids, box, near, periodic):
     """List the pairs within reach; the number of them, of which only those that there is room for are listed."""
-    record, ids, near, periodic = borrowed((record, ids, near, periodic))
     sort_into_cells(record, ids, box, near, periodic)
     count = 0
     for c in range(near.columns * near.rows):
@@ -220,7 +219,6 @@ def advance_steps(
     Return the number of rows written, and whether everything up to `until` has happened. A limit may be reached in the
     middle of a step; it goes on from there. deepest: (1,) f8, overlap at a collision, of the sum of the radii.
     """
-    record, ids, near, effects, batch = borrowed((record, ids, near, effects, batch))
     s = step[0]
     number = record.shape[0]
     capacity = batch_capacity(batch)

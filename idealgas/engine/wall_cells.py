@@ -7,7 +7,6 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.engine.cells import Cells
 from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, joined_axes
-from idealgas.physics.segment import Segments
 
 
 class WallCells(NamedTuple):
@@ -20,14 +19,14 @@ class WallCells(NamedTuple):
     image: np.ndarray
 
 
-def make_wall_cells(segments: Segments, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
+def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
     """Every active segment, in every cell of which some point is within the largest radius of it or nearly so."""
     reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
     across, along = (range(-1, 2) if joined else (0,) for joined in joined_axes(periodic))
     cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
     for k in np.flatnonzero(segments.active):
         for image in ((x, y) for x in across for y in along):
-            found = _cells_near(segments, int(k), image, cells, reach)
+            found = _cells_near(segments[k], image, cells, reach)
             cell_parts.append(found)
             item_parts.append(np.full((len(found), 3), (k, *image), np.int32))
     cell, item = np.concatenate(cell_parts), np.concatenate(item_parts)
@@ -46,11 +45,11 @@ def images_to_item(walls, entry, own, periodic):
     return NO_IMAGES
 
 
-def _cells_near(segments: Segments, k: int, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
-    """Indices of the cells whose centre is near enough to an image of segment k for a corner to be within reach."""
-    start = np.array([segments.x[k] + image[0] * cells.Lx, segments.y[k] + image[1] * cells.Ly])
-    tangent = np.array([segments.tx[k], segments.ty[k]])
-    length = segments.length[k]
+def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
+    """Indices of the cells whose centre is near enough to an image of a segment for a corner to be within reach."""
+    start = np.array([segment.x + image[0] * cells.Lx, segment.y + image[1] * cells.Ly])
+    tangent = np.array([segment.tx, segment.ty])
+    length = segment.length
     size = np.array([cells.width, cells.height])
     last = np.array([cells.columns, cells.rows]) - 2
     ends = np.array([start, start + length * tangent])

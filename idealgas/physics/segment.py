@@ -1,7 +1,6 @@
 """A disc and a straight wall segment with two solid ends."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,24 +11,16 @@ from idealgas.physics.periodic import through_sides
 from idealgas.physics.polynomial import first_descent
 from idealgas.physics.restitution import wall_rebound
 
-U = np.uintp
-
-
-class Segments(NamedTuple):
-    """All (S,) f8: start point, unit tangent, length.
-
-    opens, closes: (S,) f8, from when to when a gate is not there; infinite for a wall. active: (S,) b1, whether it is
-    there in this epoch.
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    tx: np.ndarray
-    ty: np.ndarray
-    length: np.ndarray
-    opens: np.ndarray
-    closes: np.ndarray
-    active: np.ndarray
+SEGMENT = np.dtype(
+    [
+        ("x", "f8"), ("y", "f8"),  # start point
+        ("tx", "f8"), ("ty", "f8"),  # unit tangent
+        ("length", "f8"),
+        ("opens", "f8"), ("closes", "f8"),  # from when to when a gate is not there; infinite for a wall
+        ("active", "?"),  # whether it is there in this epoch
+    ],
+    align=True,
+)  # fmt: skip
 
 
 @inline
@@ -121,18 +112,17 @@ def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
 
 
 @inline
-def segment_normal(disc, segments, k, periodic, images):
-    """Unit normal towards a disc that touches segment k, and whether it touches an end."""
-    u = U(k)
-    tx = segments.tx[u]
-    ty = segments.ty[u]
-    x, y = through_sides(disc.x - segments.x[u], disc.y - segments.y[u], periodic, images)
+def segment_normal(disc, segment, periodic, images):
+    """Unit normal towards a disc that touches a segment, and whether it touches an end."""
+    tx = segment.tx
+    ty = segment.ty
+    x, y = through_sides(disc.x - segment.x, disc.y - segment.y, periodic, images)
     s = tx * x + ty * y
-    if foot_inside(s, segments.length[u]):
+    if foot_inside(s, segment.length):
         return (-ty, tx, False) if tx * y - ty * x > 0.0 else (ty, -tx, False)
     if s > 0.0:
-        x -= segments.length[u] * tx
-        y -= segments.length[u] * ty
+        x -= segment.length * tx
+        y -= segment.length * ty
     distance = math.sqrt(x * x + y * y)
     return x / distance, y / distance, True
 
@@ -146,17 +136,16 @@ def reflection_changes(disc, own, nx, ny, restitution):
 
 
 @inline
-def segment_contact(disc, own, segments, k, gravity, restitution, periodic, images):
-    """Time at which a disc meets segment k, body or end; NEVER if it does not.
+def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
+    """Time at which a disc meets a segment, body or end; NEVER if it does not.
 
     images: box lengths between record and segment, where sides are periodic.
     A touching disc whose reflection would not change a digit of its velocity is done, unless gravity presses it on.
     """
-    u = U(k)
-    tx = segments.tx[u]
-    ty = segments.ty[u]
-    length = segments.length[u]
-    x, y = through_sides(disc.x - segments.x[u], disc.y - segments.y[u], periodic, images)
+    tx = segment.tx
+    ty = segment.ty
+    length = segment.length
+    x, y = through_sides(disc.x - segment.x, disc.y - segment.y, periodic, images)
     d = tx * y - ty * x
     s = tx * x + ty * y
     vn = tx * disc.vy - ty * disc.vx
@@ -172,7 +161,7 @@ def segment_contact(disc, own, segments, k, gravity, restitution, periodic, imag
         end_x, end_y = x - far * length * tx, y - far * length * ty
         delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, gravity))
     if gravity is None and delay == 0.0:
-        nx, ny, _ = segment_normal(disc, segments, k, periodic, images)
+        nx, ny, _ = segment_normal(disc, segment, periodic, images)
         if not reflection_changes(disc, own, nx, ny, restitution):
             return NEVER
     return disc.t + delay if delay < NEVER else NEVER

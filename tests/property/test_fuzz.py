@@ -32,7 +32,7 @@ from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.segment import Segments
+from idealgas.physics.segment import SEGMENT
 from idealgas.physics.thermal import Thermal
 from idealgas.scene import Scene
 from idealgas.simulate import stop_of
@@ -69,7 +69,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
     beyond[0].side = 5
     neutral = Effects(
         periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
-        segments=Segments(*np.empty((7, 0)), np.empty(0, bool)),
+        segments=aligned(0, SEGMENT),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
         thermal=Thermal(np.full(4 + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),

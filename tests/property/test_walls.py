@@ -3,7 +3,6 @@
 The bound on the depth is rounding: contacts are rounded by less than 1e-12 of the box.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +11,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
 
+from idealgas.effects import make_segments
 from idealgas.engine.effects import Effects
 from idealgas.engine.event_driven import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import empty_batch
 from idealgas.gas import Gas
 from idealgas.physics.motion import Gravity
-from idealgas.physics.segment import Segments
 
 EVENTS = 120
 DEPTH = 1e-11
@@ -39,15 +38,6 @@ scenes = st.builds(
     radius=st.sampled_from([0.02, 0.1, 0.3, 0.45]),
     seed=st.integers(0, 2**32),
 )
-
-
-def segments_of(walls) -> Segments:
-    ends = np.array(walls, float)
-    along = ends[:, 1] - ends[:, 0]
-    length = np.hypot(*along.T)
-    columns = (*ends[:, 0].T, *(along / length[:, None]).T, length)
-    never = np.full(len(walls), math.inf)
-    return Segments(*map(np.ascontiguousarray, columns), never, never, np.ones(len(walls), bool))
 
 
 def place_discs(scene: Scene) -> Gas | None:
@@ -73,9 +63,10 @@ def assert_walls_hold(scene: Scene, gravity: tuple[float, float] | None = None) 
     gas = place_discs(scene)
     if gas is None:
         return
-    effects = Effects(segments=segments_of(scene.walls), gravity=Gravity(*gravity) if gravity else None)
-    simulation, stop = Simulation(gas, EventDriven(), effects), Stop(events=EVENTS)
     walls, pull = np.array(scene.walls), np.array(gravity or (0.0, 0.0))
+    segments = make_segments(walls[:, 0], walls[:, 1])
+    effects = Effects(segments=segments, gravity=Gravity(*gravity) if gravity else None)
+    simulation, stop = Simulation(gas, EventDriven(), effects), Stop(events=EVENTS)
     since = np.zeros(scene.number)
     position, velocity = gas.position.copy(), gas.velocity.copy()
     while not simulation.finished(stop):

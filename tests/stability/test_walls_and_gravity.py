@@ -6,9 +6,9 @@ import warnings
 import mpmath
 import numpy as np
 import pytest
-from effect_samples import make_segments
 from support import gas_of, record, within
 
+from idealgas.effects import make_segments
 from idealgas.engine.effects import Effects
 from idealgas.engine.event_driven import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
@@ -21,7 +21,8 @@ NEVER = math.inf
 
 
 def simulation_of(gas, walls=(), gravity=None) -> Simulation:
-    segments = make_segments(*((*wall, NEVER, NEVER) for wall in walls)) if walls else None
+    ends = np.array(walls, float).reshape(-1, 2, 2)
+    segments = make_segments(ends[:, 0], ends[:, 1]) if walls else None
     return Simulation(gas, EventDriven(), Effects(gravity=Gravity(*gravity) if gravity else None, segments=segments))
 
 
