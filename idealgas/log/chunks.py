@@ -10,13 +10,47 @@ import struct
 import numpy as np
 from isal import isal_zlib
 
+from idealgas._jit import inline, njit
+
 SHUFFLE, DEFLATE, FLETCHER32 = 1, 2, 4
 COMPRESSED, PLAIN = FLETCHER32, SHUFFLE | DEFLATE
 """Filter masks of the two ways a chunk of a compressed dataset is stored: the bits name what was left out."""
 
-_STORED_BLOCK = 65_535
+_STORED_BLOCK, _BLOCK_HEADER = 65_535, 5
+"""Bytes of a full stored block of a deflate stream, and of what stands before each."""
+
 _SAMPLE = 1024
 """Bytes of a plane that show whether it is noise."""
+
+_TILE = 2048
+"""Items that are taken apart while they are in the nearest cache."""
+
+
+@inline
+def _take_byte(items, byte, start, stop, out, place):
+    """Put one byte of some of the items at a place."""
+    shift = np.uint64(8 * byte)
+    for k in range(stop - start):
+        out[np.uintp(place + k)] = np.uint8(items[np.uintp(start + k)] >> shift)
+
+
+@njit
+def shuffle(items, noise, blocks, planes):
+    """Gather each byte of unsigned items (n,) in a plane: the first `noise` planes in stored blocks, one behind the
+    other in `blocks`, the rest in `planes` (itemsize - noise, n).
+    """
+    n = len(items)
+    for first in range(0, n, _TILE):
+        last = min(first + _TILE, n)
+        for byte in range(noise):
+            start = first
+            while start < last:
+                place = byte * n + start
+                stop = min(last, start + _STORED_BLOCK - place % _STORED_BLOCK)
+                _take_byte(items, byte, start, stop, blocks, place + (place // _STORED_BLOCK + 1) * _BLOCK_HEADER)
+                start = stop
+        for byte in range(noise, items.itemsize):
+            _take_byte(items, byte, first, last, planes[byte - noise], first)
 
 
 class Encoder:
@@ -35,22 +69,33 @@ class Encoder:
         fraction of the time each way.
         """
         self._grow(rows.nbytes)
-        planes = self._planes[: rows.nbytes].reshape(rows.itemsize, -1)
-        planes[:] = np.ascontiguousarray(rows).reshape(-1).view(np.uint8).reshape(-1, rows.itemsize).T
-        noise = len(planes) if planes.shape[1] >= _SAMPLE else 0
-        while noise and len(isal_zlib.compress(planes[noise - 1, :_SAMPLE], 0)) < _SAMPLE:
-            noise -= 1
-        size = self._put(0, b"\x78\x01")
-        stored = planes[:noise].reshape(-1)
-        for start in range(0, len(stored), _STORED_BLOCK):
-            block = stored[start : start + _STORED_BLOCK]
-            size = self._put(size, struct.pack("<BHH", 0, len(block), len(block) ^ 0xFFFF))
-            size = self._put(size, block)
+        items = np.ascontiguousarray(rows).reshape(-1)
+        noise, planes = self._shuffle(items) if items.itemsize in (1, 2, 4, 8) else (0, _planes_of_texts(items))
+        size, adler = self._put(0, b"\x78\x01"), 1
+        stored = noise * len(items)
+        for start in range(0, stored, _STORED_BLOCK):
+            length = min(_STORED_BLOCK, stored - start)
+            size = self._put(size, struct.pack("<BHH", 0, length, length ^ 0xFFFF))
+            adler = isal_zlib.adler32(self._bytes[size : size + length], adler)
+            size += length
         deflate = isal_zlib.compressobj(1, isal_zlib.DEFLATED, -15)
-        size = self._put(size, deflate.compress(planes[noise:]))
+        size = self._put(size, deflate.compress(planes))
         size = self._put(size, deflate.flush())
-        size = self._put(size, isal_zlib.adler32(planes).to_bytes(4, "big"))
+        size = self._put(size, isal_zlib.adler32(planes, adler).to_bytes(4, "big"))
         return self._bytes[:size]
+
+    def _shuffle(self, items: np.ndarray) -> tuple[int, np.ndarray]:
+        """How many planes are noise, which then are in their place, and the others."""
+        words, width, blocks = items.view(f"u{items.itemsize}"), items.itemsize, self._bytes[2:]
+        noise = width if len(items) >= _SAMPLE else 0
+        if noise:
+            sample = self._planes[: width * _SAMPLE].reshape(width, _SAMPLE)
+            shuffle(words[:_SAMPLE], 0, blocks, sample)
+            while noise and len(isal_zlib.compress(sample[noise - 1], 0)) < _SAMPLE:
+                noise -= 1
+        planes = self._planes[: (width - noise) * len(items)].reshape(-1, len(items))
+        shuffle(words, noise, blocks, planes)
+        return noise, planes
 
     def plain(self, rows: np.ndarray) -> np.ndarray:
         """A chunk as it is, with its fletcher32."""
@@ -68,6 +113,10 @@ class Encoder:
         if len(self._planes) < size:
             self._planes = np.empty(size, np.uint8)
             self._bytes = np.empty(size + size // 64 + 1024, np.uint8)  # what cannot be compressed grows a little
+
+
+def _planes_of_texts(items: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(items.view(np.uint8).reshape(-1, items.itemsize).T)
 
 
 def decode(stored: bytes, mask: int, dtype: np.dtype, verify: bool = True) -> np.ndarray:

@@ -42,13 +42,13 @@ class Commit(NamedTuple):
         dataset = file.create_dataset(DATASET, (2, width), "u8", chunks=(1, width), fletcher32=True)
         dataset.attrs["datasets"] = np.array([path.encode() for path in paths])
         for sequence in range(2):
-            cls(sequence, 0, tables, dict.fromkeys(paths, 0)).write(dataset)
+            cls(sequence, 0, tables, dict.fromkeys(paths, 0)).write(dataset.id)
 
-    def write(self, dataset: h5py.Dataset) -> None:
+    def write(self, dataset: h5py.h5d.DatasetID) -> None:
         """Put the record into the slot whose turn it is."""
         slot = np.array([self.sequence, self.file_size, *self.rows.values(), *self.tails.values(), 0], "u8")
         slot[-1] = isal_zlib.crc32(slot[:-1])
-        dataset.id.write_direct_chunk((self.sequence % 2, 0), chunks.Encoder().plain(slot), 0)
+        dataset.write_direct_chunk((self.sequence % 2, 0), chunks.Encoder().plain(slot), 0)
 
     @classmethod
     def read(cls, file: h5py.File) -> Self:

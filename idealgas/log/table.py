@@ -167,6 +167,6 @@ def commit_tables(file: h5py.File, tables: Mapping[str, Table], sequence: int, f
         os.fsync(descriptor)
     rows = {name: table.stored for name, table in tables.items()}
     tails = {path: crc for table in tables.values() for path, crc in table.checksums().items()}
-    Commit(sequence, os.fstat(descriptor).st_size, rows, tails).write(file[DATASET])
+    Commit(sequence, os.fstat(descriptor).st_size, rows, tails).write(open_dataset(file, DATASET))
     if fsync:
         os.fsync(descriptor)
