@@ -59,7 +59,7 @@ class Commit(NamedTuple):
         slots = []
         for slot in range(2):
             _, stored = dataset.id.read_direct_chunk((slot, 0))
-            values = chunks.decode(stored, chunks.PLAIN, dataset.dtype, verify=False)
+            values = chunks.decode(stored, chunks.PLAIN, dataset.dtype, dataset.shape[1], verify=False)
             if isal_zlib.crc32(values[:-1]) == values[-1]:
                 slots.append(values[:-1].tolist())
         if not slots:

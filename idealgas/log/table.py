@@ -1,5 +1,6 @@
 """Columns of the file by whole chunks, and tables of them that grow."""
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 
@@ -33,7 +34,8 @@ class StoredColumn:
         mask, stored = self.id.read_direct_chunk((start, *self._origin))
         if not self._compressed:  # bit 0 of its pipeline is the checksum's
             mask = chunks.PLAIN
-        data = chunks.decode(stored, mask, self.dtype, verify=not growing).reshape(self.chunk)[: rows - start]
+        values = chunks.decode(stored, mask, self.dtype, math.prod(self.chunk), verify=not growing)
+        data = values.reshape(self.chunk)[: rows - start]
         if growing and isal_zlib.crc32(data) != tail:
             raise ValueError("a checksum does not match")
         return data

@@ -47,8 +47,10 @@ def test_chunks_come_back(data):
     encoder = chunks.Encoder()
     stored = encoder.compressed(data).tobytes()
     assert zlib.decompress(stored) == data.reshape(-1).view("u1").reshape(-1, data.itemsize).T.tobytes()
-    assert np.array_equal(chunks.decode(stored, chunks.COMPRESSED, data.dtype), data.reshape(-1))
-    assert np.array_equal(chunks.decode(encoder.plain(data).tobytes(), chunks.PLAIN, data.dtype), data.reshape(-1))
+    assert np.array_equal(chunks.decode(stored, chunks.COMPRESSED, data.dtype, data.size), data.reshape(-1))
+    assert np.array_equal(
+        chunks.decode(encoder.plain(data).tobytes(), chunks.PLAIN, data.dtype, data.size), data.reshape(-1)
+    )
 
 
 @pytest.mark.parametrize("data", list(arrays()), ids=lambda data: f"{data.dtype}{data.shape}")
@@ -74,7 +76,7 @@ def test_what_hdf5_wrote_is_decoded(tmp_path, mask):
         made = {"compression": "gzip", "shuffle": True} if mask != chunks.PLAIN else {}
         dataset = file.create_dataset("x", data=data, chunks=data.shape, fletcher32=mask != chunks.COMPRESSED, **made)
         _, stored = dataset.id.read_direct_chunk((0, 0))
-    assert np.array_equal(chunks.decode(stored, mask, data.dtype), data.reshape(-1))
+    assert np.array_equal(chunks.decode(stored, mask, data.dtype, data.size), data.reshape(-1))
 
 
 @pytest.mark.parametrize("kind", ["compressed", "plain"])
@@ -88,7 +90,7 @@ def test_a_changed_byte_is_found_or_changes_nothing(kind):
         damaged = bytearray(stored)
         damaged[place] ^= random.integers(1, 256)
         try:
-            assert np.array_equal(chunks.decode(bytes(damaged), mask, data.dtype), data.reshape(-1))
+            assert np.array_equal(chunks.decode(bytes(damaged), mask, data.dtype, data.size), data.reshape(-1))
         except ValueError:
             found += 1
     assert found > 290
