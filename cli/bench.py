@@ -57,10 +57,8 @@ def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, rep
         click.echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
         return
     table = Table("N", "φ", "log", "M collisions/s", "slowest – fastest", "log / no log")
-    without: dict[tuple[int, float], float] = {}
     for row in found.rows:
-        without.setdefault((row.N, row.phi), row.collisions_per_s)
-        share = f"{row.collisions_per_s / without[row.N, row.phi]:.2f}" if row.log else ""
+        share = "" if row.ratio is None else f"{row.ratio:.2f}"
         spread = f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"
         rate = f"{row.collisions_per_s / 1e6:.3f}"
         table.add_row(f"{row.N:,}", f"{row.phi:g}", "on" if row.log else "off", rate, spread, share)

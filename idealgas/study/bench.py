@@ -16,7 +16,10 @@ RADIUS = 0.5
 
 
 class Row(NamedTuple):
-    """One line of the table; the rate is the median over the repeats, slowest and fastest beside it."""
+    """One line of the table; the rate is the median over the repeats, slowest and fastest beside it.
+
+    ratio: of the rates with the log and without, the median over pairs of runs that followed each other; with a log.
+    """
 
     N: int
     phi: float
@@ -24,6 +27,7 @@ class Row(NamedTuple):
     collisions_per_s: float
     slowest: float
     fastest: float
+    ratio: float | None
 
 
 @dataclass(frozen=True)
@@ -64,11 +68,13 @@ def bench(
         for n in numbers:
             for phi in fractions:
                 rates: dict[bool, list[float]] = {False: [], True: []}
-                for _ in range(repeats):
-                    for log, measured in rates.items():
+                for repeat in range(repeats):
+                    for log in (False, True) if repeat % 2 else (True, False):
                         summary = simulate(bench_scene(n, phi, max(collisions, 2 * n), log), path, force=True)
-                        measured.append(summary.disc_collisions / summary.seconds)
+                        rates[log].append(summary.disc_collisions / summary.seconds)
+                pairs = statistics.median(on / off for off, on in zip(*rates.values(), strict=True))
                 for log, measured in rates.items():
-                    rows.append(Row(n, phi, log, statistics.median(measured), min(measured), max(measured)))
+                    ratio = pairs if log else None
+                    rows.append(Row(n, phi, log, statistics.median(measured), min(measured), max(measured), ratio))
                     on_row(rows[-1])
     return Bench(compile_seconds, rows)
