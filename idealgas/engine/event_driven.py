@@ -35,11 +35,19 @@ def predict(record, ids, agenda, i, now, effects):
 
 
 @inline
+def predict_contact_again(record, ids, agenda, i, now, effects):
+    """The partner has moved on: another contact is disc i's, entered in the schedule."""
+    predict_contact(record, ids, agenda, i, now, effects)
+    schedule(agenda.tree, agenda.prediction, ids, i)
+
+
+@inline
 def step_into_next_cell(record, ids, agenda, i, exit_code, now, effects):
     """Membership changes, the record does not; the contact found so far stays valid."""
     change_cell(record, ids, agenda, i, exit_code, effects.periodic)
     extend_contact(record, ids, agenda, i, exit_code, now, effects)
     predict_exit(record, ids, agenda, i, now, effects)
+    schedule(agenda.tree, agenda.prediction, ids, i)
 
 
 @njit
@@ -95,8 +103,7 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
             other = np.int64(prediction.partner)
             if record[U(other)].count != prediction.partner_count:
                 stale += 1
-                predict_contact(record, ids, agenda, i, time, effects)
-                schedule(agenda.tree, agenda.prediction, ids, i)
+                predict_contact_again(record, ids, agenda, i, time, effects)
                 continue
             images = images_of(prediction)
             resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
@@ -111,7 +118,6 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
         elif prediction.exit_code < SIDE_OF_BOX:
             crossings += 1
             step_into_next_cell(record, ids, agenda, i, prediction.exit_code, time, effects)
-            schedule(agenda.tree, agenda.prediction, ids, i)
             continue
         else:
             side = prediction.exit_code - SIDE_OF_BOX
@@ -169,4 +175,4 @@ class EventDriven:
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""
-        return deepest_overlap(self.discs.record, self.discs.id, self._agenda, self._effects.periodic)
+        return deepest_overlap(self.discs.record, self._agenda, self._effects.periodic)

@@ -133,7 +133,7 @@ def first_of_tied(tree, group, key, predictions, ids):
     best = -1
     for node in range(group, group + 8):
         if tree.key[node] == key:
-            i = tree.winner[node]
+            i = np.int64(tree.winner[node])
             if best < 0:
                 best = node
                 a, b = event_ids(predictions[i], ids, i)

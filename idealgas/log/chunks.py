@@ -25,6 +25,9 @@ _SAMPLE = 1024
 _TILE = 2048
 """Items that are taken apart while they are in the nearest cache."""
 
+_WIDTHS = (4, 8)
+"""Bytes of the items for which machine code is worth its compilation."""
+
 _WORDS = 256
 """16-bit words whose sum, each times its index, fits 32 bits."""
 
@@ -91,7 +94,7 @@ class Encoder:
         """
         self._grow(rows.nbytes)
         items = np.ascontiguousarray(rows).reshape(-1)
-        noise, planes = self._shuffle(items) if items.itemsize in (1, 2, 4, 8) else (0, _planes_of_texts(items))
+        noise, planes = self._shuffle(items) if items.itemsize in _WIDTHS else (0, _shuffled(items))
         size, adler = self._put(0, b"\x78\x01"), 1
         stored = noise * len(items)
         for start in range(0, stored, _STORED_BLOCK):
@@ -136,7 +139,7 @@ class Encoder:
             self._bytes = np.empty(size + size // 64 + 1024, np.uint8)  # what cannot be compressed grows a little
 
 
-def _planes_of_texts(items: np.ndarray) -> np.ndarray:
+def _shuffled(items: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(items.view(np.uint8).reshape(-1, items.itemsize).T)
 
 
@@ -158,7 +161,7 @@ def decode(stored: bytes, mask: int, dtype: np.dtype, values: int, verify: bool 
             raise ValueError(f"a compressed chunk: {error}") from error
     if not mask & SHUFFLE and dtype.itemsize > 1:
         planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, -1)
-        if dtype.itemsize in (1, 2, 4, 8):
+        if dtype.itemsize in _WIDTHS:
             items = np.empty(planes.shape[1], f"u{dtype.itemsize}")
             unshuffle(planes, items)
             return items.view(dtype)
