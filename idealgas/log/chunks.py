@@ -63,9 +63,9 @@ def shuffle(items, noise, blocks, planes):
 def _give_byte(items, byte, start, stop, plane):
     """Put a byte of some of the items in its place; the first makes the others 0."""
     shift = np.uint64(8 * byte)
-    keep = np.uint64(0 if byte == 0 else -1)
     for k in range(start, stop):
-        items[np.uintp(k)] = (items[np.uintp(k)] & keep) | (np.uint64(plane[np.uintp(k)]) << shift)
+        value = np.uint64(plane[np.uintp(k)]) << shift
+        items[np.uintp(k)] = value if byte == 0 else items[np.uintp(k)] | value
 
 
 @njit
