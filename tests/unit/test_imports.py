@@ -15,7 +15,7 @@ ALLOWED = {
     "placement": {"_jit"},
     "gas": {"scene", "placement", "resting"},
     "engine": {"_jit", "physics", "gas"},
-    "log": {"gas", "scene"},
+    "log": {"_jit", "gas", "scene"},
     "resting": {"scene", "gas"},
     "effects": {"scene", "gas", "engine", "physics"},
     "energy": {"gas", "engine"},
