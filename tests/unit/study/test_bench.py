@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from idealgas.study import bench
 
 
-def test_the_ratio_is_of_runs_that_followed_each_other(monkeypatch, tmp_path):
+def test_the_ratio_is_of_runs_that_followed_each_other(monkeypatch):
     pace, order = iter([1.0, 0.5, 0.25, 0.8, 2.0, 2.0]), []
 
     def simulate(scene, path, force):
