@@ -15,8 +15,10 @@ from typing import Any
 
 import numba
 import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, types
 from numba.core.event import TimingListener, install_listener
-from numba.extending import register_jitable
+from numba.extending import lower_builtin, register_jitable, type_callable
 
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as silent as compiled code
@@ -25,6 +27,8 @@ _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False
 """Without numba's runtime arrays are not reference-counted, and none can be made: the caller keeps them alive. Counting
 takes an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time, and a fifth of the
 compilation's."""
+
+CACHE_LINE = 64  # bytes
 
 
 @cache
@@ -60,6 +64,31 @@ def njit(function: Callable) -> Any:
 def inline(function: Callable) -> Any:
     """A small part that LLVM pastes into the entry points that call it; called from Python it stays Python."""
     return register_jitable(forceinline=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
+
+
+def fetch_next_line(array: Any, row: Any) -> None:
+    """Bring the memory one cache line behind a row near, as it is about to be written; does nothing in Python.
+
+    Stores take effect in order: while one waits for far memory, all behind it wait too.
+    """
+
+
+@type_callable(fetch_next_line)
+def _type_of_fetch(context: Any) -> Callable:
+    return lambda array, row: types.none
+
+
+@lower_builtin(fetch_next_line, types.Array, types.Integer)
+def _code_of_fetch(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    kind, (value, row) = signature.args[0], arguments
+    array = context.make_array(kind)(context, builder, value)
+    element = cgutils.get_item_pointer(context, builder, kind, array, [row] + [row.type(0)] * (kind.ndim - 1))
+    place = builder.gep(builder.bitcast(element, cgutils.voidptr_t), [cgutils.intp_t(CACHE_LINE)])
+    i32 = cgutils.int32_t
+    prefetch = ir.FunctionType(ir.VoidType(), [place.type, i32, i32, i32])
+    function = builder.module.declare_intrinsic("llvm.prefetch", [place.type], prefetch)
+    builder.call(function, [place, i32(1), i32(3), i32(1)])  # to be written, into all caches, data
+    return context.get_dummy_value()
 
 
 def compile_timer() -> AbstractContextManager[TimingListener]:

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas._jit import CACHE_LINE, inline, njit
 from idealgas.gas import Gas
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
@@ -32,7 +32,7 @@ COUNTERS = np.dtype(
 )  # fmt: skip
 
 
-def aligned(n: int, dtype: np.dtype, boundary: int = 64) -> Any:
+def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
     """Zeroed array on a cache-line boundary; a structured one as a record array."""
     raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
     start = -raw.ctypes.data % boundary

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas._jit import fetch_next_line, inline
 from idealgas.engine.resolve import FIRST_SEGMENT
 from idealgas.events import Kind
 
@@ -57,9 +57,31 @@ def write_row(batch, row, time, own, partner, kind, disc, effects):
 
 
 @inline
+def fetch_column(column, row):
+    """Bring the memory of a column's coming rows near, if there is the column."""
+    if column is not None:
+        fetch_next_line(column, row)
+
+
+@inline
+def fetch_next_rows(batch, row):
+    """Bring the memory of the rows to come near: the next pair is written sooner for it."""
+    fetch_column(batch.time, row)
+    fetch_column(batch.disc, row)
+    fetch_column(batch.partner, row)
+    fetch_column(batch.kind, row)
+    fetch_column(batch.position, row)
+    fetch_column(batch.velocity, row)
+    fetch_column(batch.angular_velocity, row)
+    fetch_column(batch.image, row)
+    fetch_column(batch.trial, row)
+
+
+@inline
 def write_pair(batch, row, time, record, ids, i, j, effects):
     """Two discs met: the row of the smaller id comes first."""
     if batch is not None:
+        fetch_next_rows(batch, np.uintp(row))
         a, b = (i, j) if ids[np.uintp(i)] < ids[np.uintp(j)] else (j, i)
         a_id = np.int64(ids[np.uintp(a)])
         b_id = np.int64(ids[np.uintp(b)])

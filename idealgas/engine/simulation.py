@@ -119,7 +119,7 @@ class Simulation:
         except StandingClock as error:  # of a kernel, which cannot say when
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
-        self._local_now = limits.until if arrived else float(self._counters[0].time)
+        self._local_now = limits.until if arrived else float(self._counters[0]["time"])
         return rows
 
     def finished(self, stop: Stop) -> bool:
@@ -134,16 +134,16 @@ class Simulation:
         """What happened since time 0, up to now."""
         counter = self._counters[0]
         return Totals(
-            self.totals.events + int(counter.events),
-            self.totals.disc_collisions + int(counter.disc_collisions),
-            self.totals.wall_hits + int(counter.wall_hits),
-            int(counter.trials),
+            self.totals.events + int(counter["events"]),
+            self.totals.disc_collisions + int(counter["disc_collisions"]),
+            self.totals.wall_hits + int(counter["wall_hits"]),
+            int(counter["trials"]),
         )
 
     @property
     def last_event_time(self) -> float:
         """Time of the last event, or the epoch's start if there was none in it."""
-        return self.time + float(self._counters[0].time)
+        return self.time + float(self._counters[0]["time"])
 
     def gas_now(self) -> Gas:
         """The gas where the last call of `advance` left it: at its time limit, or at the last event before."""

@@ -149,7 +149,7 @@ class LogWriter:
         self._events = tables.get("events")
         self._flushed = self.rows = self._events.stored if self._events else 0
         self._due = math.inf
-        self._free: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._free: queue.LifoQueue[Any] = queue.LifoQueue()  # the last one back is still in the caches
         for _ in range(BUFFERS if self._events else 0):
             self._free.put(make_batch(BLOCK + 1))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)

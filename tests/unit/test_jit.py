@@ -1,4 +1,4 @@
-"""The cache of machine code: one folder for each state of the sources, and a temporary one if need be."""
+"""Machine code: its cache, one folder for each state of the sources, and what asks for memory ahead."""
 
 import shutil
 import subprocess
@@ -20,6 +20,24 @@ COMPILED = """
 from module import twice
 assert twice(21) == 42
 print(sum(twice.stats.cache_hits.values()), sum(twice.stats.cache_misses.values()))
+"""
+
+NEAR = """
+from idealgas._jit import fetch_next_line, njit
+
+@njit
+def near(column, row):
+    fetch_next_line(column, row)
+"""
+NEAR_THE_END = """
+import numpy as np
+from idealgas._jit import fetch_next_line
+from module import near
+for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
+    before = column.copy()
+    assert fetch_next_line(column, 2) is None and near(column, np.uintp(2)) is None
+    assert (column == before).all()
+print(*(code.count("call void @llvm.prefetch") for code in near.inspect_llvm().values()))
 """
 
 
@@ -92,3 +110,9 @@ def test_a_second_process_compiles_nothing(copy, tmp_path):
     with (copy / "idealgas" / "physics" / "motion.py").open("a") as source:
         source.write("# changed\n")
     assert python(COMPILED, copy, **cache) == "0 1"
+
+
+def test_memory_behind_an_array_is_asked_for_and_left_alone(copy, tmp_path):
+    """Its last row has no line behind it; in Python nothing is asked for."""
+    (copy / "module.py").write_text(NEAR)
+    assert python(NEAR_THE_END, copy, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "1 1 1"
