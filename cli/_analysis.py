@@ -11,8 +11,8 @@ from idealgas.errors import UserError
 from ._options import json_option
 
 if TYPE_CHECKING:
-    from idealgas.analysis.statistics import Estimate
-    from idealgas.analysis.window import Window
+    from idealgas.analysis.core.statistics import Estimate
+    from idealgas.analysis.core.window import Window
     from idealgas.log import Log
 
 PICTURES = (".png", ".pdf", ".svg")

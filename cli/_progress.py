@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from idealgas.simulate import Progress
+    from idealgas.run.simulate import Progress
 
 
 @contextmanager

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from idealgas.simulate import Summary
+    from idealgas.run.simulate import Summary
 
 
 def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:

@@ -10,7 +10,7 @@ from ._analysis import print_json
 from ._options import json_option, scene_argument
 
 if TYPE_CHECKING:
-    from idealgas.study.orbit import OrbitStudy
+    from idealgas.study.accuracy.orbit import OrbitStudy
 
 
 @click.command()
@@ -24,11 +24,12 @@ def accuracy(path: str, overrides: tuple[str, ...], output: str | None, repeats:
     Discs that stand on the unstable periodic orbit of three (configs/three-discs.toml) are followed until their
     orbit breaks, in boxes of many sizes.
     """
-    from idealgas.gas import make_gas
+    from idealgas.gas.build import make_gas
     from idealgas.scene import load_scene
-    from idealgas.study import accuracy_figure, accuracy_report
-    from idealgas.study.accuracy import study_accuracy
-    from idealgas.study.orbit import is_on_orbit, study_orbit
+    from idealgas.study.accuracy import figure as accuracy_figure
+    from idealgas.study.accuracy import report as accuracy_report
+    from idealgas.study.accuracy.orbit import is_on_orbit, study_orbit
+    from idealgas.study.accuracy.study import study_accuracy
 
     scene = load_scene(path, overrides)
     gas = make_gas(scene)

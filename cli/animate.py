@@ -45,7 +45,7 @@ def animate(
 
     MP4 takes the program ffmpeg; without it the film becomes a GIF.
     """
-    from idealgas.analysis.film import animate as make
+    from idealgas.analysis.movie.film import animate as make
 
     with open_log(path) as log, reading("frames") as progress:
         film = make(

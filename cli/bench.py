@@ -41,7 +41,7 @@ def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, rep
     from rich.console import Console
     from rich.table import Table
 
-    from idealgas.study.bench import bench as measure
+    from idealgas.study.bench.bench import bench as measure
 
     console = Console(stderr=True)
     with console.status("compiling") as status:
@@ -72,7 +72,7 @@ def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from idealgas.study.bench_effects import bench_effects
+    from idealgas.study.bench.effects import bench_effects
 
     console = Console(stderr=True)
     with console.status("compiling") as status:

@@ -9,7 +9,7 @@ from ._options import json_option, scene_argument
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from idealgas.analysis.forecast import Forecast
+    from idealgas.analysis.theory.forecast import Forecast
     from idealgas.scene import Scene
 
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 @json_option
 def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Check a scene; show it in full, with what kinetic theory expects of it."""
-    from idealgas.scene import dump_scene, load_scene
+    from idealgas.document.dump import dump_document
+    from idealgas.scene import load_scene
 
     scene = load_scene(path, overrides)
     import json
@@ -26,8 +27,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
     from rich.console import Console
 
-    from idealgas.analysis.forecast import forecast
-    from idealgas.gas import make_gas
+    from idealgas.analysis.theory.forecast import forecast
+    from idealgas.gas.build import make_gas
 
     expected = forecast(scene, make_gas(scene))
     if as_json:
@@ -35,7 +36,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         click.echo(json.dumps({"scene": tables, **effects, **asdict(expected)}, indent=2))
         return
-    click.echo(dump_scene(scene))
+    click.echo(dump_document(scene))
     console = Console()
     console.print(_species_table(expected), _walls_table(scene), _gas_table(expected))
     if expected.beyond:

@@ -7,7 +7,7 @@ import click
 from ._analysis import analysis_options, open_log, print_estimates, print_json
 
 if TYPE_CHECKING:
-    from idealgas.analysis.effusion import Effusion
+    from idealgas.analysis.effusion.measure import Effusion
 
 
 @click.command()
@@ -20,9 +20,9 @@ def effusion(paths: tuple[str, ...], start: float | None, end: float | None, plo
     """
     import os
 
-    from idealgas.analysis.effusion import effusion as measure
-    from idealgas.analysis.statistics import mean_of_replicates
-    from idealgas.study.results import effusions
+    from idealgas.analysis.core.statistics import mean_of_replicates
+    from idealgas.analysis.effusion.measure import effusion as measure
+    from idealgas.study.sweep.results import effusions
 
     groups: dict[str, list[Effusion]] = {}
     for path in paths:
@@ -34,8 +34,8 @@ def effusion(paths: tuple[str, ...], start: float | None, end: float | None, plo
             groups[path] = [measure(log, start, end)]
     together = {name: mean_of_replicates([found.speed for found in group]) for name, group in groups.items()}
     if plot:
-        from idealgas.analysis.effusion_figure import effusion_figure
-        from idealgas.analysis.figures import save
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.effusion.figure import effusion_figure
 
         save(effusion_figure(groups, together), plot)
     if as_json:

@@ -8,7 +8,7 @@ from ._analysis import log_argument, open_log, plot_option, print_json
 from ._options import json_option
 
 if TYPE_CHECKING:
-    from idealgas.analysis.evolution import Evolution
+    from idealgas.analysis.evolution.measure import Evolution
 
 ROWS = 9
 
@@ -25,13 +25,13 @@ def evolution(path: str, start: float | None, end: float | None, plot: str | Non
     Laws: Haff's for a gas that cools, the adiabat of a slow piston, the place of a piston under pressure, and
     equilibrium for isolated gases, columns under gravity and heat baths.
     """
-    from idealgas.analysis.evolution import evolution as follow
+    from idealgas.analysis.evolution.measure import evolution as follow
 
     with open_log(path) as log:
         result = follow(log, start, end)
     if plot:
-        from idealgas.analysis.evolution_figure import evolution_figure
-        from idealgas.analysis.figures import save
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.evolution.figure import evolution_figure
 
         save(evolution_figure(result), plot)
     if as_json:

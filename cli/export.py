@@ -24,8 +24,8 @@ def export(path: str, kind: str, events: bool, frames: str | None, output: str |
         raise click.UsageError("one of --events and --frames is needed")
     from pathlib import Path
 
-    from idealgas.log.export import FORMATS, frame_times
-    from idealgas.log.export import export as write
+    from idealgas.log.export.export import FORMATS, frame_times
+    from idealgas.log.export.export import export as write
 
     with open_log(path) as log:
         target = output or str(Path(path).with_suffix(FORMATS[kind].ending))

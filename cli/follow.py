@@ -9,7 +9,7 @@ from ._analysis import log_argument
 if TYPE_CHECKING:
     from rich.console import Group
 
-    from idealgas.analysis.glance import Glance
+    from idealgas.analysis.status import Glance
     from idealgas.log import Log
 
 SECONDS = 1.0  # between two looks
@@ -29,7 +29,7 @@ def follow(path: str, once: bool) -> None:
     from rich.console import Console
     from rich.live import Live
 
-    from idealgas.analysis.glance import glance
+    from idealgas.analysis.status import glance
     from idealgas.log import open_log
 
     console = Console()

@@ -19,9 +19,9 @@ def heat_capacity(
     """
     import os
 
-    from idealgas.analysis.heat_capacity import heat_capacity as put_together
-    from idealgas.analysis.heat_capacity import measure_heat
-    from idealgas.study.results import heat_measurements
+    from idealgas.analysis.heat_capacity.measure import heat_capacity as put_together
+    from idealgas.analysis.heat_capacity.measure import measure_heat
+    from idealgas.study.sweep.results import heat_measurements
 
     measured = []
     for path in paths:
@@ -32,7 +32,8 @@ def heat_capacity(
             measured.append(measure_heat(log, start, end, progress))
     result = put_together(measured)
     if plot:
-        from idealgas.analysis.figures import heat_capacity_figure, save
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.heat_capacity.figure import heat_capacity_figure
 
         save(heat_capacity_figure(result), plot)
     if as_json:

@@ -19,12 +19,13 @@ def histogram(
     Velocities count with the time spent at them; waits are those between successive events of the gas. The
     Kolmogorov-Smirnov tests take decorrelated samples.
     """
-    from idealgas.analysis.histogram import histogram as measure
+    from idealgas.analysis.histogram.measure import histogram as measure
 
     with open_log(path) as log, reading() as progress:
         result = measure(log, quantity, start, end, progress)
     if plot:
-        from idealgas.analysis.figures import histogram_figure, save
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.histogram.figure import histogram_figure
 
         save(histogram_figure(result), plot)
     if as_json:

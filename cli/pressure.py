@@ -7,8 +7,8 @@ import click
 from ._analysis import analysis_options, describe, open_log, print_estimates, print_json, reading
 
 if TYPE_CHECKING:
-    from idealgas.analysis.equation_of_state import EquationOfState
-    from idealgas.analysis.pressure import Pressure
+    from idealgas.analysis.pressure.equation_of_state import EquationOfState
+    from idealgas.analysis.pressure.measure import Pressure
 
 
 @click.command()
@@ -25,8 +25,8 @@ def pressure(
     """
     import os
 
-    from idealgas.analysis.pressure import TOLERANCE
-    from idealgas.analysis.pressure import pressure as measure
+    from idealgas.analysis.pressure.measure import TOLERANCE
+    from idealgas.analysis.pressure.measure import pressure as measure
 
     result: Any
     show: Any
@@ -39,9 +39,10 @@ def pressure(
         agrees, figure = result.check(TOLERANCE) if check else None, "equation_of_state_figure"
         show = _print_equation_of_state
     if plot:
-        from idealgas.analysis import figures
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.pressure import figure as figures
 
-        figures.save(getattr(figures, figure)(result), plot)
+        save(getattr(figures, figure)(result), plot)
     if as_json:
         print_json(result.as_dict() | {"agrees": agrees})
     else:
@@ -56,9 +57,9 @@ def pressure(
 def _equation_of_state(paths: tuple[str, ...], start: float | None, end: float | None) -> "EquationOfState":
     import os
 
-    from idealgas.analysis.equation_of_state import equation_of_state, sample_of
-    from idealgas.analysis.pressure import pressure as measure
-    from idealgas.study.results import pressure_samples
+    from idealgas.analysis.pressure.equation_of_state import equation_of_state, sample_of
+    from idealgas.analysis.pressure.measure import pressure as measure
+    from idealgas.study.sweep.results import pressure_samples
 
     samples = []
     for path in paths:

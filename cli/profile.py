@@ -22,13 +22,13 @@ def profile(
     Theory: uniform in a closed or periodic box, barometric under gravity, T^(3/2) in a straight line between two
     thermal sides. It is that of a dilute gas, without the jump of the temperature at a thermal side.
     """
-    from idealgas.analysis.profile import profile as measure
+    from idealgas.analysis.profile.measure import profile as measure
 
     with open_log(path) as log, reading("frames") as progress:
         result = measure(log, along, bins, start, end, progress)
     if plot:
-        from idealgas.analysis.figures import save
-        from idealgas.analysis.profile_figure import profile_figure
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.profile.figure import profile_figure
 
         save(profile_figure(result), plot)
     if as_json:

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from idealgas.analysis.development import Development
-    from idealgas.analysis.relaxation import Relaxation
-    from idealgas.analysis.statistics import Estimate
-    from idealgas.analysis.trials import Trials
+    from idealgas.analysis.core.statistics import Estimate
+    from idealgas.analysis.relaxation.acceptance import Trials
+    from idealgas.analysis.relaxation.measure import Relaxation
+    from idealgas.analysis.relaxation.speeds import Development
 
 
 @click.command()
@@ -41,9 +41,9 @@ def relaxation(
     The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error comes from groups
     of discs. Several logs lie on one plot.
     """
-    from idealgas.analysis.development import development
-    from idealgas.analysis.relaxation import relaxation as measure
-    from idealgas.analysis.trials import trials
+    from idealgas.analysis.relaxation.acceptance import trials
+    from idealgas.analysis.relaxation.measure import relaxation as measure
+    from idealgas.analysis.relaxation.speeds import development
 
     results, tables, tried = [], [], []
     with reading("instants") as progress:
@@ -53,8 +53,8 @@ def relaxation(
                 tables.append(None if every is None else development(log, every, start, end))
                 tried.append(trials(log))
     if plot:
-        from idealgas.analysis.figures import save
-        from idealgas.analysis.relaxation_figure import relaxation_figure
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.relaxation.figure import relaxation_figure
 
         save(relaxation_figure(results), plot)
     if as_json:
@@ -82,7 +82,7 @@ def _print(results: "Sequence[Relaxation]") -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from idealgas.analysis.relaxation import LINEAR, SETTLED
+    from idealgas.analysis.relaxation.measure import LINEAR, SETTLED
 
     table = Table("", title="Relaxation to Maxwell-Boltzmann", title_justify="left")
     for head in ("N", "relaxation time", "settled", "not told apart"):

@@ -14,7 +14,7 @@ def report(path: str, output: str, start: float | None) -> None:
 
     The page needs no network and no other file. It has as many events as fit: the player says which part of the run.
     """
-    from idealgas.analysis.report import write_report
+    from idealgas.analysis.report.page import write_report
 
     with open_log(path) as log, reading("analyses") as progress:
         write_report(log, output, start=start, on_step=progress)

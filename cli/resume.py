@@ -23,7 +23,7 @@ def resume(path: str, as_json: bool, **ends: Any) -> None:
     """
     from functools import partial
 
-    from idealgas.resume import resume as go_on
+    from idealgas.run.resume import resume as go_on
 
     from ._runs import carry_out
 

@@ -20,7 +20,7 @@ def run(path: str, overrides: tuple[str, ...], output: str, force: bool, as_json
     check_output(output, force)
     from functools import partial
 
-    from idealgas.simulate import simulate
+    from idealgas.run.simulate import simulate
 
     from ._runs import carry_out
 

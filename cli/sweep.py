@@ -9,8 +9,8 @@ import click
 from idealgas.errors import UserError
 
 if TYPE_CHECKING:
-    from idealgas.study.plan import Sweep
-    from idealgas.study.sweep import Progress
+    from idealgas.study.sweep.plan import Sweep
+    from idealgas.study.sweep.run import Progress
 
 
 @click.command()
@@ -25,7 +25,7 @@ def sweep(path: str, output: str | None, workers: int | None, scheduler: str | N
     What was done stays done: the same command goes on where it was stopped. A point that fails is tried again twice and
     then reported; the others run on.
     """
-    from idealgas.study.plan import load_sweep
+    from idealgas.study.sweep.plan import load_sweep
 
     plan = load_sweep(path)
     if dry_run:
@@ -33,8 +33,8 @@ def sweep(path: str, output: str | None, workers: int | None, scheduler: str | N
         return
     if output is None:
         raise UserError("-o DIR: missing (the folder for logs and results)")
-    from idealgas.study.results import write_tables
-    from idealgas.study.sweep import run_sweep
+    from idealgas.study.sweep.results import write_tables
+    from idealgas.study.sweep.run import run_sweep
 
     interrupted = False
     outcome = None
@@ -84,7 +84,7 @@ def _print_plan(plan: "Sweep", workers: int | None) -> None:
     from rich.filesize import decimal
     from rich.table import Table
 
-    from idealgas.study.outlook import outlook
+    from idealgas.study.sweep.cost import outlook
 
     workers = workers or os.cpu_count() or 1
     costs = outlook(plan)

@@ -10,12 +10,13 @@ from ._analysis import analysis_options, describe, log_argument, open_log, print
 @analysis_options
 def temperature(path: str, start: float | None, end: float | None, plot: str | None, as_json: bool) -> None:
     """Measure the temperature of every degree of freedom and species; by equipartition all are E/N."""
-    from idealgas.analysis.temperature import temperature as measure
+    from idealgas.analysis.temperature.measure import temperature as measure
 
     with open_log(path) as log, reading() as progress:
         result = measure(log, start, end, progress)
     if plot:
-        from idealgas.analysis.figures import save, temperature_figure
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.temperature.figure import temperature_figure
 
         save(temperature_figure(result), plot)
     if as_json:

@@ -14,13 +14,13 @@ def transport(path: str, start: float | None, end: float | None, plot: str | Non
     Beside them stand kinetic theory's rates and Enskog's diffusion; the distribution of free paths is that of `idealgas
     histogram --quantity free-path`.
     """
-    from idealgas.analysis.transport import transport as measure
+    from idealgas.analysis.transport.measure import transport as measure
 
     with open_log(path) as log, reading() as progress:
         result = measure(log, start, end, progress)
     if plot:
-        from idealgas.analysis.figures import save
-        from idealgas.analysis.transport_figure import transport_figure
+        from idealgas.analysis.core.style import save
+        from idealgas.analysis.transport.figure import transport_figure
 
         save(transport_figure(result), plot)
     if as_json:

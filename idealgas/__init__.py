@@ -2,12 +2,12 @@
 
 from typing import TYPE_CHECKING, Any
 
+from idealgas._version import __version__
+
 if TYPE_CHECKING:
     from idealgas.log import open_log
 
 __all__ = ["__version__", "open_log"]
-
-__version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:

@@ -94,3 +94,11 @@ def _code_of_fetch(context: Any, builder: Any, signature: Any, arguments: Any) -
 def compile_timer() -> AbstractContextManager[TimingListener]:
     """Measure, as `duration` if `done`, the seconds spent on making machine code or loading it."""
     return install_listener("numba:compile", TimingListener())
+
+
+def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
+    """Zeroed array on a cache-line boundary; a structured one as a record array."""
+    raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
+    start = -raw.ctypes.data % boundary
+    array = raw[start : start + n * dtype.itemsize].view(dtype)
+    return array.view(np.recarray) if dtype.names else array

@@ -4,18 +4,18 @@ import math
 
 import numpy as np
 
-from idealgas.effects import make_segments
-from idealgas.engine.effects import Effects
-from idealgas.engine.records import aligned
+from idealgas._jit import aligned
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
 from idealgas.physics.motion import Gravity
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
+from idealgas.run.effects import make_segments
 
 BOX = (12.0, 9.0)
 

@@ -14,10 +14,11 @@ from hypothesis import reject
 from hypothesis import strategies as st
 from random_walls import HEIGHT, WIDTH, distances, some_walls
 
-from idealgas.gas import Gas, make_gas
+from idealgas.document.dump import toml_value
+from idealgas.gas.build import make_gas
+from idealgas.gas.state import Gas
 from idealgas.scene import Scene, SceneError, parse_scene
-from idealgas.scene.dump import toml_value
-from idealgas.scene.effects import SIDES
+from idealgas.scene.tables.box import SIDES
 
 EFFECTS = ("joined x", "joined y", "walls", "gravity", "rotation", "restitution", "thermal", "piston")
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)

@@ -13,7 +13,7 @@ import numpy as np
 
 import idealgas.log.writer as log_writer
 from idealgas.events import BLOCK, EventBatch, Kind
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.log import Column, Log, LogWriter, box_walls
 
 DISCS = 25

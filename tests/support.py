@@ -12,7 +12,7 @@ import pytest
 
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import BLOCK, EventBatch, empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 
 ROOT = Path(__file__).parent.parent
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"

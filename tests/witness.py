@@ -14,14 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 from random_walls import crossings, distances
 
-from idealgas.effects import wall_temperatures
-from idealgas.energy import energy_of, is_conserved, piston_motion
-from idealgas.engine.effects import Effects
 from idealgas.engine.simulation import Simulation
 from idealgas.events import EventBatch, Kind
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
+from idealgas.run.effects import wall_temperatures
+from idealgas.run.energy import energy_of, is_conserved, piston_motion
 from idealgas.scene import Scene
-from idealgas.scene.effects import SIDES
+from idealgas.scene.tables.box import SIDES
 
 U = 2.0**-53
 FEW = 16.0

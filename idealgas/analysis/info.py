@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from idealgas.analysis.composition import composition
+from idealgas.analysis.core.composition import composition
 from idealgas.log import Log
 
 

@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.engine.neighbours import gather_block
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.physics.periodic import separation
 
 U = np.uintp
@@ -31,30 +30,6 @@ def overlap_of(a, b, periodic):
     """Depth to which two discs overlap, as a share of the sum of their radii; negative if they do not."""
     x, y = separation(a, b, periodic)
     return 1.0 - math.hypot(x, y) / (a.r + b.r)
-
-
-@inline
-def deepest_around(record, agenda, i, periodic):
-    """Deepest overlap of disc i with those before it in memory; 0 if there is none."""
-    deepest = 0.0
-    disc = record[U(i)]
-    count = gather_block(agenda, disc, periodic)
-    for k in range(count):
-        j = agenda.candidates[U(k)]
-        while j >= 0:
-            if j < i:
-                deepest = max(deepest, overlap_of(disc, record[U(j)], periodic))
-            j = agenda.cells.link[U(j)].next
-    return deepest
-
-
-@njit
-def deepest_overlap(record, agenda, periodic):
-    """Deepest overlap among records at one time that stand in their cells."""
-    deepest = 0.0
-    for i in range(record.shape[0]):
-        deepest = max(deepest, deepest_around(record, agenda, i, periodic))
-    return deepest
 
 
 @njit

@@ -7,19 +7,18 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
-from idealgas.engine.effects import Effects
-from idealgas.engine.exits import is_piston_side, turns_along
 from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
 from idealgas.events import EventBatch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
-from idealgas.physics.periodic import images_between, images_to_wall
-from idealgas.physics.piston import piston_contact, stop_contact
-from idealgas.physics.segment import segment_contact
+from idealgas.physics.effects import Effects
+from idealgas.physics.periodic import images_between, images_to_wall, turns_along
+from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
+from idealgas.physics.wall import segment_contact
 
 U = np.uintp
 PAIR, SIDE, SEGMENT, PISTON, STOP, TURN = range(6)

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
 
 EVENTS_PER_DISC = 64  # at most; half of it at least
 FEWEST_EVENTS = 1024  # of an epoch of few discs
@@ -60,3 +61,13 @@ def epoch_length(
     shortest = FEWEST_PER_DISC * n / rate
     longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
     return 2.0 ** math.floor(math.log2(min(max(way, shortest), longest)))
+
+
+def speed_beyond(gas: Gas, effects: Effects) -> float:
+    """What the effects may add to the mean speed of the discs, length/time; a rough figure for epoch lengths."""
+    speed = 0.0
+    if effects.gravity is not None:
+        speed += math.sqrt(math.hypot(*effects.gravity) * sum(gas.box))
+    if effects.piston is not None:
+        speed += abs(float(effects.piston[0].v))
+    return speed

@@ -11,13 +11,13 @@ import math
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, make_discs
 from idealgas.engine.rows import batch_capacity, write_pair, write_trial
 from idealgas.errors import UserError
 from idealgas.events import EventBatch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.physics.disc_disc import collide
+from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 from idealgas.physics.random_pair import mean_trial_time, touch_at_random

@@ -13,12 +13,12 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
-from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.rows import batch_capacity, write_pair, write_side_hit
 from idealgas.events import EventBatch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.physics.arithmetic import add, divide, less, load, multiply, number, root, rounded, store, subtract
+from idealgas.physics.effects import Effects
 
 NOBODY = -5  # beyond the sides, which are -1 to -4
 

@@ -1,11 +1,12 @@
 """The arrays the engines work on: one 64-byte record a disc, in an order of memory that is not the order of ids."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import CACHE_LINE, inline, njit
-from idealgas.gas import Gas
+from idealgas._jit import aligned, inline, njit
+from idealgas.gas.state import Gas
+from idealgas.physics.constants import NEVER
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 
@@ -30,14 +31,6 @@ COUNTERS = np.dtype(
         ("trials", "i8"), ("trial_time", "f8"),  # of Monte Carlo: since time 0; local time of the last one
     ]
 )  # fmt: skip
-
-
-def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
-    """Zeroed array on a cache-line boundary; a structured one as a record array."""
-    raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
-    start = -raw.ctypes.data % boundary
-    array = raw[start : start + n * dtype.itemsize].view(dtype)
-    return array.view(np.recarray) if dtype.names else array
 
 
 class StandingClock(Exception):
@@ -105,3 +98,9 @@ def synchronise(record, ids, time, gravity, periodic):
     for i in range(record.shape[0]):
         advance(record[i], time, gravity)
         wrap(record[i], ids[i], periodic)
+
+
+UNLIMITED = 1 << 62
+
+
+LATEST = 0.25 * NEVER

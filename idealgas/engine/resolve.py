@@ -9,8 +9,8 @@ from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.piston import advance_piston, collide_with_piston
 from idealgas.physics.restitution import note_collision
-from idealgas.physics.segment import segment_normal
-from idealgas.physics.wall import collide_with_wall
+from idealgas.physics.wall import segment_normal
+from idealgas.physics.wall_collision import collide_with_wall
 
 U = np.uintp
 FIRST_SEGMENT = 4  # walls 0-3 are the sides of the box

@@ -7,19 +7,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from idealgas.engine.audit import Audit, audit
-from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.effects import Effects, begin_epoch, copy_of, end_epoch, speed_beyond, time_of_next_gate
-from idealgas.engine.epoch import encounters_per_length, epoch_length
-from idealgas.engine.event_driven import EventDriven
-from idealgas.engine.records import COUNTERS, Discs, Limits, StandingClock, synchronise
+from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond
+from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, Limits, StandingClock, synchronise
 from idealgas.errors import UserError
 from idealgas.events import EventBatch
-from idealgas.gas import Gas
-from idealgas.physics.constants import NEVER
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects, begin_epoch, copy_of, end_epoch, time_of_next_gate
 from idealgas.physics.periodic import Periodic, joined_axes
 
-UNLIMITED = 1 << 62
-LATEST = 0.25 * NEVER
 TRAJECTORY = 3
 """Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
 
@@ -42,9 +37,6 @@ class Method(Protocol):
     ) -> tuple[int, bool]: ...
 
     def deepest_overlap(self) -> float: ...
-
-
-METHODS: dict[str, type[Method]] = {"event_driven": EventDriven, "brute_force": BruteForce}
 
 
 class Stop(NamedTuple):

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.engine.effects import Effects
 from idealgas.engine.records import Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
 from idealgas.engine.rows import batch_capacity, write_pair, write_side_hit
 from idealgas.events import EventBatch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import NO_IMAGES, separation, wrap
 

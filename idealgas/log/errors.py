@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from idealgas.errors import UserError
-from idealgas.log.superblock import is_locked
+from idealgas.log.hdf5.superblock import is_locked
 
 
 class LogError(UserError):

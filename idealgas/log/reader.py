@@ -37,12 +37,12 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from idealgas.events import EventBatch, Kind
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.log.errors import LogError
+from idealgas.log.hdf5.superblock import is_locked
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.schema import DISC_COLUMNS, Wall
 from idealgas.log.source import ATTEMPTS, PAUSE, Source
-from idealgas.log.superblock import is_locked
 
 if TYPE_CHECKING:
     from idealgas.scene import Scene

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import h5py
 
-from idealgas.log.commit import Commit
 from idealgas.log.errors import LogError, check_output, storage_error
+from idealgas.log.hdf5.commit import Commit
+from idealgas.log.hdf5.superblock import abandon, clear_mark, is_marked, lock
+from idealgas.log.hdf5.table import Table, commit_tables, open_tables
 from idealgas.log.reader import open_log
 from idealgas.log.schema import FILE_OPTIONS
-from idealgas.log.superblock import abandon, clear_mark, is_marked, lock
-from idealgas.log.table import Table, commit_tables, open_tables
 
 
 def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None) -> int:

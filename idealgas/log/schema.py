@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-import idealgas
+from idealgas._version import __version__
 from idealgas.events import BLOCK, BOX_SIDES, COLUMN_UNITS, Kind
-from idealgas.gas import Gas
-from idealgas.log.commit import Commit
-from idealgas.log.objects import Objects, set_attributes
+from idealgas.gas.state import Gas
+from idealgas.log.hdf5.commit import Commit
+from idealgas.log.hdf5.objects import Objects, set_attributes
 
 FORMAT = "idealgas log"
 VERSION = 1
@@ -118,7 +118,7 @@ def write_header(
     set_attributes(objects.group("versions"), **_versions(), trajectory=trajectory)
     set_attributes(objects.group("h5md"), version=H5MD_VERSION)
     set_attributes(objects.group("h5md/author"), name=np.bytes_("unknown"))
-    set_attributes(objects.group("h5md/creator"), name=np.bytes_("idealgas"), version=np.bytes_(idealgas.__version__))
+    set_attributes(objects.group("h5md/creator"), name=np.bytes_("idealgas"), version=np.bytes_(__version__))
     walls, store = surroundings.walls, objects.constant
     box = store("box", np.array(gas.box, "f8"), "length")
     set_attributes(box, boundary=np.array(surroundings.boundary, "S"))
@@ -205,7 +205,7 @@ def _describe_particles(file: h5py.File, objects: Objects) -> None:
 def _versions() -> dict[str, np.bytes_]:
     """Of the programs that make a log."""
     packages = {name: importlib.metadata.version(name) for name in ("numpy", "numba", "h5py", "isal")}
-    versions = {"idealgas": idealgas.__version__, "python": platform.python_version(), **packages}
+    versions = {"idealgas": __version__, "python": platform.python_version(), **packages}
     return {name: np.bytes_(version) for name, version in {**versions, "hdf5": h5py.version.hdf5_version}.items()}
 
 

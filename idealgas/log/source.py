@@ -11,10 +11,10 @@ import h5py
 import numpy as np
 
 from idealgas.log import schema
-from idealgas.log.commit import Commit, table_of
 from idealgas.log.errors import LogError
-from idealgas.log.superblock import Unmarked, is_locked, is_marked
-from idealgas.log.table import StoredColumn, open_dataset
+from idealgas.log.hdf5.commit import Commit, table_of
+from idealgas.log.hdf5.superblock import Unmarked, is_locked, is_marked
+from idealgas.log.hdf5.table import StoredColumn, open_dataset
 
 _CACHED_CHUNKS = 8
 ATTEMPTS = 10

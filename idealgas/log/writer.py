@@ -14,13 +14,13 @@ import h5py
 import numpy as np
 
 from idealgas.events import BLOCK, EventBatch, empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 from idealgas.log import schema
-from idealgas.log.commit import Commit
 from idealgas.log.errors import LogError, check_output, give_name, storage_error
+from idealgas.log.hdf5.commit import Commit
+from idealgas.log.hdf5.superblock import abandon, lock
+from idealgas.log.hdf5.table import Table, commit_tables, open_tables
 from idealgas.log.schema import Column, Wall
-from idealgas.log.superblock import abandon, lock
-from idealgas.log.table import Table, commit_tables, open_tables
 
 BUFFERS = 4
 FLUSH_ROWS = 4 * BLOCK

@@ -89,3 +89,11 @@ def wrap(disc, own, periodic):
             disc.y -= boxes * periodic.Ly
             periodic.image[U(own), 1] += np.int32(boxes)
             periodic.turns[U(own), 1] -= np.int32(boxes)
+
+
+@inline
+def turns_along(periodic, own, along_y):
+    """How often a disc went through joined sides along an axis since its record, and whether they are joined."""
+    if periodic is not None:
+        return (periodic.turns[U(own), 1], periodic.y) if along_y else (periodic.turns[U(own), 0], periodic.x)
+    return np.int32(0), False

@@ -82,3 +82,11 @@ def collide_with_piston(disc, own, piston, restitution):
         disc.vy = velocity
     else:
         disc.vx = velocity
+
+
+@inline
+def is_piston_side(side, piston):
+    """Whether the piston stands before a side."""
+    if piston is not None:
+        return side == piston[0].side
+    return False

@@ -1,10 +1,18 @@
 """Scenes: the TOML model, its loader and its resolved dump."""
 
-from idealgas.scene.dump import dump_scene
-from idealgas.scene.effects import Gravity, Piston, Restitution, Rotation, ThermalSide, Wall
-from idealgas.scene.errors import SceneError
+from idealgas.document.messages import SceneError
 from idealgas.scene.loader import load_scene, parse_scene
-from idealgas.scene.model import EFFECTS, Box, Disc, Header, Log, Run, Scene, Species
+from idealgas.scene.model import Scene
+from idealgas.scene.tables.box import Box
+from idealgas.scene.tables.discs import Disc, Species
+from idealgas.scene.tables.document import EFFECTS
+from idealgas.scene.tables.gravity import Gravity
+from idealgas.scene.tables.piston import Piston
+from idealgas.scene.tables.restitution import Restitution
+from idealgas.scene.tables.rotation import Rotation
+from idealgas.scene.tables.run import Header, Log, Run
+from idealgas.scene.tables.thermal import ThermalSide
+from idealgas.scene.tables.wall import Wall
 
 __all__ = [
     "EFFECTS",
@@ -22,7 +30,6 @@ __all__ = [
     "Species",
     "ThermalSide",
     "Wall",
-    "dump_scene",
     "load_scene",
     "parse_scene",
 ]

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from idealgas.scene.effects import Restitution
-    from idealgas.scene.model import Disc, Run, Species
+    from idealgas.scene.tables.discs import Disc, Species
+    from idealgas.scene.tables.restitution import Restitution
+    from idealgas.scene.tables.run import Run
 
 
 def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:

@@ -6,11 +6,12 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from idealgas.scene.table import Rectangle
+from idealgas.document.table import Rectangle
 
 if TYPE_CHECKING:
-    from idealgas.scene.effects import Piston, Wall
-    from idealgas.scene.model import Box
+    from idealgas.scene.tables.box import Box
+    from idealgas.scene.tables.piston import Piston
+    from idealgas.scene.tables.wall import Wall
 
 Point = tuple[float, float]
 

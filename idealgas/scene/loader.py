@@ -1,20 +1,18 @@
 """From TOML text to a checked `Scene`; everything that is wrong with a text is reported at once."""
 
-import re
-import tomllib
 from collections.abc import Sequence
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from idealgas.scene.checks import faults
-from idealgas.scene.errors import SceneError, as_faults, table_at
-from idealgas.scene.fault import Fault, Key
+from idealgas.document.error import Fault, Key
+from idealgas.document.messages import SceneError, as_faults, table_at
+from idealgas.document.origin import Origin
+from idealgas.document.overrides import OverrideError, apply
+from idealgas.document.text import parse_document, read_text
+from idealgas.scene.checks.issues import faults
 from idealgas.scene.model import Scene
-from idealgas.scene.origin import Origin
-from idealgas.scene.overrides import OverrideError, apply
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
@@ -47,39 +45,13 @@ def make_scene(document: dict[str, Any], origin: Origin, errors: Sequence[str] =
     return scene
 
 
-def read_text(path: str | PathLike[str]) -> str:
-    """Text of a TOML file. SceneError if there is none."""
-    try:
-        raw = Path(path).read_bytes()
-        return raw.decode()
-    except UnicodeDecodeError as error:
-        line = raw.count(b"\n", 0, error.start) + 1
-        raise SceneError([f"{path}:{line}: not UTF-8 text (got byte 0x{raw[error.start]:02x})"]) from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise SceneError([f"{path}: cannot be read ({reason})"]) from None
-
-
-def parse_document(text: str, name: str) -> dict[str, Any]:
-    """A TOML text as plain values. SceneError if it is not TOML."""
-    try:
-        return tomllib.loads(text)
-    except RecursionError:
-        raise SceneError([f"{name}: not TOML: nested too deeply"]) from None
-    except ValueError as error:
-        what, line = str(error), text.count("\n") + 1
-        if match := re.fullmatch(r"(.*) \(at line (\d+), column \d+\)", what, re.DOTALL):
-            what, line = match[1], int(match[2])
-        raise SceneError([f"{name}:{line}: not TOML: {what}"]) from None
-
-
 def _all_faults(error: ValidationError, document: dict[str, Any]) -> list[Fault]:
     """Faults inside tables and, over those tables that have none, between tables."""
     findings = error.errors(include_url=False)
     if findings[0]["type"] == "faults":
         return findings[0]["ctx"]["faults"]
     parts, unsound = _sound_parts(document)
-    return [*as_faults(findings), *faults(parts, unsound)]
+    return [*as_faults(findings, Scene), *faults(parts, unsound)]
 
 
 def _sound_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
@@ -87,7 +59,7 @@ def _sound_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
     parts: dict[str, Any] = {}
     unsound = set()
     for name, field in Scene.model_fields.items():
-        table, value = table_at((name,)), document.get(name)
+        table, value = table_at((name,), Scene), document.get(name)
         if value is not None and field.default == ():
             parts[name] = _sound_items(table, value)
             sound = None not in parts[name]

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from idealgas.scene.effects import SIDES, Piston, ThermalSide, Wall
 from idealgas.scene.geometry import Point
+from idealgas.scene.tables.box import SIDES
+from idealgas.scene.tables.piston import Piston
+from idealgas.scene.tables.thermal import ThermalSide
+from idealgas.scene.tables.wall import Wall
 
 if TYPE_CHECKING:
     from idealgas.scene.model import Scene

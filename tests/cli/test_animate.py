@@ -7,8 +7,8 @@ from click.testing import CliRunner
 from idealgas_cli.main import main
 from PIL import Image
 
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 box.size = [20, 20]

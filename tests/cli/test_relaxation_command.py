@@ -6,8 +6,8 @@ import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
 
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 box.size = [10, 10]

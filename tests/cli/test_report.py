@@ -15,12 +15,12 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 from support import program
 
-from idealgas.analysis import player as player_module
-from idealgas.analysis import report as report_module
-from idealgas.analysis.piston_track import piston_track
+from idealgas.analysis.movie.piston_track import piston_track
+from idealgas.analysis.report import page as report_module
+from idealgas.analysis.report import player as player_module
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 PLAIN = """
 scene.title = "Some <discs> & no more"

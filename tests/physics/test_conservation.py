@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from idealgas.analysis.ensemble import kept_momentum
-from idealgas.analysis.evolution import evolution
+from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.evolution.measure import evolution
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
-from idealgas.simulate import simulate
 
 
 def test_energy_and_momentum(shipped_scene, tmp_path):

@@ -12,11 +12,12 @@ import pytest
 from scipy import stats
 from support import batches
 
-from idealgas.analysis import theory
-from idealgas.analysis.statistics import ensemble_inefficiency, mean
-from idealgas.engine.event_driven import EventDriven
+from idealgas.analysis.core.statistics import ensemble_inefficiency, mean
+from idealgas.analysis.theory import hard_discs
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas import Gas, make_gas
+from idealgas.gas.build import make_gas
+from idealgas.gas.state import Gas
 from idealgas.scene import Box, Header, Run, Scene, Species
 
 N = 1000
@@ -94,12 +95,12 @@ def test_energy_does_not_drift(phi):
 
 @dense_and_thin
 def test_collision_rate(phi):
-    """Enskog's rate with what a closed box of N discs changes: see `theory.box_contacts` and `finite_speed_factor`."""
+    """Enskog's rate with what a closed box of N discs changes: see `hard_discs.box_contacts` and `finite_speed_factor`."""
     found = run(phi)
     start = found.end / 8
     counts, edges = np.histogram(found.collision_times, BLOCKS, (start, found.end))
-    contacts = theory.box_contacts(found.gas.radius[:1], [N], found.gas.box)[0, 0]
-    expected = contacts * theory.mean_relative_speed(found.gas.temperature, 1.0, dof=2 * N)
+    contacts = hard_discs.box_contacts(found.gas.radius[:1], [N], found.gas.box)[0, 0]
+    expected = contacts * hard_discs.mean_relative_speed(found.gas.temperature, 1.0, dof=2 * N)
     rate = mean(2 / N * counts / np.diff(edges), theory=expected)
     assert rate.standard_error < 2e-3 * expected
     assert abs(rate.deviation) <= 4

@@ -7,13 +7,13 @@ import math
 
 import pytest
 
-from idealgas.analysis.heat_capacity import heat_capacity, measure_heat
-from idealgas.analysis.histogram import histogram
-from idealgas.analysis.pressure import pressure
-from idealgas.analysis.temperature import temperature
+from idealgas.analysis.heat_capacity.measure import heat_capacity, measure_heat
+from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.temperature.measure import temperature
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 STANDARD_ERRORS = 4
 LEAST_P = 0.001

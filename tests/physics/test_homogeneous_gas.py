@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from support import ROOT
 
-from idealgas.analysis.histogram import histogram
-from idealgas.analysis.relaxation import relaxation
-from idealgas.analysis.temperature import temperature
-from idealgas.analysis.trials import trials
+from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.relaxation.acceptance import trials
+from idealgas.analysis.relaxation.measure import relaxation
+from idealgas.analysis.temperature.measure import temperature
 from idealgas.errors import UserError
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
-from idealgas.simulate import simulate
 
 STANDARD_ERRORS = 4
 LEAST_P = 0.001

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
-from idealgas.simulate import simulate
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 

@@ -12,17 +12,17 @@ import pytest
 from scipy import stats
 from support import ROOT
 
-from idealgas.analysis import theory
-from idealgas.analysis.effusion import effusion
-from idealgas.analysis.evolution import evolution
-from idealgas.analysis.evolution_theory import expected_course, push
-from idealgas.analysis.pressure import pressure
-from idealgas.analysis.profile import profile
-from idealgas.analysis.statistics import Estimate, ensemble_inefficiency, estimate, inefficiency, mean, ratio
-from idealgas.analysis.temperature import temperature
+from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, estimate, inefficiency, mean, ratio
+from idealgas.analysis.effusion.measure import effusion
+from idealgas.analysis.evolution.measure import evolution
+from idealgas.analysis.evolution.theory import expected_course, push
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.profile.measure import profile
+from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.theory import hard_discs
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
-from idealgas.simulate import simulate
 
 STANDARD_ERRORS = 4
 LEAST_P = 0.001
@@ -123,7 +123,7 @@ def test_free_expansion(run):
     assert np.abs(kinetic / kinetic[0] - 1).max() < 1e-12
     radius = log.discs.radius
     for start, end, width in ((0, 30, 10.0), (100, 300, 20.0)):
-        z = theory.box_compressibility(radius[:1], [1000], (width, 10.0))
+        z = hard_discs.box_compressibility(radius[:1], [1000], (width, 10.0))
         expected = 1000 * z / ((width - 2 * radius[0]) * 10)
         agrees(mean(wall_pressure(log, start, end), expected), 0.06)
     left, right = profile(log, "x", bins=2, start=100).species[0].density
@@ -217,7 +217,7 @@ def test_heat_bath(run):
 
 def conductivity_factor(phi):
     """Enskog's conductivity over that of the dilute gas: 1/χ + 3y/2 + 0.8718 χy², y = 2φ: Gass, see below."""
-    chi, y = theory.contact_value(phi), 2 * phi
+    chi, y = hard_discs.contact_value(phi), 2 * phi
     return 1 / chi + 1.5 * y + 0.8718 * chi * y * y
 
 
@@ -237,7 +237,7 @@ def test_conduction(run):
         fluxes.append((found.heat["left"].value, -found.heat["right"].value))
         slopes.append(-slope)
         ends.append((middle - 10 * slope, middle + 10 * slope))
-        pressures.append((n * t * theory.compressibility(math.pi * n * 0.01))[1:-1])
+        pressures.append((n * t * hard_discs.compressibility(math.pi * n * 0.01))[1:-1])
     left, right = np.array(fluxes).T
     agrees(of_runs(left / right, 1.0), 0.05)
     conductivity = np.mean(fluxes, axis=1) / 5 / (2 / 3 * np.array(slopes))
@@ -245,7 +245,7 @@ def test_conduction(run):
     for strip in (np.array(pressures) / np.mean(pressures, axis=1, keepdims=True)).T:
         agrees(of_runs(strip, 1.0), 0.01)
     hot, cold = np.mean(ends, axis=0)
-    path = theory.mean_free_path(0.2, 3.2, 0.1)
+    path = hard_discs.mean_free_path(0.2, 3.2, 0.1)
     assert 0 < (2**1.5 - hot) / np.mean(slopes) < 5 * path
     assert 0 < (cold - 1) / np.mean(slopes) < 5 * path
 
@@ -268,8 +268,8 @@ def test_compression(run):
     log_t = 0.0
     for length, step in zip(middles, np.diff(lengths), strict=True):
         n, t = 40 / length, math.exp(log_t)
-        chi = float(theory.contact_value(n * math.pi * 0.0004))
-        excess = theory.enskog_viscosity(0.04, n, t, 1.0, chi) * 0.0125 / (length * n * t)
+        chi = float(hard_discs.contact_value(n * math.pi * 0.0004))
+        excess = hard_discs.enskog_viscosity(0.04, n, t, 1.0, chi) * 0.0125 / (length * n * t)
         log_t -= push(log, length) * (1 + excess) * step
     agrees(of_runs(found, math.exp(log_t)), 1.5e-3)
 

@@ -10,9 +10,9 @@ from support import ROOT, record
 
 from idealgas.engine.precise import PreciseBruteForce
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas import make_gas
+from idealgas.gas.build import make_gas
 from idealgas.scene import load_scene
-from idealgas.study.orbit import columns_at, is_on_orbit, orbit_gas, study_orbit, survival, three_disc_orbit
+from idealgas.study.accuracy.orbit import columns_at, is_on_orbit, orbit_gas, study_orbit, survival, three_disc_orbit
 
 BOX, RADIUS = (10.2, 6.2), math.sqrt(0.5)
 GROWTH = 2500.0  # of a deviation, each period
@@ -94,7 +94,7 @@ def test_every_digit_buys_the_same_time():
 def test_what_does_not_break_is_counted_and_limits_the_median(monkeypatch):
     gas = make_gas(load_scene(ROOT / "configs" / "three-discs.toml"))
     assert survival(BOX, RADIUS, "float64") < 60
-    monkeypatch.setattr("idealgas.study.orbit.MOST_PERIODS", 3)
+    monkeypatch.setattr("idealgas.study.accuracy.orbit.MOST_PERIODS", 3)
     assert survival(BOX, RADIUS, "float64") == math.inf
     study = study_orbit(gas, 12)
     double, twice = study.survivals[1:]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from support import gas_of
 
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
 

@@ -8,7 +8,7 @@ import pytest
 from effect_samples import NAMES, allowed, log_of, make_effects, make_gas
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Stop
 
 SETS = [set(), *({name} for name in NAMES), *(set(pair) for pair in combinations(NAMES, 2))]

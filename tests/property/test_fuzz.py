@@ -19,23 +19,23 @@ from fuzz_scenes import scene_and_gas, scene_texts
 from hypothesis import HealthCheck, given, settings
 from witness import Witness, Worst
 
-from idealgas.effects import make_effects
+from idealgas._jit import aligned
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.effects import Effects
 from idealgas.engine.epoch import LONGEST_WAY
-from idealgas.engine.event_driven import EventDriven
-from idealgas.engine.records import aligned
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import EventBatch, empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.segment import SEGMENT
 from idealgas.physics.thermal import Thermal
+from idealgas.physics.wall import SEGMENT
+from idealgas.run.effects import make_effects
+from idealgas.run.simulate import stop_of
 from idealgas.scene import Scene
-from idealgas.simulate import stop_of
 
 PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
 MOST_EPOCHS = 5_000  # no scene has many, but for those in which a disc goes a long way and meets nothing

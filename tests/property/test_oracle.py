@@ -9,10 +9,10 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 
 
 class Case(NamedTuple):

@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas.gas import make_gas
+from idealgas.document.dump import toml_value
+from idealgas.gas.build import make_gas
 from idealgas.scene import SceneError, parse_scene
-from idealgas.scene.dump import toml_value
-from idealgas.scene.effects import SIDES
+from idealgas.scene.tables.box import SIDES
 
 SIDE = 10.0
 

@@ -6,9 +6,9 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas.scene import dump_scene, parse_scene
-from idealgas.scene.dump import toml_value
-from idealgas.scene.lines import key_lines
+from idealgas.document.dump import dump_document, toml_value
+from idealgas.document.lines import key_lines
+from idealgas.scene import parse_scene
 
 WIDTH, HEIGHT = 1000.0, 500.0
 
@@ -55,15 +55,15 @@ def documents(draw):
 @given(documents())
 def test_a_dump_loads_back_to_an_equal_scene(document):
     scene = parse_scene("\n".join(f"{key} = {toml_value(value)}" for key, value in document.items()))
-    text = dump_scene(scene)
+    text = dump_document(scene)
     again = parse_scene(text)
     assert again == scene
-    assert dump_scene(again) == text
+    assert dump_document(again) == text
 
 
 @given(documents())
 def test_every_key_of_a_dump_has_its_line(document):
-    text = dump_scene(parse_scene("\n".join(f"{key} = {toml_value(value)}" for key, value in document.items())))
+    text = dump_document(parse_scene("\n".join(f"{key} = {toml_value(value)}" for key, value in document.items())))
     lines = key_lines(text)
     for table, content in tomllib.loads(text).items():
         tables = (

@@ -11,13 +11,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
 
-from idealgas.effects import make_segments
-from idealgas.engine.effects import Effects
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
 from idealgas.physics.motion import Gravity
+from idealgas.run.effects import make_segments
 
 EVENTS = 120
 DEPTH = 1e-11

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from idealgas_cli.main import main
 from log_compare import scene_of
 
-from idealgas.simulate import simulate
+from idealgas.run.simulate import simulate
 
 CASES = 100
 

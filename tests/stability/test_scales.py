@@ -7,7 +7,7 @@ import pytest
 from support import batches, gas_of, record, same_rows, within
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 
 U = 2.0**-53

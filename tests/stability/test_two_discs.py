@@ -14,7 +14,7 @@ import pytest
 from support import gas_of, record, within
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import Kind, empty_batch
 

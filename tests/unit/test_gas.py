@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from idealgas.gas import make_gas, stream
+from idealgas.gas.build import make_gas, stream
 from idealgas.scene import parse_scene
 
 BOX_AND_RUN = "box.size = [10, 10]\nrun.until = 1\n"

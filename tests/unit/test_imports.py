@@ -1,81 +1,125 @@
-"""Which part of the package may import which. Data flows one way, and physics knows nobody."""
+"""Which part of the package may import which: data flows one way, no file imports in a circle, physics knows nobody."""
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 from support import ROOT
 
-FREE = {"", "errors", "events"}
+FREE = {"_version", "errors", "events", ""}
 """The version, the errors of the user and the columns of events are for all."""
 
 ALLOWED = {
-    "scene": set(),
+    "document": set(),
+    "scene": {"document"},
     "physics": {"_jit"},
-    "placement": {"_jit"},
-    "gas": {"scene", "placement", "resting"},
-    "engine": {"_jit", "physics", "gas"},
+    "gas": {"_jit", "document", "scene"},
+    "engine": {"_jit", "gas", "physics"},
     "log": {"_jit", "gas", "scene"},
-    "resting": {"scene", "gas"},
-    "effects": {"scene", "gas", "engine", "physics"},
-    "energy": {"gas", "engine"},
-    "columns": {"scene", "gas", "engine", "energy", "log"},
-    "simulate": {"_jit", "scene", "gas", "effects", "resting", "energy", "columns", "engine", "log"},
-    "resume": {"_jit", "scene", "effects", "energy", "columns", "engine", "log", "simulate"},
-    "analysis": {"_jit", "scene", "gas", "log"},
-    "study": {"scene", "gas", "effects", "engine", "log", "simulate", "analysis"},
+    "run": {"_jit", "document", "scene", "physics", "gas", "engine", "log"},
+    "analysis": {"_jit", "scene", "physics", "gas", "log"},
+    "study": {"document", "scene", "physics", "gas", "engine", "log", "run", "analysis"},
     "_jit": set(),
+    "_version": set(),
     "errors": set(),
     "events": set(),
-    "": {"log"},  # open_log, imported when it is asked for
+    "": {"scene", "log", "run", "analysis"},  # the Python interface, imported when it is asked for
+}
+
+WITHIN_ANALYSIS = {"core": {"theory"}, "theory": set()}
+"""What parts of the analyses may import of each other: every analysis these two, and what is named in FROM_ANALYSES."""
+
+FROM_ANALYSES = {
+    "heat_capacity": {"pressure"},
+    "status": {"pressure"},
+    "report": {
+        "info",
+        "movie",
+        "effusion",
+        "heat_capacity",
+        "histogram",
+        "pressure",
+        "relaxation",
+        "temperature",
+        "transport",
+    },
 }
 
 COMPUTES = {"idealgas", "math", "typing", "collections", "enum", "numpy", "numba"}
 """All that the laws of physics need."""
 
-MODULES = sorted((ROOT / "idealgas").rglob("*.py"))
-COMMANDS = sorted((ROOT / "cli").glob("*.py"))
+
+def modules() -> dict[str, Path]:
+    """Every module by its installed name."""
+    found = {}
+    for folder, package in (("idealgas", "idealgas"), ("cli", "idealgas_cli")):
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            parts = (package, *path.relative_to(ROOT / folder).with_suffix("").parts)
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
 
 
-def imports(path: Path) -> set[str]:
-    """Dotted names that a module imports, anywhere in it; relative imports keep their dots."""
-    names = set()
+MODULES = modules()
+
+
+def imports(name: str) -> set[str]:
+    """Names that a module imports, anywhere in it, for types as well; of the package its modules only."""
+    path = MODULES[name]
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            module = "." * node.level + (node.module or "")
-            names |= {f"{module}.{alias.name}" for alias in node.names} if module == "idealgas" else {module}
-    return names
+            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            module = ".".join([*above, *([node.module] if node.module else [])])
+            for alias in node.names:
+                inner = f"{module}.{alias.name}"
+                found.add(inner if inner in MODULES else module)
+    return found - {name}
 
 
-def part(name: str) -> str:
-    """scene for idealgas.scene.model; nothing for the package itself and what it defines."""
-    first = name.split(".")[1] if "." in name else ""
-    return first if first in ALLOWED else ""
+GRAPH = {name: {other for other in imports(name) if other in MODULES} for name in MODULES}
+PACKAGE = [name for name in MODULES if name.split(".")[0] == "idealgas"]
 
 
-def name_of(path: Path) -> str:
-    return path.relative_to(ROOT).as_posix()
+def part(name: str, depth: int = 1) -> str:
+    """scene for idealgas.scene.model; nothing for the package itself."""
+    parts = name.split(".")
+    return parts[depth] if len(parts) > depth else ""
 
 
-@pytest.mark.parametrize("path", MODULES, ids=name_of)
-def test_the_package_imports_one_way(path):
-    place = path.relative_to(ROOT / "idealgas").with_suffix("").parts[0]
-    own = "" if place == "__init__" else place
+def test_no_file_imports_in_a_circle():
+    order = list(TopologicalSorter(GRAPH).static_order())  # CycleError names the circle
+    assert set(order) == set(MODULES)
+
+
+@pytest.mark.parametrize("name", PACKAGE)
+def test_the_package_imports_one_way(name):
+    own = part(name)
     assert own in ALLOWED, "a new part: say what it may import"
-    names = imports(path)
-    used = {part(name) for name in names if name.split(".")[0] == "idealgas"}
+    used = {part(other) for other in GRAPH[name]}
     assert used - {own} - FREE <= ALLOWED[own]
-    assert not any(name.startswith("..") or name.split(".")[0] in ("cli", "idealgas_cli") for name in names)
+    assert not any(other.split(".")[0] in ("cli", "idealgas_cli") for other in imports(name))
 
 
-@pytest.mark.parametrize("path", [p for p in MODULES if p.parent.name == "physics"], ids=name_of)
-def test_physics_only_computes(path):
-    assert {name.split(".")[0] for name in imports(path)} <= COMPUTES
+@pytest.mark.parametrize("name", [name for name in PACKAGE if part(name) == "analysis" and part(name, 2)])
+def test_analyses_stand_side_by_side(name):
+    own = part(name, 2)
+    used = {part(other, 2) for other in GRAPH[name] if part(other) == "analysis"} - {own, ""}
+    if own == "registry":
+        return  # lists them all
+    common = WITHIN_ANALYSIS.get(own, {"core", "theory"})
+    assert used <= common | FROM_ANALYSES.get(own, set())
 
 
-@pytest.mark.parametrize("path", COMMANDS, ids=name_of)
-def test_commands_use_what_is_public(path):
-    used = {part(name) for name in imports(path) if name.split(".")[0] == "idealgas"}
-    assert used <= FREE | {"scene", "gas", "simulate", "resume", "log", "analysis", "study"}
+@pytest.mark.parametrize("name", [name for name in PACKAGE if part(name) == "physics"])
+def test_physics_only_computes(name):
+    assert {other.split(".")[0] for other in imports(name)} <= COMPUTES
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if name.startswith("idealgas_cli.")])
+def test_commands_use_what_is_public(name):
+    used = {part(other) for other in GRAPH[name] if other.split(".")[0] == "idealgas"}
+    assert used <= FREE | {"document", "scene", "gas", "run", "log", "analysis", "study"}

@@ -23,8 +23,8 @@ print(idealgas.__file__, idealgas_cli.__file__, sep="\\n")
 def source(tmp_path_factory):
     """A copy of what is packaged, so that building leaves no trace in the tree."""
     folder = tmp_path_factory.mktemp("source")
-    for name in ("idealgas", "cli", "configs", "tests"):
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("idealgas", "cli", "configs", "tests", ".packages"):
+        shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "README.md"):
         shutil.copy(ROOT / name, folder)
     return folder

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.effects import make_effects
-from idealgas.gas import make_gas
-from idealgas.physics.segment import SEGMENT
+from idealgas.gas.build import make_gas
+from idealgas.physics.wall import SEGMENT
+from idealgas.run.effects import make_effects
 from idealgas.scene import EFFECTS, load_scene, parse_scene
 
 PLAIN = """

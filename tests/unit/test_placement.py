@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist
 
-from idealgas import placement
-from idealgas.placement import make_lattice
+from idealgas.gas import placement
+from idealgas.gas.placement import make_lattice
 
 LOW, HIGH = np.array([1.0, 2.0]), np.array([9.0, 7.0])
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from log_compare import differences, scene_of
 
-import idealgas.resume as going_on
+import idealgas.run.resume as going_on
 from idealgas.engine.simulation import TRAJECTORY
 from idealgas.log import LogError, LogWriter, open_log
-from idealgas.resume import resume
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
 from idealgas.scene import SceneError
-from idealgas.simulate import simulate
 
 SNAPSHOTS = "log.snapshot_every=0.37"
 EVENTS = 12_000

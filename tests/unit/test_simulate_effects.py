@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from idealgas.effects import make_effects
-from idealgas.energy import Energy, is_conserved
-from idealgas.gas import make_gas
+from idealgas.gas.build import make_gas
 from idealgas.log import open_log
+from idealgas.run.effects import make_effects
+from idealgas.run.energy import Energy, is_conserved
+from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
-from idealgas.simulate import simulate
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 

@@ -3,8 +3,8 @@
 import pytest
 
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 
 @pytest.fixture

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from idealgas.analysis.flights import Moments
-from idealgas.analysis.impacts import Impacts
-from idealgas.analysis.stream import stream
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.stream import stream
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 GAS = """
 scene.seed = 3

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from idealgas.analysis import theory
-from idealgas.analysis.equation_of_state import Sample, equation_of_state
-from idealgas.analysis.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
+from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 
 
@@ -14,7 +14,7 @@ def samples(phis, error, number=1000, runs=4, seed=0):
     """Runs whose Z is theory's at their N with noise of a known size."""
     random = np.random.default_rng(seed)
     for phi in phis:
-        z = float(theory.compressibility(phi, number))
+        z = float(hard_discs.compressibility(phi, number))
         for value in random.normal(z, error * z, runs):
             yield Sample(phi, number, Estimate(float(value), error * z, 500.0, z))
 
@@ -60,7 +60,7 @@ def test_few_states_give_no_coefficients_and_frozen_ones_nothing():
 
 def test_resummed_series_beside_pade_approximants():
     """Both Padé approximants of the ten known terms agree with it within 1e-4 up to φ = 0.55."""
-    series = [b * 2.0**k for k, b in enumerate(theory.VIRIAL)]
+    series = [b * 2.0**k for k, b in enumerate(hard_discs.VIRIAL)]
     for above, below in ((4, 5), (5, 4)):
         matrix = [
             [series[above + k - j] if above + k >= j else 0.0 for j in range(1, below + 1)] for k in range(1, below + 1)
@@ -68,7 +68,7 @@ def test_resummed_series_beside_pade_approximants():
         q = Polynomial([1.0, *np.linalg.solve(matrix, [-series[above + k] for k in range(1, below + 1)])])
         p = Polynomial((Polynomial(series) * q).coef[: above + 1])
         phi = np.linspace(0.01, 0.55, 55)
-        assert theory.compressibility(phi) == pytest.approx(p(phi) / q(phi), rel=1e-4)
+        assert hard_discs.compressibility(phi) == pytest.approx(p(phi) / q(phi), rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -76,4 +76,4 @@ def test_resummed_series_beside_pade_approximants():
 )
 def test_resummed_series_beside_molecular_dynamics(expansion, z):
     """Area over that of close packing: Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985); theirs are good to 1e-4."""
-    assert theory.compressibility(math.pi / math.sqrt(12) / expansion) == pytest.approx(z, rel=2e-4)
+    assert hard_discs.compressibility(math.pi / math.sqrt(12) / expansion) == pytest.approx(z, rel=2e-4)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.evolution import evolution
+from idealgas.analysis.evolution.measure import evolution
 from idealgas.errors import UserError
 
 GAS = """

@@ -9,16 +9,16 @@ import pytest
 from PIL import Image
 from support import program
 
-from idealgas.analysis import film
-from idealgas.analysis.film import animate, film_path
-from idealgas.analysis.gif import GifWriter
-from idealgas.analysis.painter import LEFT, Painter, layout
-from idealgas.analysis.piston_track import PistonTrack
+from idealgas.analysis.movie import film
+from idealgas.analysis.movie.film import animate, film_path
+from idealgas.analysis.movie.gif import GifWriter
+from idealgas.analysis.movie.painter import LEFT, Painter, layout
+from idealgas.analysis.movie.piston_track import PistonTrack
 from idealgas.errors import UserError
-from idealgas.gas import make_gas
+from idealgas.gas.build import make_gas
 from idealgas.log import LogState, open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SIZE = (960, 540)
 STATE = LogState(2.5, np.array([[2.0, 7.0], [8.0, 1.0]]), np.array([[1.0, 0.0], [0.0, 1.0]]))

@@ -2,9 +2,9 @@ import math
 
 import pytest
 
-from idealgas.analysis import theory
-from idealgas.analysis.forecast import forecast
-from idealgas.gas import make_gas
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.forecast import forecast
+from idealgas.gas.build import make_gas
 from idealgas.scene import parse_scene
 
 GAS = """
@@ -22,7 +22,7 @@ def forecast_of(*overrides, text=GAS):
 def test_rates_of_one_species():
     expected = forecast_of()
     packing = math.pi * 0.1**2 * 1000 / 200
-    rate = theory.collision_rate(0.2, 1000 / 200, 1.0, 0.5, packing) * 999 / 1000  # no disc meets itself
+    rate = hard_discs.collision_rate(0.2, 1000 / 200, 1.0, 0.5, packing) * 999 / 1000  # no disc meets itself
     assert expected.temperature == pytest.approx(1.0, rel=1e-12)
     assert expected.packing_fraction == pytest.approx(packing, rel=1e-12)
     assert expected.collision_rate == pytest.approx(rate, rel=1e-12)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.energy_series import EnergySeries
-from idealgas.analysis.heat_capacity import (
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.heat_capacity.energy_series import EnergySeries
+from idealgas.analysis.heat_capacity.measure import (
     BATH,
     CLOSED,
     PISTON,
@@ -13,7 +14,6 @@ from idealgas.analysis.heat_capacity import (
     _kinetic_fluctuations,
     heat_capacity,
 )
-from idealgas.analysis.statistics import Estimate
 
 N = 20
 

@@ -6,20 +6,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas.analysis import figures
-from idealgas.analysis.composition import composition
-from idealgas.analysis.flights import Moments
-from idealgas.analysis.heat_capacity import CLOSED, heat_capacity, measure_heat
-from idealgas.analysis.histogram import QUANTITIES, histogram
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.style import save
+from idealgas.analysis.core.window import measure
+from idealgas.analysis.heat_capacity.figure import heat_capacity_figure
+from idealgas.analysis.heat_capacity.measure import CLOSED, heat_capacity, measure_heat
+from idealgas.analysis.histogram.figure import histogram_figure
+from idealgas.analysis.histogram.measure import QUANTITIES, histogram
 from idealgas.analysis.info import info
-from idealgas.analysis.pressure import pressure
-from idealgas.analysis.statistics import Estimate
-from idealgas.analysis.temperature import temperature
-from idealgas.analysis.window import measure
+from idealgas.analysis.pressure.figure import pressure_figure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.temperature.figure import temperature_figure
+from idealgas.analysis.temperature.measure import temperature
 from idealgas.errors import UserError
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 [scene]
@@ -210,10 +214,10 @@ def test_unknown_numbers_are_null_in_json():
 
 def test_every_axis_has_a_name(log, hotter):
     for figure in (
-        figures.pressure_figure(pressure(log)),
-        figures.temperature_figure(temperature(log)),
-        figures.heat_capacity_figure(heat_capacity([measure_heat(log), measure_heat(hotter)])),
-        *(figures.histogram_figure(histogram(log, quantity)) for quantity in ("speed", "wait")),
+        pressure_figure(pressure(log)),
+        temperature_figure(temperature(log)),
+        heat_capacity_figure(heat_capacity([measure_heat(log), measure_heat(hotter)])),
+        *(histogram_figure(histogram(log, quantity)) for quantity in ("speed", "wait")),
     ):
         for ax in figure.axes:
             assert ax.get_xlabel()
@@ -221,11 +225,11 @@ def test_every_axis_has_a_name(log, hotter):
 
 
 def test_pictures_are_written_or_refused(log, tmp_path):
-    figure = figures.temperature_figure(temperature(log))
-    figures.save(figure, tmp_path / "temperature.png")
+    figure = temperature_figure(temperature(log))
+    save(figure, tmp_path / "temperature.png")
     assert (tmp_path / "temperature.png").read_bytes().startswith(b"\x89PNG")
     with pytest.raises(UserError, match="cannot be written") as error:
-        figures.save(figure, tmp_path / "no such folder" / "temperature.png")
+        save(figure, tmp_path / "no such folder" / "temperature.png")
     assert error.value.exit_code == 1
 
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from idealgas.analysis.piston_track import piston_track
+from idealgas.analysis.movie.piston_track import piston_track
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 box.size = [20, 10]

@@ -5,9 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from idealgas.analysis.composition import composition
-from idealgas.analysis.profile import profile
-from idealgas.analysis.profile_theory import column_temperature, expected_profile, natural_axis
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import column_temperature
+from idealgas.analysis.profile.measure import profile
+from idealgas.analysis.profile.theory import expected_profile, natural_axis
 from idealgas.errors import UserError
 
 GAS = """

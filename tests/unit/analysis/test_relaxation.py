@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis import relaxation as module
-from idealgas.analysis.development import development
-from idealgas.analysis.ensemble import ensemble
-from idealgas.analysis.relaxation import (
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.relaxation import measure as module
+from idealgas.analysis.relaxation.acceptance import trials
+from idealgas.analysis.relaxation.figure import relaxation_figure
+from idealgas.analysis.relaxation.measure import (
     colliding_span,
     collisions_per_disc,
     critical_distance,
@@ -17,12 +18,11 @@ from idealgas.analysis.relaxation import (
     relative_entropy,
     relaxation,
 )
-from idealgas.analysis.relaxation_figure import relaxation_figure
-from idealgas.analysis.trials import trials
+from idealgas.analysis.relaxation.speeds import development
 from idealgas.errors import UserError
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 scene.seed = 5

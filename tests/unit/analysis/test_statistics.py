@@ -4,8 +4,8 @@ import sys
 import numpy as np
 import pytest
 
-from idealgas.analysis import statistics
-from idealgas.analysis.statistics import Estimate
+from idealgas.analysis.core import statistics
+from idealgas.analysis.core.statistics import Estimate
 
 
 def autoregressive(rng, length, memory, runs=1):

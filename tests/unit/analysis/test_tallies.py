@@ -6,13 +6,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from idealgas.analysis.flights import Moments, VelocityHistogram
-from idealgas.analysis.impacts import Impacts
-from idealgas.analysis.intervals import FreeFlights, Waits
-from idealgas.analysis.stream import stream
+from idealgas.analysis.core.flights import Moments, VelocityHistogram
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.stream import stream
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 [scene]

@@ -4,62 +4,72 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from idealgas.analysis import theory
+from idealgas.analysis.theory import hard_discs
 
 
 def test_virial_series_has_the_published_coefficients():
     # Z = 1 + 2φ + 3.1280φ² + 4.2579φ³ + 5.3369φ⁴ + …
-    assert theory.virial_series(0.1, terms=5) == pytest.approx(1 + 0.2 + 0.031280 + 0.0042579 + 0.00053369, abs=5e-7)
-    assert theory.virial_series(0.0) == 1.0
+    assert hard_discs.virial_series(0.1, terms=5) == pytest.approx(
+        1 + 0.2 + 0.031280 + 0.0042579 + 0.00053369, abs=5e-7
+    )
+    assert hard_discs.virial_series(0.0) == 1.0
 
 
 @pytest.mark.parametrize("phi", [0.01, 0.1, 0.2])
 def test_resummed_series_is_the_series(phi):
     # they differ from the eleventh virial coefficient on, which is below 12 φ¹⁰
-    assert theory.compressibility(phi) == pytest.approx(theory.virial_series(phi), abs=24 * phi**10 + 1e-15)
+    assert hard_discs.compressibility(phi) == pytest.approx(hard_discs.virial_series(phi), abs=24 * phi**10 + 1e-15)
 
 
 def test_henderson_is_close_below_a_half():
     phi = np.linspace(0.01, 0.5, 50)
-    assert np.abs(theory.henderson_compressibility(phi) / theory.compressibility(phi) - 1).max() < 0.005
-    assert theory.henderson_compressibility(phi) == pytest.approx(1 + 2 * phi * theory.contact_value(phi), rel=1e-14)
+    assert np.abs(hard_discs.henderson_compressibility(phi) / hard_discs.compressibility(phi) - 1).max() < 0.005
+    assert hard_discs.henderson_compressibility(phi) == pytest.approx(
+        1 + 2 * phi * hard_discs.contact_value(phi), rel=1e-14
+    )
 
 
 def test_closed_system_has_fewer_pairs():
     low = 1e-4
-    excess = theory.compressibility(low, 50) - 1
-    assert excess / (theory.compressibility(low) - 1) == pytest.approx(1 - 1 / 50, abs=1e-4)
+    excess = hard_discs.compressibility(low, 50) - 1
+    assert excess / (hard_discs.compressibility(low) - 1) == pytest.approx(1 - 1 / 50, abs=1e-4)
     # Z_N - Z = (φ/2N) d ln κ/dφ with 1/κ = d(φZ)/dφ, by finite differences
     phi, h = 0.3, 1e-4
 
     def inverse_compressibility(phi):
-        return ((phi + h) * theory.compressibility(phi + h) - (phi - h) * theory.compressibility(phi - h)) / (2 * h)
+        return ((phi + h) * hard_discs.compressibility(phi + h) - (phi - h) * hard_discs.compressibility(phi - h)) / (
+            2 * h
+        )
 
     slope = -(math.log(inverse_compressibility(phi + h)) - math.log(inverse_compressibility(phi - h))) / (2 * h)
-    assert theory.compressibility(phi, 40) - theory.compressibility(phi) == pytest.approx(phi / 80 * slope, rel=1e-4)
+    assert hard_discs.compressibility(phi, 40) - hard_discs.compressibility(phi) == pytest.approx(
+        phi / 80 * slope, rel=1e-4
+    )
 
 
 def test_mixture_of_equals_is_one_species():
-    one = theory.mixture_compressibility([0.5], [300], 1000.0)
-    two = theory.mixture_compressibility([0.5, 0.5], [100, 200], 1000.0)
+    one = hard_discs.mixture_compressibility([0.5], [300], 1000.0)
+    two = hard_discs.mixture_compressibility([0.5, 0.5], [100, 200], 1000.0)
     assert two == pytest.approx(one, rel=1e-14)
-    assert one == pytest.approx(theory.henderson_compressibility(300 * math.pi * 0.25 / 1000), rel=1e-14)
-    rates = theory.mixture_collision_rate([0.5, 0.5], [2.0, 2.0], [100, 200], 1000.0, 1.5)
-    alone = theory.collision_rate(1.0, 0.3, 1.5, 2.0, 300 * math.pi * 0.25 / 1000)
+    assert one == pytest.approx(hard_discs.henderson_compressibility(300 * math.pi * 0.25 / 1000), rel=1e-14)
+    rates = hard_discs.mixture_collision_rate([0.5, 0.5], [2.0, 2.0], [100, 200], 1000.0, 1.5)
+    alone = hard_discs.collision_rate(1.0, 0.3, 1.5, 2.0, 300 * math.pi * 0.25 / 1000)
     assert rates.sum(axis=1) == pytest.approx([alone, alone], rel=1e-14)
 
 
 def test_meetings_of_two_species_are_mutual():
     number = np.array([80, 20])
-    rates = theory.mixture_collision_rate([0.5, 1.0], [1.0, 4.0], number, 1000.0, 1.0)
+    rates = hard_discs.mixture_collision_rate([0.5, 1.0], [1.0, 4.0], number, 1000.0, 1.0)
     assert number[0] * rates[0, 1] == pytest.approx(number[1] * rates[1, 0], rel=1e-14)
 
 
 def test_mean_free_path_is_mean_speed_over_rate():
     phi, diameter = 0.2, 0.6
     density = phi / (math.pi * diameter**2 / 4)
-    rate = theory.collision_rate(diameter, density, 1.7, 2.3, phi)
-    assert theory.mean_free_path(diameter, density, phi) == pytest.approx(theory.mean_speed(1.7, 2.3) / rate, rel=1e-14)
+    rate = hard_discs.collision_rate(diameter, density, 1.7, 2.3, phi)
+    assert hard_discs.mean_free_path(diameter, density, phi) == pytest.approx(
+        hard_discs.mean_speed(1.7, 2.3) / rate, rel=1e-14
+    )
 
 
 def test_mean_speeds_by_quadrature():
@@ -67,11 +77,11 @@ def test_mean_speeds_by_quadrature():
         return 2.3 * v / 1.7 * math.exp(-2.3 * v**2 / 3.4)
 
     mean = integrate.quad(lambda v: v * density(v), 0, np.inf)[0]
-    assert theory.mean_speed(1.7, 2.3) == pytest.approx(mean, rel=1e-9)
+    assert hard_discs.mean_speed(1.7, 2.3) == pytest.approx(mean, rel=1e-9)
     flux = integrate.quad(lambda v: v * math.exp(-2.3 * v**2 / 3.4) * math.sqrt(2.3 / (2 * math.pi * 1.7)), 0, np.inf)[
         0
     ]
-    assert theory.effusion_flux(0.4, 1.7, 2.3) == pytest.approx(0.4 * flux, rel=1e-9)
+    assert hard_discs.effusion_flux(0.4, 1.7, 2.3) == pytest.approx(0.4 * flux, rel=1e-9)
 
 
 @pytest.mark.parametrize("dof", [4, 10, 2000])
@@ -79,8 +89,8 @@ def test_speed_factor_at_fixed_energy(dof):
     # mean length of a two-dimensional projection of the unit sphere: its square is Beta(1, D/2 - 1)
     mean = integrate.quad(lambda s: math.sqrt(s) * (dof / 2 - 1) * (1 - s) ** (dof / 2 - 2), 0, 1)[0]
     expected = mean * math.sqrt(dof / math.pi * 2)
-    assert theory.finite_speed_factor(dof) == pytest.approx(expected, rel=1e-7)
-    assert theory.finite_speed_factor(dof) == pytest.approx(1 + 1 / (4 * dof), abs=1 / dof**2)
+    assert hard_discs.finite_speed_factor(dof) == pytest.approx(expected, rel=1e-7)
+    assert hard_discs.finite_speed_factor(dof) == pytest.approx(1 + 1 / (4 * dof), abs=1 / dof**2)
 
 
 @pytest.mark.parametrize("radius", [[0.5], [0.5, 0.2]])
@@ -88,7 +98,7 @@ def test_confinement_is_the_part_of_the_contact_circle_in_the_box(radius):
     box = (5.0, 3.0)
     rng = np.random.default_rng(1)
     samples = 400_000
-    found = theory.confinement(radius, box)
+    found = hard_discs.confinement(radius, box)
     for i, own in enumerate(radius):
         for j, other in enumerate(radius):
             room = np.array(box) - 2 * own
@@ -102,7 +112,7 @@ def test_confinement_is_the_part_of_the_contact_circle_in_the_box(radius):
 
 
 def test_confinement_vanishes_in_a_large_box():
-    assert theory.confinement([0.5], (1e6, 1e6)) == pytest.approx(1.0, abs=2e-6)
+    assert hard_discs.confinement([0.5], (1e6, 1e6)) == pytest.approx(1.0, abs=2e-6)
 
 
 def test_second_virial_coefficient_of_a_small_box():
@@ -112,14 +122,14 @@ def test_second_virial_coefficient_of_a_small_box():
     a, b, sigma = box[0] - 2 * radius, box[1] - 2 * radius, 2 * radius
     area = a * b
     excess = (math.pi * sigma**2 / area - 2 * sigma**3 * (a + b) / area**2 + sigma**4 / area**2) / 2
-    assert theory.box_compressibility([radius], [2], box) - 1 == pytest.approx(excess, rel=1e-4)
+    assert hard_discs.box_compressibility([radius], [2], box) - 1 == pytest.approx(excess, rel=1e-4)
 
 
 def test_box_of_equals_given_as_two_species():
-    one = theory.box_compressibility([0.5], [200], (40.0, 50.0))
-    two = theory.box_compressibility([0.5, 0.5], [80, 120], (40.0, 50.0))
+    one = hard_discs.box_compressibility([0.5], [200], (40.0, 50.0))
+    two = hard_discs.box_compressibility([0.5, 0.5], [80, 120], (40.0, 50.0))
     assert two - 1 == pytest.approx(one - 1, rel=2e-3)  # Henderson's χ against the virial series, and 1/N
 
 
 def test_no_theory_beyond_freezing():
-    assert math.isnan(theory.box_compressibility([0.5], [100], (10.0, 11.0)))
+    assert math.isnan(hard_discs.box_compressibility([0.5], [100], (10.0, 11.0)))

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.pair_distribution import _chance
-from idealgas.analysis.trajectories import sample_trajectories
-from idealgas.analysis.transport import _autocorrelation, _mean_square_displacement, transport
+from idealgas.analysis.transport.measure import _autocorrelation, _mean_square_displacement, transport
+from idealgas.analysis.transport.pair_distribution import _chance
+from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.log import open_log
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-from idealgas.simulate import simulate
 
 SCENE = """
 scene.seed = 3

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from idealgas.engine.effects import Effects
+from idealgas.physics.effects import Effects
 from idealgas.scene import EFFECTS
 
 MARKERS = {

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from idealgas.engine.epoch import FEWEST_PER_DISC, LONGEST_WAY, encounters_per_length, epoch_length
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 
 
 def gas(n=100, speed=1.0, side=50.0):

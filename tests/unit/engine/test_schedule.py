@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from idealgas._jit import njit
+from idealgas._jit import aligned, njit
+from idealgas.engine.event_driven.scheduler import PREDICTION, SIDE_OF_BOX, clear, make_tree, next_disc, schedule
 from idealgas.engine.order import precedes, wall_rank
-from idealgas.engine.records import aligned
-from idealgas.engine.schedule import PREDICTION, SIDE_OF_BOX, clear, make_tree, next_disc, schedule
 
 pytestmark = pytest.mark.interpreted
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven import EventDriven
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import empty_batch
-from idealgas.gas import Gas
+from idealgas.gas.state import Gas
 
 pytestmark = pytest.mark.interpreted
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support import gas_of, record, same_rows
 
-from idealgas.engine.effects import Effects
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
 from idealgas.events import Kind, empty_batch
+from idealgas.physics.effects import Effects
 from idealgas.physics.motion import Gravity
 from idealgas.physics.periodic import Periodic
 

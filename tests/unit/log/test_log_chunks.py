@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from log_samples import rows
 
-from idealgas.log import chunks
+from idealgas.log.hdf5 import chunks
 
 SHAPES = [("f8", (1000, 2)), ("f8", (65_536,)), ("u4", (777,)), ("u1", (65_536,)), ("S5", (3,)), ("i4", (1, 1))]
 

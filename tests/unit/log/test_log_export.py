@@ -9,8 +9,8 @@ import pytest
 from log_compare import scene_of
 
 from idealgas.log import LogError, open_log
-from idealgas.log.export import FORMATS, export, frame_times
-from idealgas.simulate import simulate
+from idealgas.log.export.export import FORMATS, export, frame_times
+from idealgas.run.simulate import simulate
 
 FRAMES = 5
 

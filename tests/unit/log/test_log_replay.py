@@ -11,7 +11,7 @@ from support import program
 
 import idealgas
 from idealgas.log import LogError
-from idealgas.simulate import simulate
+from idealgas.run.simulate import simulate
 
 pyh5md = pytest.importorskip("pyh5md")
 

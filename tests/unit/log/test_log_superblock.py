@@ -3,7 +3,7 @@
 import h5py
 import pytest
 
-from idealgas.log.superblock import clear_mark, is_marked, lookup3
+from idealgas.log.hdf5.superblock import clear_mark, is_marked, lookup3
 
 
 def test_lookup3_gives_its_authors_examples():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.theory import collision_rate, contact_value, mean_relative_speed
+from idealgas.analysis.theory.hard_discs import collision_rate, contact_value, mean_relative_speed
 from idealgas.engine.records import DISC
 from idealgas.physics import random_pair
 from idealgas.physics.disc_disc import collide

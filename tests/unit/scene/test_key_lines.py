@@ -2,7 +2,7 @@ import tomllib
 
 import pytest
 
-from idealgas.scene.lines import key_lines
+from idealgas.document.lines import key_lines
 
 HARD = r'''# a comment with [brackets] = "quotes"
 top = 1

@@ -2,8 +2,9 @@
 
 import pytest
 
-from idealgas.gas import make_gas
-from idealgas.scene import SceneError, dump_scene, load_scene, parse_scene
+from idealgas.document.dump import dump_document
+from idealgas.gas.build import make_gas
+from idealgas.scene import SceneError, load_scene, parse_scene
 
 
 def test_an_invalid_scene_is_refused_with_all_its_lines(invalid_case):
@@ -15,7 +16,7 @@ def test_an_invalid_scene_is_refused_with_all_its_lines(invalid_case):
 
 def test_a_valid_scene_is_accepted_and_its_dump_is_the_same_scene(valid_case):
     scene = load_scene(valid_case)
-    assert parse_scene(dump_scene(scene)) == scene
+    assert parse_scene(dump_document(scene)) == scene
     assert len(make_gas(scene)) == len(scene.disc) + sum(s.count for s in scene.species)
 
 

@@ -1,8 +1,9 @@
 import pytest
 
+from idealgas.document.dump import dump_document
+from idealgas.document.table import LARGEST
 from idealgas.errors import UserError
-from idealgas.scene import Header, Log, Scene, SceneError, dump_scene, load_scene, parse_scene
-from idealgas.scene.table import LARGEST
+from idealgas.scene import Header, Log, Scene, SceneError, load_scene, parse_scene
 
 MINIMAL = """
 [box]
@@ -130,7 +131,7 @@ def test_every_overlap_with_an_earlier_disc_is_reported():
 
 
 def test_a_dump_shows_the_defaults():
-    assert dump_scene(parse_scene(MINIMAL)).splitlines() == [
+    assert dump_document(parse_scene(MINIMAL)).splitlines() == [
         "[scene]", 'title = ""', "seed = 0", "",
         "[box]", "size = [4.0, 2.0]", *(f'{side} = "reflecting"' for side in ("left", "right", "bottom", "top")), "",
         "[[disc]]", "position = [1.0, 1.0]", "velocity = [0.0, 0.0]", "radius = 0.5", "mass = 1.0", "",

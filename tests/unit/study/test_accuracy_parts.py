@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from support import gas_of
 
-from idealgas.analysis.statistics import Estimate
-from idealgas.engine.effects import Effects
-from idealgas.engine.event_driven import EventDriven
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Stop
 from idealgas.errors import UserError
+from idealgas.physics.effects import Effects
 from idealgas.scene import parse_scene
-from idealgas.study.accuracy import Accuracy, Row, Timing, check, from_theory, relative
-from idealgas.study.accuracy_report import cost_of, flat_row, linear_coefficient, lost_after, sentences
-from idealgas.study.ladder import Rung, Start, follow, ladder
-from idealgas.study.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
+from idealgas.study.accuracy.cases import Rung, Start, follow, ladder
+from idealgas.study.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
+from idealgas.study.accuracy.report import cost_of, flat_row, linear_coefficient, lost_after, sentences
+from idealgas.study.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
 
 
 def some_gas(n=100, seed=1):

@@ -3,7 +3,7 @@
 import statistics
 from types import SimpleNamespace
 
-from idealgas.study import bench
+from idealgas.study.bench import bench
 
 
 def test_the_ratio_is_of_runs_that_followed_each_other(monkeypatch):

@@ -3,7 +3,7 @@
 import pytest
 
 from idealgas.scene import EFFECTS
-from idealgas.study.bench_effects import NUMBER, SCENES, bench_effects, effect_scene
+from idealgas.study.bench.effects import NUMBER, SCENES, bench_effects, effect_scene
 
 
 def test_every_effect_is_there():
@@ -22,7 +22,7 @@ def test_one_at_a_time(name):
 
 
 def test_ratios_are_measured(monkeypatch):
-    monkeypatch.setattr("idealgas.study.bench_effects.SCENES", {"restitution": SCENES["restitution"]})
+    monkeypatch.setattr("idealgas.study.bench.effects.SCENES", {"restitution": SCENES["restitution"]})
     (row,) = bench_effects(events=200, repeats=3)
     assert row.effect == "restitution"
     assert 0 < row.smallest <= row.ratio <= row.largest

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from idealgas.scene import SceneError
-from idealgas.study.plan import load_sweep
+from idealgas.study.sweep.plan import load_sweep
 
 BASE = """
 [base]

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
+from idealgas.document.dump import dump_document
 from idealgas.errors import UserError
-from idealgas.scene import dump_scene, parse_scene
-from idealgas.study.point import Task, log_path, points_folder, result_path, run_point
-from idealgas.study.results import pressure_samples, read_points, write_tables
+from idealgas.scene import parse_scene
+from idealgas.study.sweep.point import Task, log_path, points_folder, result_path, run_point
+from idealgas.study.sweep.results import pressure_samples, read_points, write_tables
 
 SCENE = """
 scene.seed = 4
@@ -20,7 +21,7 @@ run.events = 2000
 @pytest.fixture
 def task(tmp_path):
     points_folder(tmp_path).mkdir()
-    scene = dump_scene(parse_scene(SCENE))
+    scene = dump_document(parse_scene(SCENE))
     return Task(str(tmp_path), 3, 1, 1, {"phi": 0.1, "species.x": [1, 2]}, scene, ("pressure", "temperature"), True)
 
 

@@ -1,0 +1,106 @@
+"""How often discs of each species meet, how far they fly in between, and what kinetic theory says."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.composition import Composition
+from idealgas.analysis.core.equilibrium import Ensemble
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
+from idealgas.analysis.core.window import Window
+from idealgas.analysis.theory import hard_discs
+
+
+@dataclass(frozen=True)
+class CollisionRate:
+    """Collisions per time of one disc of `species` with discs of the species `other`."""
+
+    species: str
+    other: str
+    rate: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"species": self.species, "other": self.other, "rate": self.rate.as_dict()}
+
+
+@dataclass(frozen=True)
+class FreePath:
+    """Mean path and mean time of a disc between collisions with discs, and its mean speed."""
+
+    species: str
+    path: Estimate
+    time: Estimate
+    speed: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {"path": self.path.as_dict(), "time": self.time.as_dict(), "speed": self.speed.as_dict()}
+        return {"species": self.species, **values}
+
+
+def expected_rates(
+    discs: Composition,
+    box: tuple[float, float],
+    equilibrium: Ensemble,
+    joined: tuple[bool, bool] = (False, False),
+    has_positions: bool = True,
+) -> np.ndarray:
+    """Γ_ij (S, S) by theory for all discs of a box, or of a gas without one; not a number where the fluid freezes.
+
+    joined: which axes of the box are periodic.
+
+    The contacts that the pressure comes from (`hard_discs.box_compressibility`), met at relative speeds that a fixed total
+    energy makes a little larger than Maxwell and Boltzmann's.
+    """
+    if has_positions:
+        contacts = hard_discs.box_contacts(discs.radius, discs.number, box, joined)
+    else:
+        contacts = hard_discs.homogeneous_contacts(discs.radius, discs.number, box)
+    reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
+    speed = np.sqrt(np.pi * equilibrium.temperature / (2 * reduced)) * hard_discs.finite_speed_factor(equilibrium.dof)
+    return contacts * speed
+
+
+def collision_rates(
+    discs: Composition, expected: np.ndarray, window: Window, impacts: Impacts
+) -> tuple[CollisionRate, ...]:
+    """Rates of all pairs of species. expected: as `expected_rates` gives them."""
+    counts = window.of(impacts.collisions)
+
+    def rate(i: int, j: int) -> Estimate:
+        discs_per_event = 2 if i == j else 1
+        series = discs_per_event * counts[:, min(i, j), max(i, j)] / discs.number[i]
+        return mean(series, theory=_known(expected[i, j]))
+
+    species = range(len(discs.name))
+    return tuple(CollisionRate(discs.name[i], discs.name[j], rate(i, j)) for i in species for j in species)
+
+
+def free_paths(
+    discs: Composition, expected: np.ndarray, equilibrium: Ensemble, window: Window, moments: Moments, impacts: Impacts
+) -> tuple[FreePath, ...]:
+    """Mean free path λ = ⟨v⟩/Γ and time 1/Γ of each species. expected: as `expected_rates` gives them."""
+    counts = window.of(impacts.collisions)
+    paths = []
+    for i, (name, mass, number) in enumerate(zip(discs.name, discs.mass, discs.number, strict=True)):
+        own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
+        speeds = window.of(moments.flights)[:, i, 0] / number
+        speed = hard_discs.mean_speed(equilibrium.of_species[i], mass, equilibrium.dof)
+        free_time = np.inf if expected[i].sum() == 0 else 1 / expected[i].sum()
+        paths.append(
+            FreePath(
+                name,
+                path=ratio(speeds, own, theory=_known(speed * free_time)),
+                time=estimate(lambda rate: 1 / rate, own, theory=_known(free_time)),
+                speed=mean(speeds, theory=speed),
+            )
+        )
+    return tuple(paths)
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,230 @@
+"""Tallies of velocities, weighted with the time that the discs spend at them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.analysis.core.stream import block_at, block_back
+from idealgas.gas.state import Gas
+
+VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
+
+T, VX, VY = range(3)  # columns of a track: last event's time, velocity since
+
+
+def make_tracks(gas: Gas, start: float) -> np.ndarray:
+    """(N, 3) tracks of discs that fly from `start` on."""
+    return np.column_stack((np.full(len(gas), start), gas.velocity))
+
+
+class Moments:
+    """Sums over discs and time of |v|, m vx², m vy², (m v²)² per block and species, and the events per block.
+
+    flights: (B, S, 4) in that order. events: (B, 2), pair collisions and wall hits.
+    """
+
+    columns = ("time", "disc", "partner", "velocity")
+
+    def __init__(self, gravity: tuple[float, float] = (0.0, 0.0)) -> None:
+        """gravity: length/time²; flights are parabolas."""
+        self.gravity = gravity
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        self.edges = edges
+        self.flights = np.zeros((len(edges) - 1, len(gas.species_names), 4))
+        self.events = np.zeros((len(edges) - 1, 2), np.int64)
+        self._species, self._mass = gas.species, gas.mass
+        self._tracks = make_tracks(gas, edges[0])
+        self._block = 0
+
+    def add(self, rows: Any) -> None:
+        self._block = _add_moments(
+            rows.time, rows.disc, rows.partner, rows.velocity, self.gravity,
+            self._species, self._mass, self._tracks, self.edges, self._block, self.flights, self.events,
+        )  # fmt: skip
+
+    def finish(self) -> None:
+        _finish_moments(self.gravity, self._species, self._mass, self._tracks, self.edges, self.flights)
+
+
+@inline
+def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
+    falls = gravity[0] != 0.0 or gravity[1] != 0.0
+    since = track[T]
+    k = block_back(edges, block, since)
+    while True:
+        stop = until if k == block else edges[k + 1]
+        weight = stop - since
+        vx = track[VX] + gravity[0] * (since - track[T])
+        vy = track[VY] + gravity[1] * (since - track[T])
+        sums = flights[k, species]
+        if falls:
+            _add_fall(sums, mass, vx, vy, gravity[0], gravity[1], weight)
+        else:
+            square = vx * vx + vy * vy
+            energy = mass * square  # twice
+            sums[0] += weight * math.sqrt(square)
+            sums[1] += mass * weight * vx * vx
+            sums[2] += mass * weight * vy * vy
+            sums[3] += weight * energy * energy
+        if k == block:
+            break
+        since = stop
+        k += 1
+
+
+@inline
+def _add_fall(sums, mass, vx, vy, gx, gy, t):
+    """The integrals over a parabola of duration t that starts at velocity (vx, vy)."""
+    a, b, c = gx * gx + gy * gy, vx * gx + vy * gy, vx * vx + vy * vy  # v² = a s² + 2 b s + c
+    across = abs(vx * gy - vy * gx) / a
+    sums[0] += math.sqrt(a) * (_half_arc(t + b / a, across) - _half_arc(b / a, across))
+    sums[1] += mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0))
+    sums[2] += mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0))
+    power = c * c + t * (2.0 * b * c + t * ((4.0 * b * b + 2.0 * a * c) / 3.0 + t * (a * b + t * a * a / 5.0)))
+    sums[3] += mass * mass * t * power
+
+
+@inline
+def _half_arc(u, k):
+    """∫₀ᵘ √(s² + k²) ds."""
+    root = math.sqrt(u * u + k * k)
+    return 0.5 * (u * root + (k * k * math.asinh(u / k) if k > 0.0 else 0.0))
+
+
+@njit
+def _add_moments(time, disc, partner, velocity, gravity, species, mass, tracks, edges, block, flights, events):
+    for row in range(time.shape[0]):
+        i = np.uintp(disc[row])
+        now = time[row]
+        block = block_at(edges, block, now)
+        track = tracks[i]
+        _spend_moments(track, gravity, species[i], mass[i], now, edges, block, flights)
+        track[T] = now
+        track[VX] = velocity[row, 0]
+        track[VY] = velocity[row, 1]
+        if partner[row] < 0:
+            events[block, 1] += 1
+        elif disc[row] > partner[row]:
+            events[block, 0] += 1
+    return block
+
+
+@njit
+def _finish_moments(gravity, species, mass, tracks, edges, flights):
+    for i in range(tracks.shape[0]):
+        _spend_moments(tracks[i], gravity, species[i], mass[i], edges[-1], edges, edges.shape[0] - 2, flights)
+
+
+class VelocityHistogram:
+    """Time spent per bin of one velocity quantity, and its values at the inner block edges for some discs.
+
+    counts: (B, S, bins + 2), time below, in and above the bins. sums: (B, S) of value times time. snapshots: (B - 1, M)
+    values of the M `sampled` discs.
+    """
+
+    columns = ("time", "disc", "velocity")
+
+    def __init__(self, quantity: str, low: np.ndarray, high: np.ndarray, bins: int, sampled: np.ndarray) -> None:
+        """low, high: (S,) range per species."""
+        self.quantity = VELOCITY_QUANTITIES.index(quantity)
+        self.low, self.per_unit, self.bins = low, bins / (high - low), bins
+        self.sampled = sampled
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        self.edges = edges
+        self.counts = np.zeros((len(edges) - 1, len(gas.species_names), self.bins + 2))
+        self.sums = np.zeros((len(edges) - 1, len(gas.species_names)))
+        self.snapshots = np.zeros((len(edges) - 1, len(self.sampled)))
+        self._slot = np.full(len(gas), -1)
+        self._slot[self.sampled] = np.arange(len(self.sampled))
+        self._species, self._mass = gas.species, gas.mass
+        self._tracks = make_tracks(gas, edges[0])
+        self._block = 0
+
+    def add(self, rows: Any) -> None:
+        self._block = _add_histogram(
+            rows.time, rows.disc, rows.velocity, self.quantity, self._species, self._mass, self._slot,
+            self._tracks, self.edges, self._block, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
+        )  # fmt: skip
+
+    def finish(self) -> None:
+        _finish_histogram(
+            self.quantity, self._species, self._mass, self._slot,
+            self._tracks, self.edges, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
+        )  # fmt: skip
+        self.snapshots = self.snapshots[:-1]
+
+
+@inline
+def bin_of(value, low, per_unit, bins):
+    """0 below the range, 1 … bins inside, bins + 1 above."""
+    place = (value - low) * per_unit
+    inside = np.int64(min(max(place, -1.0), bins + 0.0))
+    return 0 if place < 0 else inside + 1
+
+
+@inline
+def _spend_histogram(quantity, mass, slot, track, s, until, edges, block, low, per_unit, counts, sums, snapshots):
+    vx, vy = track[VX], track[VY]
+    if quantity == 0:
+        value = math.sqrt(vx * vx + vy * vy)
+    elif quantity == 1:
+        value = vx
+    elif quantity == 2:
+        value = vy
+    else:
+        value = 0.5 * mass * (vx * vx + vy * vy)
+    b = bin_of(value, low[s], per_unit[s], counts.shape[2] - 2)
+    since = track[T]
+    k = block_back(edges, block, since)
+    while k < block:
+        counts[k, s, b] += edges[k + 1] - since
+        sums[k, s] += value * (edges[k + 1] - since)
+        if slot >= 0:
+            snapshots[k, slot] = value
+        since = edges[k + 1]
+        k += 1
+    counts[block, s, b] += until - since
+    sums[block, s] += value * (until - since)
+
+
+@njit
+def _add_histogram(
+    time, disc, velocity, quantity, species, mass, slot, tracks, edges, block, low, per_unit, counts, sums, snapshots
+):
+    for row in range(time.shape[0]):
+        i = np.uintp(disc[row])
+        now = time[row]
+        block = block_at(edges, block, now)
+        track = tracks[i]
+        _spend_histogram(
+            quantity, mass[i], slot[i], track, species[i], now, edges, block, low, per_unit, counts, sums, snapshots
+        )
+        track[T] = now
+        track[VX] = velocity[row, 0]
+        track[VY] = velocity[row, 1]
+    return block
+
+
+@njit
+def _finish_histogram(quantity, species, mass, slot, tracks, edges, low, per_unit, counts, sums, snapshots):
+    last = edges.shape[0] - 2
+    for i in range(tracks.shape[0]):
+        _spend_histogram(
+            quantity,
+            mass[i],
+            slot[i],
+            tracks[i],
+            species[i],
+            edges[-1],
+            edges,
+            last,
+            low,
+            per_unit,
+            counts,
+            sums,
+            snapshots,
+        )

@@ -1,0 +1,126 @@
+"""Tallies of intervals: free flights of discs and waits of the gas, as histograms and as thinned samples."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.analysis.core.flights import bin_of
+from idealgas.analysis.core.stream import block_at, block_back
+from idealgas.gas.state import Gas
+
+
+class _Intervals:
+    """Histogram of intervals by the block and species they start in, and every `stride`-th of them as a sample.
+
+    counts: (B, S, bins + 2), with those below and above the range. sums: (B, S) of lengths.
+    sample, sample_block, sample_species: thinned intervals, block and species of their start.
+    """
+
+    def __init__(self, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
+        """high: (S,) upper end of the histogram per species, in lengths or times."""
+        self.per_unit, self.bins, self.stride = bins / high, bins, stride
+        self._sample = np.zeros(most_samples)
+        self._origin = np.zeros((most_samples, 2), np.int64)
+        self._seen = np.zeros(1, np.int64)
+
+    def _make_sums(self, edges: np.ndarray) -> None:
+        self.edges = edges
+        shape = (len(edges) - 1, len(self.per_unit))
+        self.counts = np.zeros((*shape, self.bins + 2), np.int64)
+        self.sums = np.zeros(shape)
+        self._block = 0
+
+    def finish(self) -> None:
+        """Intervals still open at the end are left out."""
+        taken = min(len(self._sample), -(-int(self._seen[0]) // self.stride))
+        self.sample = self._sample[:taken]
+        self.sample_block, self.sample_species = self._origin[:taken].T
+
+
+@inline
+def _put(value, block, s, per_unit, counts, sums, stride, seen, sample, origin):
+    counts[block, s, bin_of(value, 0.0, per_unit[s], counts.shape[2] - 2)] += 1
+    sums[block, s] += value
+    if seen[0] % stride == 0 and seen[0] // stride < sample.shape[0]:
+        sample[seen[0] // stride] = value
+        origin[seen[0] // stride, 0] = block
+        origin[seen[0] // stride, 1] = s
+    seen[0] += 1
+
+
+class FreeFlights(_Intervals):
+    """Path or time of a disc between successive collisions with discs; walls in between bend the path, no more."""
+
+    columns = ("time", "disc", "partner", "velocity")
+
+    def __init__(self, path: bool, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
+        super().__init__(high, bins, stride, most_samples)
+        self.path = path
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        self._make_sums(edges)
+        self._species = gas.species
+        # time of the last event, speed (1 to measure time), length so far, time of the last collision
+        self._tracks = np.zeros((len(gas), 4))
+        self._tracks[:, 3] = -np.inf
+
+    def add(self, rows: Any) -> None:
+        self._block = _add_free_flights(
+            rows.time, rows.disc, rows.partner, rows.velocity, self.path, self._species, self._tracks, self.edges,
+            self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,
+        )  # fmt: skip
+
+
+@njit
+def _add_free_flights(
+    time, disc, partner, velocity, path, species, tracks, edges, block,
+    per_unit, counts, sums, stride, seen, sample, origin,
+):  # fmt: skip
+    for row in range(time.shape[0]):
+        i = np.uintp(disc[row])
+        now = time[row]
+        block = block_at(edges, block, now)
+        track = tracks[i]
+        track[2] += track[1] * (now - track[0])
+        if partner[row] >= 0:
+            if track[3] >= edges[0]:
+                began = block_back(edges, block, track[3])
+                _put(track[2], began, species[i], per_unit, counts, sums, stride, seen, sample, origin)
+            track[2] = 0.0
+            track[3] = now
+        track[0] = now
+        track[1] = math.sqrt(velocity[row, 0] ** 2 + velocity[row, 1] ** 2) if path else 1.0
+    return block
+
+
+class Waits(_Intervals):
+    """Time between successive events of the gas, a pair collision being one event."""
+
+    columns = ("time", "disc", "partner")
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        self._make_sums(edges)
+        self._last = -np.inf
+
+    def add(self, rows: Any) -> None:
+        self._block, self._last = _add_waits(
+            rows.time, rows.disc, rows.partner, self._last, self.edges,
+            self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,
+        )  # fmt: skip
+
+
+@njit
+def _add_waits(time, disc, partner, last, edges, block, per_unit, counts, sums, stride, seen, sample, origin):
+    for row in range(time.shape[0]):
+        if partner[row] >= 0 and disc[row] > partner[row]:
+            continue
+        now = time[row]
+        began = block
+        block = block_at(edges, block, now)
+        if last >= edges[0]:
+            began = block_back(edges, block, last)
+            _put(now - last, began, 0, per_unit, counts, sums, stride, seen, sample, origin)
+        last = now
+    return block, last

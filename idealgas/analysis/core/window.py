@@ -1,0 +1,113 @@
+"""Which part of a log an analysis uses: a given window of time, or what follows detected equilibration."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.statistics import equilibration
+from idealgas.analysis.core.stream import Tally, stream
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
+DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas has more than MANY_BLOCKS, for more samples of a disc
+
+
+@dataclass(frozen=True)
+class Window:
+    """Blocks of equal width that were streamed, and the first of them to use.
+
+    edges: (B + 1,). detected: whether `first` was found by the detection of equilibrium.
+    """
+
+    edges: np.ndarray
+    first: int
+    detected: bool
+
+    @property
+    def start(self) -> float:
+        return float(self.edges[self.first])
+
+    @property
+    def end(self) -> float:
+        return float(self.edges[-1])
+
+    @property
+    def duration(self) -> float:
+        return self.end - self.start
+
+    @property
+    def width(self) -> float:
+        """Width of a block."""
+        return float(self.edges[1] - self.edges[0])
+
+    def of(self, sums: np.ndarray) -> np.ndarray:
+        """The window's part of a tally's sums (B, …), as rates per time."""
+        return sums[self.first :] / self.width
+
+    def as_dict(self) -> dict[str, float | bool]:
+        """For JSON."""
+        return {"start": self.start, "end": self.end, "equilibration_detected": self.detected}
+
+
+def measure(
+    log: Log,
+    tallies: Sequence[Tally],
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    allowed: Collection[str] = (),
+) -> Window:
+    """Stream the log between start and end into the tallies; without a start, from detected equilibrium on.
+
+    The detection looks at the kurtosis of the velocities, the energy of each species and the numbers of events,
+    per block. allowed: effects that the analysis knows how to deal with. UserError when there is nothing in the window,
+    or if the scene has other effects.
+    """
+    if strange := [name for name in log.scene.effects if name not in allowed]:
+        raise UserError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+    edges = block_edges(log, start, end)
+    if start is not None:
+        stream(log, edges, tallies, progress)
+        return Window(edges, 0, detected=False)
+    present = [tally for tally in tallies if isinstance(tally, Moments)]
+    moments = present[0] if present else Moments(log.gravity)
+    stream(log, edges, tallies if present else [*tallies, moments], progress)
+    return Window(edges, equilibration(*stationary_series(moments)), detected=True)
+
+
+def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
+    """Edges of equal blocks, no shorter than the time between events of one disc unless that leaves too few."""
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events (made with log.events = false)")
+    first = log.start_time if start is None else start
+    last = log.end_time if end is None else end
+    covered = f"the log covers t = {log.start_time:g} to {log.end_time:g}"
+    if not log.start_time <= first < last <= log.end_time:
+        raise UserError(f"{log.path}: no window from t = {first:g} to {last:g}: {covered}")
+    rows = log.row_at(last, "right") - log.row_at(first, "right")
+    if rows == 0:
+        raise UserError(f"{log.path}: no event between t = {first:g} and {last:g}; {covered}")
+    number = len(log.discs)
+    most = min(max(DISC_BLOCKS // number, MANY_BLOCKS), MOST_BLOCKS)
+    return np.linspace(first, last, min(max(rows // number, FEWEST_BLOCKS), most) + 1)
+
+
+def stationary_series(moments: Moments) -> list[np.ndarray]:
+    """Block series that stand still in equilibrium and move before."""
+    energy = moments.flights[:, :, 1] + moments.flights[:, :, 2]
+    fourth = moments.flights[:, :, 3].sum(axis=1)
+    shares = [share for share in energy.T if np.ptp(share) > 1e-9 * share.max()]  # not those that only rounding moves
+    return [fourth, *shares, *moments.events.T.astype(float)]
+
+
+def span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
+    """Start and end, by default those of the log. UserError if the log does not cover them or nothing is between."""
+    first = log.start_time if start is None else start
+    last = log.end_time if end is None else end
+    if not log.start_time <= first < last <= log.end_time:
+        covered = f"the log covers t = {log.start_time:g} to {log.end_time:g}"
+        raise UserError(f"{log.path}: no window from t = {first:g} to {last:g}: {covered}")
+    return first, last

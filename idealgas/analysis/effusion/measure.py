@@ -1,0 +1,109 @@
+"""The flow of discs through a slit that opens, beside n⟨v⟩/π."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.theory import hard_discs
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+INSTANTS = 256
+TINY = 1e-12
+
+
+@dataclass(frozen=True)
+class Effusion:
+    """time: (INSTANTS,), from the opening on; beyond: (INSTANTS,), discs on the side that had fewer at first.
+
+    density: of the fuller side if all were there. expected: (INSTANTS,), beyond by theory. speed: discs per time and
+    open length, over the difference of the densities, each times the mean speed on its side over that of the gas;
+    theory: ⟨v⟩/π. Its error is that of a Poisson number of passages both ways.
+    """
+
+    density: float
+    temperature: float
+    time: np.ndarray
+    beyond: np.ndarray
+    expected: np.ndarray
+    speed: Estimate
+
+    @classmethod
+    def from_dict(cls, found: dict[str, Any]) -> "Effusion":
+        """What `as_dict` was made from."""
+        time, beyond, expected = (np.array(found[name]) for name in ("time", "beyond", "expected"))
+        speed = Estimate.from_dict(found["speed"])
+        return cls(found["density"], found["temperature"], time, beyond, expected, speed)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "density": self.density,
+            "temperature": self.temperature,
+            "speed": self.speed.as_dict(),
+            "time": self.time.tolist(),
+            "beyond": self.beyond.tolist(),
+            "expected": self.expected.tolist(),
+        }
+
+
+def effusion(log: Log, start: float | None = None, end: float | None = None) -> Effusion:
+    """Measure a log of two chambers and one gate, by default from its opening to the end.
+
+    The theory is that of a slit much narrower than the mean free path; through a wider one more discs pass.
+    UserError if there is no gate along an axis, or discs of several species.
+    """
+    gates = [wall for wall in log.scene.wall if wall.opens_at is not None]
+    discs, equilibrium = composition(log.discs), ensemble(log)
+    if len(gates) != 1 or len(discs.name) != 1 or not log.has_events:
+        raise UserError(f"{log.path}: no effusion: it takes one gate, one species and the events")
+    gate = gates[0]
+    ends = np.array([gate.start, gate.end])
+    across = int(np.ptp(ends[:, 0]) != 0)  # the axis that leads through the slit
+    if np.ptp(ends[:, across]) != 0:
+        raise UserError(f"{log.path}: no effusion: the gate is not along an axis")
+    place, radius, number = ends[0, across], discs.radius[0], len(log.discs)
+    opening = max(gate.opens_at or 0.0, log.start_time)
+    time = np.linspace(opening if start is None else start, log.end_time if end is None else end, INSTANTS)
+    beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
+    for k, state in enumerate(log.frames(time)):
+        side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
+        beyond[k], flux[:, k] = side.sum(), (pace[~side].sum(), pace[side].sum())
+    if beyond[0] > number / 2:
+        beyond, flux, place = number - beyond, flux[::-1], log.box[across] - place
+    height = log.box[1 - across] - 2 * radius
+    inner, outer = (place - 2 * radius) * height, (log.box[across] - place - 2 * radius) * height
+    slit = float(np.ptp(ends[:, 1 - across])) - 2 * radius
+    mean_speed = hard_discs.mean_speed(equilibrium.temperature, discs.mass[0], equilibrium.dof)
+    there, back = flux / mean_speed / [[inner], [outer]]
+    drive, both = np.trapezoid(there - back, time), np.trapezoid(there + back, time)
+    if not slit > 0 or not drive > 0:
+        raise UserError(f"{log.path}: no effusion: a slit that lets no disc pass, or chambers in balance")
+    expected = mean_speed / math.pi
+    passed = float(beyond[-1] - beyond[0])
+    speed = passed / (slit * drive)
+    error = math.sqrt(expected * slit * both) / (slit * drive)
+    rate = expected * slit
+    course = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
+    found = Estimate(speed, error, max(passed, 1.0), expected)
+    return Effusion(number / inner, equilibrium.temperature, time, beyond, course, found)
+
+
+def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
+    """(INSTANTS,): of all discs, from rates at equal temperature. Discs that pass carry 3T/2 on the average, not T, so
+    that one side gets colder and the other hotter.
+    """
+
+    def change(_: float, shares: np.ndarray) -> np.ndarray:
+        """Of the discs and of the energy: a side with n and e sends √(ne), and 3/2 √(e³/n) of the energy."""
+        (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
+        discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
+        return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])
+
+    return solve_ivp(change, (time[0], time[-1]), [at_first, at_first], t_eval=time, rtol=1e-8).y[0]

@@ -1,0 +1,135 @@
+"""The course in time of temperatures, energies and the account of the walls, and of discs beyond a gate."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.window import span
+from idealgas.analysis.evolution.theory import Law, expected_course
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+INSTANTS = 257
+
+
+@dataclass(frozen=True)
+class Evolution:
+    """At times (F,): temperature, m v²/2 a disc; spin, I ω² a disc; beyond: share of each species that is beyond the
+    first gate along an axis, by its name. law: theory of the temperature at these times.
+
+    At the times (P,) of the samples of the run: parts of the energy, by name; given: energy each wall gave since the
+    start, by its name; piston: its coordinate; balance: energy of discs and piston less what walls gave, its change
+    since the start relative to the largest part of it. Only collisions that take energy change the balance.
+    """
+
+    time: np.ndarray
+    temperature: np.ndarray
+    spin: np.ndarray | None
+    beyond: dict[str, np.ndarray]
+    law: Law | None
+    samples: np.ndarray
+    parts: dict[str, np.ndarray]
+    given: dict[str, np.ndarray]
+    piston: np.ndarray | None
+    balance: np.ndarray
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        lists = {name: values.tolist() for name, values in vars(self).items() if isinstance(values, np.ndarray)}
+        tables = {name: {key: v.tolist() for key, v in getattr(self, name).items()} for name in TABLES}
+        law = None
+        if self.law is not None:
+            at_rest = {"spin": self.law.spin, "piston": self.law.piston}
+            law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
+        return lists | tables | {"law": law}
+
+
+TABLES = ("beyond", "parts", "given")
+
+
+def evolution(log: Log, start: float | None = None, end: float | None = None) -> Evolution:
+    """Follow a log from one time to another, by default from its start to its end. UserError if it has no samples."""
+    first, last = span(log, start, end)
+    if not len(log.observables["kinetic_energy"][0]):
+        raise UserError(f"{log.path}: no samples of the energy")
+    observed = {name: values for name, (_, values) in log.observables.items()}
+    samples = log.observables["kinetic_energy"][0]
+    inside = (samples >= first) & (samples <= last)
+    time, temperature, spin, beyond = _frames(log, first, last) if log.has_events else _samples(log, inside)
+    parts, given, balance = _account(log, observed)
+    return Evolution(
+        time,
+        temperature,
+        spin,
+        beyond,
+        expected_course(log, time),
+        samples[inside],
+        {name: values[inside] for name, values in parts.items()},
+        {name: values[inside] for name, values in given.items()},
+        observed["piston_position"][inside] if "piston_position" in observed else None,
+        balance[inside],
+    )
+
+
+Course = tuple[np.ndarray, np.ndarray, np.ndarray | None, dict[str, np.ndarray]]
+
+
+def _samples(log: Log, inside: np.ndarray) -> Course:
+    """Of a log without events: what the run observed."""
+    time, kinetic = log.observables["kinetic_energy"]
+    frame, n = drift(log), len(log.discs)
+    kinetic = kinetic - log.discs.mass.sum() * (frame @ frame) / 2
+    spin = None
+    if "rotational_energy" in log.observables:
+        spin = 2 * log.observables["rotational_energy"][1][inside] / n
+    return time[inside], kinetic[inside] / n, spin, {}
+
+
+def _frames(log: Log, first: float, last: float) -> Course:
+    """At even times."""
+    gas, frame, rotation, gate = log.discs, drift(log), log.scene.rotation, _gate(log)
+    inertia = rotation.inertia * gas.mass * gas.radius**2 if rotation else None
+    number = np.bincount(gas.species)
+    time = np.linspace(first, last, INSTANTS)
+    temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
+    for k, state in enumerate(log.frames(time)):
+        temperature[k] = (gas.mass * ((state.velocity - frame) ** 2).sum(axis=1)).mean() / 2
+        if inertia is not None and state.angular_velocity is not None:
+            spin[k] = (inertia * state.angular_velocity**2).mean()
+        if gate is not None:
+            axis, place = gate
+            beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
+    shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gate is not None else {}
+    return time, temperature, None if inertia is None else spin, shares
+
+
+def _gate(log: Log) -> tuple[int, float] | None:
+    """The axis that leads through the first gate along one, and its place there."""
+    for wall in log.scene.wall:
+        for axis in range(2):
+            if np.isfinite(wall.absence[0]) and wall.start[axis] == wall.end[axis]:
+                return axis, wall.start[axis]
+    return None
+
+
+def _account(
+    log: Log, observed: dict[str, np.ndarray]
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], np.ndarray]:
+    """Parts of the energy, what each wall gave, and the balance."""
+    names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
+    parts = {part: observed[name] for part, name in names.items() if name in observed}
+    given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
+    counted = np.ones(given.shape[1], bool)
+    piston = log.scene.piston
+    if piston and piston.mass:  # its own energy counts: what it gives is not from outside
+        counted[[wall.name for wall in log.walls].index(piston.side)] = False
+        pull = piston.acceleration(log.box, log.scene.gravity)
+        motion, place = observed["piston_velocity"] ** 2 / 2, observed["piston_position"]
+        parts["piston"] = piston.mass * (motion - pull * place)
+    from_outside = given[:, counted].sum(axis=1)
+    total = sum(parts.values()) - from_outside
+    scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))
+    by_wall = {wall.name: given[:, k] for k, wall in enumerate(log.walls) if given.shape[1] and given[:, k].any()}
+    return parts, by_wall, (total - total[0]) / (scale or 1.0)

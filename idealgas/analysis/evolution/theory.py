@@ -1,0 +1,125 @@
+"""How the temperature of a gas changes with time, where theory knows it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_momentum, known_ensemble
+from idealgas.analysis.theory import hard_discs
+from idealgas.log import Log
+
+STEPS = 128
+"""Areas between which the adiabat is integrated."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """text: the law, in words. temperature: (F,), m v²/2 a disc. spin: I ω² a disc. piston: its coordinate at rest."""
+
+    text: str
+    temperature: np.ndarray
+    spin: float | None = None
+    piston: float | None = None
+
+
+def expected_course(log: Log, time: np.ndarray) -> Law | None:
+    """At times (F,); None where no simple theory applies."""
+    effects, one = set(log.scene.effects) - {"periodic sides"}, np.ones(len(time))
+    discs = composition(log.discs)
+    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction < hard_discs.FREEZING
+    if effects == {"restitution"} and alone and log.has_positions:
+        return _haff(log, time)
+    if effects == {"piston"} and alone:
+        return _at_rest(log, one) if log.scene.piston and log.scene.piston.mass else _adiabat(log, time)
+    if any(log.gravity):
+        axis = int(log.gravity[1] != 0)
+        t = None if log.scene.wall or log.gravity[1 - axis] else column_temperature(log, axis, discs)
+        return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t)
+    if (equilibrium := known_ensemble(log)) is None:
+        return None
+    t = equilibrium.temperature
+    kinetic = float(discs.number @ equilibrium.of_species / discs.number.sum())
+    return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * one, t)
+
+
+def haff_time(log: Log) -> float:
+    """τ of T = T₀/(1 + t/τ)²: Haff, J. Fluid Mech. 134, 401 (1983), as 4/((1 - e²) Γ (1 + 3a₂/16)).
+
+    Γ is Enskog's rate of collisions of a disc at the start. a₂, the fourth cumulant of the velocities, is that of van
+    Noije & Ernst, Granular Matter 1, 57 (1998), in two dimensions. Momentum, where it is kept, has no part in the
+    temperature.
+    """
+    gas, table = log.discs, log.scene.restitution
+    e = 1.0 if table is None else table.normal
+    n, share = len(gas), 1 - kept_momentum(log).mean() / len(gas)
+    t = _kinetic(log) / (n * share)
+    contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.joined)[0, 0]
+    rate = float(contacts) * hard_discs.mean_relative_speed(t, gas.mass[0])
+    a2 = 16 * (1 - e) * (1 - 2 * e**2) / (57 - 25 * e + 30 * e**2 * (1 - e))
+    return 4 * share / ((1 - e**2) * rate * (1 + 3 * a2 / 16))
+
+
+def _haff(log: Log, time: np.ndarray) -> Law | None:
+    table = log.scene.restitution
+    if table is None or table.wall < 1 or not log.discs.kinetic_energy > 0:
+        return None
+    tau = haff_time(log)
+    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", _kinetic(log) / len(log.discs) / (1 + time / tau) ** 2)
+
+
+def _kinetic(log: Log) -> float:
+    """Energy of motion at the start, from the centre of mass where that moves on for ever."""
+    gas = log.discs
+    return float((gas.mass * ((gas.velocity - drift(log)) ** 2).sum(axis=1)).sum() / 2)
+
+
+def room(log: Log, piston: np.ndarray) -> np.ndarray:
+    """Length that the gas has beside a piston at coordinates (P,)."""
+    table = log.scene.piston
+    if table is None:
+        return np.full_like(piston, log.box[0])
+    return piston if table.outward > 0 else log.box[table.axis] - piston
+
+
+def push(log: Log, length: float) -> float:
+    """Force on a piston over N T, at rest: Z/(L - 2R), as the centres end a radius before it."""
+    gas, table = log.discs, log.scene.piston
+    size = list(gas.box)
+    size[0 if table is None else table.axis] = length
+    z = hard_discs.box_compressibility(gas.radius[:1], [len(gas)], (size[0], size[1]), log.joined)
+    return z / (length - 2 * float(gas.radius[0]))
+
+
+def _adiabat(log: Log, time: np.ndarray) -> Law:
+    """d ln T = -F dL/NT, for a piston that hardly moves in the time between two collisions of a disc."""
+    at, places = log.observables["piston_position"]
+    lengths = room(log, np.interp(time, at, places))
+    first = float(room(log, places[:1])[0])
+    grid = np.linspace(min(lengths.min(), first), max(lengths.max(), first), STEPS + 1)
+    slope = np.array([push(log, length) for length in (grid[1:] + grid[:-1]) / 2])
+    work = np.concatenate(([0.0], np.cumsum(slope * np.diff(grid))))
+    exponent = np.interp(first, grid, work) - np.interp(lengths, grid, work)
+    return Law("slow piston: T A = const, for discs d ln T = -Z d ln A", log.discs.temperature * np.exp(exponent))
+
+
+def _at_rest(log: Log, one: np.ndarray) -> Law | None:
+    """Where a piston with a mass comes to rest, and at which T: NT of the discs, T/2 of its motion, P L X of its place.
+
+    At fixed energy X has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas, of which this is the mean.
+    """
+    table = log.scene.piston
+    if table is None or not table.pressure:
+        return None
+    n, diameter = len(log.discs), 2 * float(log.discs.radius[0])
+    force = table.pressure * log.box[1 - table.axis]
+    start = float(room(log, log.observables["piston_position"][1][:1])[0])
+    speed = float(log.observables["piston_velocity"][1][0])
+    energy = log.discs.kinetic_energy + (table.mass or 0.0) * speed**2 / 2 + force * (start - diameter)
+    length, t = start, 0.0
+    for _ in range(100):
+        z = push(log, length) * (length - diameter)
+        t = energy / (n + 0.5 + n * z + 1)
+        length = diameter + (n * z + 1) * t / force
+    piston = length if table.outward > 0 else log.box[table.axis] - length
+    return Law(f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}", t * one, None, piston)

@@ -1,0 +1,59 @@
+"""Energies of a gas at even times, from the samples that its run took; no events are needed.
+
+Samples are taken at the starts of epochs, whose length depends on how fast the discs are just then, and with
+`log.snapshot_every` at even times too, which favour no state.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.statistics import equilibration
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+FEWEST = 16
+"""Samples below which nothing can be said of fluctuations."""
+
+
+@dataclass(frozen=True)
+class EnergySeries:
+    """Samples after equilibration. kinetic: of motion. energy: of the discs, and of a piston with a mass too: what they
+    have by their motion, spin and place. position: of the piston. All (n,); start: time of the first.
+    """
+
+    kinetic: np.ndarray
+    energy: np.ndarray
+    position: np.ndarray | None
+    start: float
+
+
+def energy_series(log: Log, start: float | None = None, end: float | None = None) -> EnergySeries:
+    """Between two times, by default from detected equilibrium to the end. UserError if there are too few samples."""
+    scene, observed = log.scene, log.observables
+    time = observed["kinetic_energy"][0]
+    last = log.end_time if end is None else end
+    if len(time) < 2 or not np.diff(time).max() > 0:
+        raise UserError(f"{log.path}: no samples of the energy")
+    first_time = log.start_time if start is None else start
+    if every := scene.log.snapshot_every:
+        at = np.flatnonzero(np.isin(time, every * np.arange(last // every + 1)) & (time >= first_time) & (time <= last))
+    else:
+        step = np.diff(time).max()
+        grid = np.arange(first_time, last + 1e-9 * step, step)
+        at = np.unique(time.searchsorted(grid, "right") - 1)
+    series: dict[str, Any] = {name: values[at] for name, (_, values) in observed.items()}
+    kinetic, energy, position = series["kinetic_energy"], series["energy"], None
+    if scene.piston and scene.piston.mass:
+        position, velocity = series["piston_position"], series["piston_velocity"]
+        pull = scene.piston.acceleration(scene.box.size, scene.gravity)
+        energy = energy + scene.piston.mass * (velocity**2 / 2 - pull * position)
+    moving = [series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()]  # beyond rounding
+    first = 0 if start is not None else equilibration(*moving)
+    if len(at) - first < FEWEST:
+        raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
+    tail = slice(first, None)
+    return EnergySeries(
+        kinetic[tail], energy[tail], None if position is None else position[tail], float(time[at[first]])
+    )

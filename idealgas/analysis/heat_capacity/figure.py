@@ -1,0 +1,24 @@
+"""The picture of heat capacities: C per disc by every route, beside theory."""
+
+from matplotlib.figure import Figure
+
+from idealgas.analysis.core.style import COLOURS, panels
+from idealgas.analysis.heat_capacity.measure import HeatCapacity
+
+
+def heat_capacity_figure(result: HeatCapacity) -> Figure:
+    """C per disc (and γ) by every route with its error bar, and the theory beside it."""
+    figure, (ax,) = panels(1)
+    routes = result.routes[::-1]
+    for k, route in enumerate(routes):
+        ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
+        if route.value.theory is not None:
+            ax.plot([route.value.theory] * 2, [k - 0.35, k + 0.35], color=COLOURS[1])
+    ax.set_yticks(range(len(routes)), [f"{route.name}\n({route.kind})" for route in routes], fontsize="small")
+    ax.plot([], [], "o", color=COLOURS[0], label="measured")
+    ax.plot([], [], color=COLOURS[1], label="theory")
+    ax.set_xlabel("C/N, and γ (no unit, k_B = 1)")
+    ax.set_ylabel("route")
+    ax.legend(frameon=False)
+    figure.set_figheight(1.5 + 0.55 * len(routes))
+    return figure

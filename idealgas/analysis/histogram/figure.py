@@ -1,0 +1,29 @@
+"""The picture of a histogram: measured densities and their laws."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.histogram.measure import Histogram
+
+
+def histogram_figure(result: Histogram) -> Figure:
+    """Measured density with its error band, laws over it; one panel a species."""
+    figure, axes = panels(len(result.distributions))
+    for ax, found in zip(axes, result.distributions, strict=True):
+        ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=found.name)
+        middle = (found.edges[1:] + found.edges[:-1]) / 2
+        ax.errorbar(middle, found.density, found.error, fmt="none", ecolor=GREY, elinewidth=0.8)
+        x = np.linspace(found.edges[0], found.edges[-1], 600)
+        for test, colour, style in zip(found.tests, COLOURS, ("-", "--"), strict=False):
+            ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
+        ax.set_xlim(found.edges[0], _last_seen(found.density, found.edges))
+        ax.set_xlabel(f"{result.quantity} ({result.unit})")
+        ax.set_ylabel(f"density ({'time/length' if result.unit == 'length/time' else f'1/{result.unit}'})")
+        ax.legend(frameon=False)
+    return figure
+
+
+def _last_seen(density: np.ndarray, edges: np.ndarray) -> float:
+    """Edge beyond which less than 1e-3 of the largest density is found."""
+    return float(edges[1 + np.flatnonzero(density > 1e-3 * density.max())[-1]])

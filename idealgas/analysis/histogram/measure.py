@@ -1,0 +1,263 @@
+"""Distributions of speeds, energies, free flights and waits, beside their laws, with a Kolmogorov-Smirnov test.
+
+Histograms of velocities weigh every value with the time spent at it; those of intervals count every one. The tests use
+decorrelated samples: of some discs at instants a correlation time apart, or of thinned intervals.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from idealgas.analysis.core.collisions import expected_rates
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
+from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
+from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.theory import distributions
+from idealgas.errors import UserError
+from idealgas.gas.state import Gas
+from idealgas.log import Log
+from idealgas.scene import EFFECTS
+
+QUANTITIES = {
+    "speed": "length/time",
+    "vx": "length/time",
+    "vy": "length/time",
+    "energy": "energy",
+    "free-path": "length",
+    "free-time": "time",
+    "wait": "time",
+}
+"""What there are distributions of, and its unit."""
+
+UNIFORM = ("periodic sides", "rotation", "thermal walls")
+"""Effects that leave the gas uniform, its flights straight and its laws known."""
+
+BINS = 120
+SAMPLED = 256  # discs of a species whose velocities are tested, at most
+INTERVALS = 10_000  # about the number of intervals that are tested
+STRIDE = 7  # least number of intervals from one sample to the next: successive flights of a disc are correlated
+TAIL = 12  # mean free times before the end of a window in which no flight is counted: long ones would be cut off
+
+
+@dataclass(frozen=True)
+class Test:
+    """A law, and how far the samples are from it: largest distance of the distribution functions, its probability."""
+
+    law_name: str
+    law: distributions.Law
+    distance: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """One quantity of one species (or of the gas).
+
+    edges: (bins + 1,). density: (bins,), error: (bins,) its standard error. samples: number of decorrelated ones;
+    correlation_time: time from one sample of a disc to its next independent one; None for intervals.
+    """
+
+    name: str
+    edges: np.ndarray
+    density: np.ndarray
+    error: np.ndarray
+    mean: Estimate
+    samples: int
+    correlation_time: float | None
+    tests: tuple[Test, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        middle = (self.edges[1:] + self.edges[:-1]) / 2
+        return {
+            "name": self.name,
+            "mean": self.mean.as_dict(),
+            "samples": self.samples,
+            "correlation_time": self.correlation_time,
+            "tests": [{"law": t.law_name, "distance": t.distance, "p_value": t.p_value} for t in self.tests],
+            "edges": self.edges.tolist(),
+            "density": self.density.tolist(),
+            "error": self.error.tolist(),
+            "laws": {test.law_name: test.law.pdf(middle).tolist() for test in self.tests},
+        }
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """The distributions of a quantity, species by species."""
+
+    quantity: str
+    unit: str
+    window: Window
+    distributions: tuple[Distribution, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "window": self.window.as_dict(),
+            "distributions": [distribution.as_dict() for distribution in self.distributions],
+        }
+
+
+Progress = Callable[[int, int], None] | None
+
+
+def histogram(
+    log: Log, quantity: str, start: float | None = None, end: float | None = None, progress: Progress = None
+) -> Histogram:
+    """Distribution of one of QUANTITIES between two times, by default from detected equilibrium to the end."""
+    if not log.discs.temperature > 0:
+        raise UserError(f"{log.path}: no disc moves")
+    if quantity in VELOCITY_QUANTITIES:
+        window, found = _velocities(log, quantity, start, end, progress)
+    elif quantity == "wait":
+        window, found = _waits(log, start, end, progress)
+    else:
+        window, found = _flights(log, quantity, start, end, progress)
+    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found))
+
+
+Found = tuple[Window, list[Distribution]]
+
+
+# ── velocities ──
+
+
+def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
+    """Maxwell-Boltzmann's law and that of the isolated gas with `dof` velocity degrees of freedom."""
+
+    def law(dof: float) -> distributions.Law:
+        if quantity == "energy":
+            return distributions.EnergyLaw(temperature, dof)
+        if quantity == "speed":
+            return distributions.SpeedLaw(temperature, mass, dof)
+        return distributions.ComponentLaw(temperature, mass, dof)
+
+    finite = {f"fixed energy, D = {dof}": law(dof)} if dof > 3 else {}
+    return {"Maxwell-Boltzmann": law(np.inf), **finite}
+
+
+def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
+    gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
+    thermal = np.sqrt(equilibrium.temperature / discs.mass)
+    high = np.full(len(thermal), 12 * equilibrium.temperature) if quantity == "energy" else 5 * thermal
+    low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
+    members = [_some_discs(gas, s) for s in range(len(thermal))]
+    tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members))
+    window = measure(log, [tally], start, end, progress, (*UNIFORM, "wall segments"))
+    parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
+    found = []
+    for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
+        possible = velocity_laws(quantity, equilibrium.of_species[s], discs.mass[s], equilibrium.dof)
+        spacing = int(np.ceil(ensemble_inefficiency(snapshots)))
+        last_law = list(possible.values())[-1]
+        found.append(
+            _distribution(
+                name,
+                np.linspace(low[s], high[s], BINS + 1),
+                window.of(tally.counts)[:, s],
+                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], last_law.mean),
+                snapshots[::spacing].ravel(),
+                spacing * window.width,
+                possible,
+            )
+        )
+    return window, found
+
+
+def _mean(series: np.ndarray, scale: float, expected: float) -> Estimate:
+    """Of values of about `scale`. What is conserved, as the momentum may be, has no error, only last digits."""
+    if np.ptp(series) < 1e-12 * scale:
+        return Estimate(float(series.mean()), 0.0, 1.0, expected)
+    return mean(series, theory=expected)
+
+
+def _some_discs(gas: Gas, species: int) -> np.ndarray:
+    """A quarter of a species at most: the fixed total energy makes all velocities at one instant dependent."""
+    members = np.flatnonzero(gas.species == species)
+    return members[:: max(4, -(-len(members) // SAMPLED))]
+
+
+# ── intervals ──
+
+
+def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
+    gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
+    temperature = equilibrium.temperature
+    rates = expected_rates(discs, gas.box, equilibrium, log.joined, log.has_positions)
+    rate = rates.sum(axis=1)
+    if not (rate > 0).all():
+        raise UserError(f"{log.path}: no law of free flights for this gas")
+    path = quantity == "free-path"
+    high = 10 / rate
+    if path:
+        high *= np.sqrt(np.pi * temperature / (2 * discs.mass))
+    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
+    window = measure(log, [tally], start, end, progress, UNIFORM)
+    last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
+    blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
+    law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
+    dilute = [law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s])) for s in range(len(rate))]
+    return window, [
+        _intervals(name, tally, s, blocks, high[s], {"dilute gas": dilute[s]}, dilute[s].mean)
+        for s, name in enumerate(discs.name)
+    ]
+
+
+def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
+    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # rows: pairs count twice
+    tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
+    window = measure(log, [tally], start, end, progress, EFFECTS)
+    blocks = slice(window.first, len(tally.counts))
+    with np.errstate(invalid="ignore"):
+        law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
+    return window, [_intervals("all discs", tally, 0, blocks, longest, {"exponential": law}, None)]
+
+
+def _intervals(
+    name: str,
+    tally: FreeFlights | Waits,
+    s: int,
+    blocks: slice,
+    high: float,
+    possible: Mapping[str, distributions.Law],
+    expected: float | None,
+) -> Distribution:
+    counts = tally.counts[blocks, s].astype(float)
+    chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
+    average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
+    edges = np.linspace(0, high, BINS + 1)
+    return _distribution(name, edges, counts, average, tally.sample[chosen], None, possible)
+
+
+def _distribution(
+    name: str,
+    edges: np.ndarray,
+    counts: np.ndarray,
+    average: Estimate,
+    samples: np.ndarray,
+    correlation_time: float | None,
+    possible: Mapping[str, distributions.Law],
+) -> Distribution:
+    """counts: (B, bins + 2), the first and last of them outside the edges."""
+    if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
+        raise UserError(f"too few events in the window for a distribution of {name}")
+    share = counts[:, 1:-1].sum(axis=0) / total.sum()
+    spread = counts[:, 1:-1] - share * total[:, None]
+    error = np.sqrt(len(total) * spread.var(axis=0)) / total.sum()
+    tests = []
+    for law_name, law in possible.items():
+        result = stats.kstest(samples, law.cdf)
+        tests.append(Test(law_name, law, float(result.statistic), float(result.pvalue)))
+    width = np.diff(edges)
+    return Distribution(
+        name, edges, share / width, error / width, average, len(samples), correlation_time, tuple(tests)
+    )

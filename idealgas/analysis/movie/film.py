@@ -1,0 +1,155 @@
+"""A log as a film: which instants, and how painted frames become a file."""
+
+import os
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from idealgas.analysis.core.window import span
+from idealgas.analysis.movie.gif import GifWriter
+from idealgas.analysis.movie.painter import CROSSING, Painter
+from idealgas.analysis.movie.piston_track import piston_track
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+ENDINGS = (".mp4", ".gif")
+LONGEST = 20.0  # seconds of film, unless an end is given
+MOST_FRAMES = 1_000_000
+CODEC = ("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
+
+
+@dataclass(frozen=True)
+class Film:
+    """What was made: path, number of frames, frames per second; start and end in simulated time."""
+
+    path: Path
+    frames: int
+    fps: float
+    start: float
+    end: float
+
+
+def film_path(output: str | os.PathLike[str]) -> Path:
+    """Where a film asked for goes: a .gif beside an .mp4 that no ffmpeg can make. UserError for any other ending."""
+    path = Path(output)
+    if path.suffix.lower() not in ENDINGS:
+        raise UserError(f"{output}: unknown kind of film (allowed: {', '.join(ENDINGS)})")
+    if not path.parent.is_dir():
+        raise UserError(f"{output}: no folder {path.parent}")
+    if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
+        return path.with_suffix(".gif")
+    return path
+
+
+def animate(
+    log: Log,
+    output: str | os.PathLike[str],
+    *,
+    start: float | None = None,
+    end: float | None = None,
+    fps: float = 25.0,
+    speed: float | None = None,
+    size: tuple[int, int] = (960, 540),
+    by_species: bool = False,
+    on_frame: Callable[[int, int], None] = lambda done, total: None,
+) -> Film:
+    """Make a film of a log between two times, every frame exact; see `film_path` for where.
+
+    speed: simulated time per second of film. size: width and height in pixels, made even. on_frame(done, total).
+    UserError for a log without positions or events, an empty window, and (exit code 1) a film that cannot be written.
+    """
+    path = film_path(output)
+    if not log.has_positions:
+        raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
+    first, latest = span(log, start, end)
+    typical = max(np.sqrt((s.velocity**2).sum(axis=1).mean()) for s in log.frames(np.linspace(first, latest, 5)))
+    speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
+    last = latest if end is not None else min(latest, first + LONGEST * speed)
+    gif = path.suffix.lower() == ".gif"
+    if gif:
+        fps = 100 / max(round(100 / fps), 2)  # delays are in hundredths of a second; one is not respected by viewers
+    number = round((last - first) * fps / speed) + 1
+    if number > MOST_FRAMES:
+        raise UserError(
+            f"{number:,} frames are too many (allowed <= {MOST_FRAMES:,}): a shorter window or more --speed"
+        )
+    width, height = (pixels // 2 * 2 for pixels in size)
+    piston = piston_track(log, first, last)
+    painter = Painter(log.scene, log.discs, piston, (width, height), float(typical), by_species)
+    times = np.minimum(first + np.arange(number) * (speed / fps), last)
+    with _replacing(path) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
+        for k, state in enumerate(log.frames(times)):
+            write(painter.paint(state))
+            on_frame(k + 1, number)
+    return Film(path, number, fps, first, last)
+
+
+Write = Callable[[np.ndarray], object]
+
+
+@contextmanager
+def gif_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
+    """Yield write(frame) for frames (height, width, 4) u1."""
+    with path.open("wb") as file:
+        gif = GifWriter(file, width, height, round(100 / fps))
+        yield gif.write
+        gif.close()
+
+
+@contextmanager
+def mp4_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
+    """The same for H.264 video, which ffmpeg makes of raw frames."""
+    raw = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(fps), "-i", "-")
+    command = ["ffmpeg", "-y", "-loglevel", "error", *raw, "-an", *CODEC, "-f", "mp4", str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as ffmpeg:
+        pipe, messages = _streams(ffmpeg)
+        try:
+            yield lambda frame: pipe.write(frame.data)
+        except BrokenPipeError:
+            pass  # it says why
+        except BaseException:
+            ffmpeg.kill()
+            raise
+        finally:
+            _close(pipe)
+        said = messages.read().decode(errors="replace").strip().splitlines()
+        if ffmpeg.wait() != 0:
+            raise _failure(f"ffmpeg: {said[-1] if said else 'failed'}")
+
+
+def _streams(process: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
+    assert process.stdin is not None
+    assert process.stderr is not None
+    return process.stdin, process.stderr
+
+
+def _close(pipe: IO[bytes]) -> None:
+    with suppress(BrokenPipeError):
+        pipe.close()
+
+
+@contextmanager
+def _replacing(path: Path) -> Iterator[Path]:
+    """Yield a path beside this one, which it replaces once it is complete."""
+    part = path.with_name(f"{path.name}.part")
+    try:
+        yield part
+        part.replace(path)
+    except OSError as error:
+        raise _failure(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _failure(message: str) -> UserError:
+    error = UserError(message)
+    error.exit_code = 1
+    return error

@@ -1,0 +1,209 @@
+"""Frames of a film: the discs in their box, and beside them their speeds with Maxwell and Boltzmann's curve.
+
+What never changes is drawn once; a frame restores it and draws only discs, walls, bars, curve and title over it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import EllipseCollection
+from matplotlib.colors import to_rgba_array
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import StepPatch
+from matplotlib.ticker import MaxNLocator
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.style import COLOURS
+from idealgas.analysis.movie.piston_track import PistonTrack
+from idealgas.analysis.theory.distributions import SpeedLaw
+from idealgas.gas.state import Gas
+from idealgas.log import LogState
+from idealgas.scene import Scene
+
+COLOUR_MAP = "cividis"
+"""Of speeds; even to colour-blind eyes: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
+
+DPI = 100
+USUAL, LEAST_ZOOM = (960, 540), 0.5
+"""Size in pixels at which text and margins have theirs; they grow and shrink with a frame, down to the half."""
+
+SHADES = 64
+PALEST = 0.93  # of the colour map: its last yellow is lost on white
+BINS = 36
+SMALLEST = 2.5
+"""Diameter in pixels that any disc is drawn with, however small it is."""
+
+STRIP = 9  # pixels, height of the strip with the colours
+
+CROSSING = 5.0
+"""Seconds in which a disc of typical speed crosses the box, unless a speed is asked for."""
+
+FASTEST, BRIGHTEST = 3.2, 2.0
+"""Where the axis of speeds ends, and where their colours do, in units of the root mean square."""
+
+
+LEFT, RIGHT, BOTTOM, TOP = 64, 22, 58, 42  # margins, pixels of the usual size
+SPEEDS = 0.3
+"""Share of a frame that the speeds have beside the box, or below it, at least."""
+
+Rectangle = tuple[float, float, float, float]
+
+
+class Layout(NamedTuple):
+    """Left, bottom, width and height of the box and of the speeds, scale per unit of length; all in pixels."""
+
+    box: Rectangle
+    speeds: Rectangle
+    scale: float
+
+
+def layout(size: tuple[float, float], box: tuple[float, float]) -> Layout:
+    """The speeds beside the box, or below it if it is so wide that it comes out larger."""
+    width, height = size[0] - LEFT - RIGHT, size[1] - TOP - BOTTOM
+    aside, below = SPEEDS * size[0], SPEEDS * size[1]
+    beside = min((width - LEFT - aside) / box[0], height / box[1])
+    above = min(width / box[0], (height - BOTTOM - below) / box[1])
+    scale = max(beside, above)
+    w, h = scale * box[0], scale * box[1]
+    if beside >= above:
+        speeds = (2 * LEFT + w, BOTTOM, width - LEFT - w, height)
+        return Layout((LEFT, BOTTOM + (height - h) / 2, w, h), speeds, scale)
+    speeds = (LEFT, BOTTOM, width, height - BOTTOM - h)
+    return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), speeds, scale)
+
+
+class Painter:
+    """Paints the states of one gas."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        gas: Gas,
+        piston: PistonTrack | None,
+        size: tuple[int, int],
+        rms_speed: float,
+        by_species: bool,
+    ) -> None:
+        """size: width and height of a frame, pixels. rms_speed: about the largest that will be shown.
+
+        by_species: what the colour of a disc says, its species or its speed.
+        """
+        self._scene, self._gas, self._piston, self._by_species = scene, gas, piston, by_species
+        self._joined = np.array(scene.box.joined)
+        self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
+        self._edges = np.linspace(0, FASTEST * rms_speed or 1.0, BINS + 1)
+        self._shades = colormaps[COLOUR_MAP](np.linspace(0, PALEST, SHADES))
+        self._brightest = self._edges[-1] * BRIGHTEST / FASTEST
+        zoom = max(min(size[0] / USUAL[0], size[1] / USUAL[1]), LEAST_ZOOM)
+        page = size[0] / zoom, size[1] / zoom
+        self._figure = Figure(figsize=(page[0] / DPI, page[1] / DPI), dpi=DPI * zoom)
+        self._canvas = FigureCanvasAgg(self._figure)
+        place = layout(page, gas.box)
+        self._diameter = np.maximum(2 * gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
+        self._title = self._figure.text(LEFT / page[0], 1 - 0.65 * TOP / page[1], "", animated=True)
+        self._draw_box(self._add_axes(place.box, page))
+        self._draw_speeds(self._add_axes(place.speeds, page))
+        self._canvas.draw()
+        self._still = self._canvas.copy_from_bbox(self._figure.bbox)
+
+    def paint(self, state: LogState) -> np.ndarray:
+        """(height, width, 4) u1 of a state; good until the next call."""
+        speed = np.hypot(*state.velocity.T)
+        energy = float(self._gas.mass @ speed**2) / 2
+        self._place(state.position, speed)
+        density = np.histogram(speed, self._edges)[0] / (len(speed) * self._edges[1])
+        self._bars.set_data(density)
+        self._curve.set_ydata(self._law(energy / len(speed)))
+        self._title.set_text(f"t = {state.time:<10.4g}  kinetic energy {energy:.6g}")
+        self._canvas.restore_region(self._still)
+        for artist in (self._discs, *self._walls_at(state.time), self._bars, self._curve, self._title):
+            self._figure.draw_artist(artist)
+        return np.asarray(self._canvas.buffer_rgba())
+
+    def _add_axes(self, place: Rectangle, page: tuple[float, float]) -> Axes:
+        return self._figure.add_axes((place[0] / page[0], place[1] / page[1], place[2] / page[0], place[3] / page[1]))
+
+    def _draw_box(self, axes: Axes) -> None:
+        axes.set(xlim=(0, self._gas.box[0]), ylim=(0, self._gas.box[1]), xlabel="x (length)", ylabel="y (length)")
+        for axis, pixels in ((axes.xaxis, axes.bbox.width), (axes.yaxis, axes.bbox.height)):
+            nbins = 1 + int(pixels * DPI / self._figure.dpi) // 60
+            axis.set_major_locator(MaxNLocator(nbins, steps=(1, 2, 5, 10), min_n_ticks=2))
+        self._discs = EllipseCollection(
+            [], [], [], units="xy", offset_transform=axes.transData, linewidths=0, animated=True
+        )
+        axes.add_collection(self._discs)
+        self._walls: list[Artist] = []
+        for wall in self._scene.wall:
+            (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color="black", linewidth=1.5, animated=True)
+            self._walls.append(line)
+        if self._piston is not None:
+            draw = axes.axhline if self._piston.axis else axes.axvline
+            self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
+
+    def _draw_speeds(self, axes: Axes) -> None:
+        """With the colours of the discs along the x axis."""
+        top = self._edges[-1]
+        self._speeds = np.linspace(0, top, 200)
+        highest = 1.8 * self._law((top / FASTEST) ** 2 * float(self._gas.mass.mean()) / 2).max()
+        axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)")
+        axes.set_xlabel("speed (length/time)")
+        axes.grid(color="#dddddd", linewidth=0.6)
+        axes.set_axisbelow(True)
+        self._bars = StepPatch(np.zeros(BINS), self._edges, color=COLOURS[5], alpha=0.6, fill=True, animated=True)
+        axes.add_patch(self._bars)
+        (self._curve,) = axes.plot(self._speeds, self._law(1.0), color=COLOURS[0], animated=True)
+        handles = [Line2D([], [], color=COLOURS[0], label="Maxwell-Boltzmann")]
+        if self._by_species:
+            kinds = zip(self._species.name, np.resize(COLOURS, len(self._species.name)), strict=True)
+            handles += [Line2D([], [], marker="o", linestyle="", color=colour, label=name) for name, colour in kinds]
+        else:
+            high = STRIP / (axes.bbox.height * DPI / self._figure.dpi)
+            strip = axes.inset_axes((0, -high, 1, high))
+            shown = np.minimum(np.linspace(0, FASTEST / BRIGHTEST, 200), 1) * (SHADES - 1)
+            strip.imshow(self._shades[shown.astype(int)][None], aspect="auto")
+            strip.set_axis_off()
+            axes.tick_params(axis="x", pad=12, length=0)
+        axes.legend(handles=handles, frameon=False, loc="upper right")
+
+    def _place(self, position: np.ndarray, speed: np.ndarray) -> None:
+        """Put the discs where they are, and their images at joined sides."""
+        if self._by_species:
+            colours = to_rgba_array(self._kinds)
+        else:
+            shade = np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)
+            colours = self._shades[shade]
+        radius, box = self._gas.radius, np.array(self._gas.box)
+        which = np.arange(len(radius))
+        for axis in np.flatnonzero(self._joined):
+            for side in (-1, 1):
+                reach = (
+                    position[:, axis] < radius[which] if side == 1 else position[:, axis] > box[axis] - radius[which]
+                )
+                position = np.concatenate((position, position[reach] + side * box * (np.arange(2) == axis)))
+                which = np.concatenate((which, which[reach]))
+        diameter = self._diameter[which]
+        self._discs.set(widths=diameter, heights=diameter, angles=np.zeros(len(which)), offsets=position)
+        self._discs.set(facecolors=colours[which])
+
+    def _walls_at(self, time: float) -> list[Artist]:
+        """Segments that are there, as gates may be open, and the piston."""
+        there = (not (opens <= time < closes) for opens, closes in (wall.absence for wall in self._scene.wall))
+        lines = [line for line, shown in zip(self._walls, there, strict=True) if shown]
+        if self._piston is None:
+            return lines
+        place = [self._piston.at(time)] * 2
+        self._piston_line.set(**{"ydata" if self._piston.axis else "xdata": place})
+        return [*lines, self._piston_line]
+
+    def _law(self, temperature: float) -> np.ndarray:
+        """Density of speeds in equilibrium at a temperature, all species together."""
+        if not temperature > 0:
+            return np.zeros_like(self._speeds)
+        shares = self._species.number / self._species.number.sum()
+        kinds = zip(shares, self._species.mass.tolist(), strict=True)
+        return sum((share * SpeedLaw(temperature, mass).pdf(self._speeds) for share, mass in kinds), np.zeros(1))

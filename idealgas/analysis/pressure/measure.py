@@ -1,0 +1,164 @@
+"""Pressure from the walls and from the virial, and PV = NkT with its error bar.
+
+Clausius: in equilibrium 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ, pairs on the left, walls on the right. Each side gives
+Z = PA/NT by its own events; they agree up to what Σ r·p happens to be at the ends. The plain force per length of wall
+is larger by a wall correction, as the walls act on the discs' centres, a radius inwards.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths
+from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.theory import hard_discs
+from idealgas.errors import UserError
+from idealgas.events import BOX_SIDES
+from idealgas.gas.state import Gas
+from idealgas.log import Log
+
+OUTWARD = np.array([(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)])
+"""Outward normals of the box's sides."""
+
+WALLS, PAIRS = "walls, virial", "pairs, virial"
+"""Names of the routes that theory is checked against."""
+
+EFFECTS = ("periodic sides", "rotation", "thermal walls")
+"""With these the gas is uniform, at a temperature known beforehand."""
+
+TOLERANCE = 4.0
+"""Standard errors that measurement and theory may differ by."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """A pressure, and Z = PA/NT beside theory, by one way of measuring."""
+
+    name: str
+    pressure: Estimate
+    compressibility: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {"pressure": self.pressure.as_dict(), "compressibility": self.compressibility.as_dict()}
+        return {"route": self.name, **values}
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """All routes; Z by each theory that applies; collision rates and free paths from the same events."""
+
+    window: Window
+    number: int
+    area: float
+    temperature: float
+    packing_fraction: float
+    routes: tuple[Route, ...]
+    theories: dict[str, float]
+    collision_rates: tuple[CollisionRate, ...]
+    free_paths: tuple[FreePath, ...]
+
+    def check(self) -> bool:
+        """Whether Z by the walls' and by the pairs' virial agrees with theory. UserError if it cannot be said."""
+        deviations = [route.compressibility.deviation for route in self.routes if route.name in (WALLS, PAIRS)]
+        if any(deviation is None or not np.isfinite(deviation) for deviation in deviations):
+            raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
+        return all(abs(deviation) <= TOLERANCE for deviation in deviations if deviation is not None)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "window": self.window.as_dict(),
+            "number": self.number,
+            "area": self.area,
+            "temperature": self.temperature,
+            "packing_fraction": self.packing_fraction,
+            "routes": [route.as_dict() for route in self.routes],
+            "theories": self.theories,
+            "collision_rates": [rate.as_dict() for rate in self.collision_rates],
+            "free_paths": [path.as_dict() for path in self.free_paths],
+        }
+
+
+def pressure(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Pressure:
+    """Measure the pressure of a log between two times, by default from detected equilibrium to the end."""
+    equilibrium = ensemble(log)
+    if not equilibrium.temperature > 0:
+        raise UserError(f"{log.path}: no disc moves")
+    moments, impacts = Moments(), Impacts(len(log.walls), log.joined)
+    window = measure(log, [moments, impacts], start, end, progress, allowed=EFFECTS)
+    gas, discs = log.discs, composition(log.discs)
+    expected = expected_rates(discs, gas.box, equilibrium, log.joined)
+    theories = hard_disc_theories(discs, gas, log.joined)
+    return Pressure(
+        window=window,
+        number=len(gas),
+        area=gas.area,
+        temperature=equilibrium.temperature,
+        packing_fraction=gas.packing_fraction,
+        routes=_routes(discs, gas, equilibrium.temperature, log.joined, theories.get(IN_BOX), window, impacts),
+        theories=theories,
+        collision_rates=collision_rates(discs, expected, window, impacts),
+        free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
+    )
+
+
+IN_BOX = "hard discs, this box and N"
+
+
+def hard_disc_theories(discs: Composition, gas: Gas, joined: tuple[bool, bool] = (False, False)) -> dict[str, float]:
+    """Z at the gas's packing fraction: of an ideal gas, and where they apply of hard discs."""
+    phi = gas.packing_fraction
+    if phi > hard_discs.FREEZING:
+        return {"ideal gas": 1.0}
+    in_box = hard_discs.box_compressibility(discs.radius, discs.number, gas.box, joined)
+    if len(discs.name) > 1:
+        mixture = hard_discs.mixture_compressibility(discs.radius, discs.number, gas.area)
+        return {"ideal gas": 1.0, IN_BOX: in_box, "hard discs, Jenkins & Mancini 1987": mixture}
+    return {
+        "ideal gas": 1.0,
+        IN_BOX: in_box,
+        "hard discs, virial series resummed": float(hard_discs.compressibility(phi)),
+        "hard discs, virial series to B10": float(hard_discs.virial_series(phi)),
+        "hard discs, Henderson 1975": float(hard_discs.henderson_compressibility(phi)),
+    }
+
+
+def _routes(
+    discs: Composition,
+    gas: Gas,
+    temperature: float,
+    joined: tuple[bool, bool],
+    in_box: float | None,
+    window: Window,
+    impacts: Impacts,
+) -> tuple[Route, ...]:
+    ideal = len(gas) * temperature / gas.area
+    sides = [k for k in range(len(BOX_SIDES)) if not joined[k // 2]]
+    push = (window.of(impacts.impulse[:, : len(BOX_SIDES)]) * OUTWARD).sum(axis=2).T
+    length = [gas.box[1 - k // 2] for k in range(len(BOX_SIDES))]
+    at_wall: dict[int, float] = {}
+    if in_box is not None and np.ptp(discs.radius) == 0:  # walls act on centres, which reach a radius less far
+        at_wall = {k: in_box * gas.box[k // 2] / (gas.box[k // 2] - 2 * discs.radius[0]) for k in sides}
+    series: dict[str, tuple[np.ndarray, float | None]] = {
+        f"{BOX_SIDES[k]} wall": (push[k] / length[k], at_wall.get(k)) for k in sides
+    }
+    if sides:
+        perimeter = sum(length[k] for k in sides)
+        at_walls = sum(at_wall[k] * length[k] for k in sides) / perimeter if at_wall else None
+        series["all walls"] = (push[sides].sum(axis=0) / perimeter, at_walls)
+        series[WALLS] = (window.of(impacts.wall_virial) / (len(sides) / 2 * gas.area), in_box)
+    series[PAIRS] = (ideal + window.of(impacts.pair_virial) / (2 * gas.area), in_box)
+    return tuple(Route(name, mean(p), mean(p / ideal, theory=expected)) for name, (p, expected) in series.items())

@@ -1,0 +1,158 @@
+"""Density and temperature in strips across an axis, averaged over time, and the heat that walls give."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.statistics import Estimate, equilibration, mean, ratio
+from idealgas.analysis.core.window import Window, block_edges
+from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+BINS = 20
+
+FEWEST_FRAMES = 32
+"""Frames with a disc in a strip, below which its temperature is not told."""
+
+
+@dataclass(frozen=True)
+class SpeciesProfile:
+    """Of one species, a value a strip: discs per area, m v²/2 a disc, and I ω² a disc where discs have spin."""
+
+    species: str
+    density: tuple[Estimate, ...]
+    temperature: tuple[Estimate, ...]
+    spin: tuple[Estimate, ...] | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        columns = {"density": self.density, "temperature": self.temperature, "spin": self.spin}
+        values = {name: [e.as_dict() for e in column] for name, column in columns.items() if column is not None}
+        return {"species": self.species, **values}
+
+
+@dataclass(frozen=True)
+class Profile:
+    """axis: 0 or 1. edges: (K + 1,) of the strips, length. law: of the theory, in words; None without one.
+
+    frames: that the averages are taken from. heat: energy per time that each wall gives to the discs, by its name.
+    """
+
+    window: Window
+    axis: int
+    edges: np.ndarray
+    frames: int
+    law: str | None
+    species: tuple[SpeciesProfile, ...]
+    heat: dict[str, Estimate]
+
+    @property
+    def middles(self) -> np.ndarray:
+        """(K,)."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "window": self.window.as_dict(),
+            "axis": "xy"[self.axis],
+            "edges": self.edges.tolist(),
+            "frames": self.frames,
+            "law": self.law,
+            "species": [entry.as_dict() for entry in self.species],
+            "heat": {name: value.as_dict() for name, value in self.heat.items()},
+        }
+
+
+def profile(
+    log: Log,
+    along: str | None = None,
+    bins: int = BINS,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Profile:
+    """Measure a log in strips of equal width over all that centres reach, by default from detected equilibrium on.
+
+    along: "x" or "y"; by default the axis along which something changes. Frames are as far apart as the events of a
+    disc, or farther. UserError without events or positions, or if the window is empty.
+    """
+    if not log.has_positions:
+        raise UserError(f"{log.path}: discs of this method have no positions")
+    axis = natural_axis(log) if along is None else "xy".index(along)
+    reach = 0.0 if log.joined[axis] else log.discs.radius.min()
+    times, edges = block_edges(log, start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
+    sums, course = _collect(log, axis, times, edges, progress)
+    first = 0 if start is not None else equilibration(*course)
+    window = Window(times, first, detected=start is None)
+    expected = expected_profile(log, axis, edges, window.start)
+    names = composition(log.discs).name
+    strip = float(edges[1] - edges[0]) * log.box[1 - axis]
+    spinning = log.scene.rotation is not None
+    species = tuple(_of_species(name, sums[first:, s], strip, expected, s, spinning) for s, name in enumerate(names))
+    law = None if expected is None else expected.law
+    return Profile(window, axis, edges, len(times) - first, law, species, _heat(log, window))
+
+
+def _collect(
+    log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Callable[[int, int], None] | None
+) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    """(F, S, K, 3) sums over the discs of a strip of 1, m v²/2 and I ω²; and what stands still in equilibrium."""
+    gas, frame = log.discs, drift(log)
+    shape = (len(gas.species_names), len(edges) - 1)
+    sums = np.zeros((len(times), *shape, 3))
+    middle = np.empty((len(times), shape[0]))
+    number = np.bincount(gas.species)
+    rotation = log.scene.rotation
+    inertia = rotation.inertia * gas.mass * gas.radius**2 if rotation else np.zeros(len(gas))
+    for k, state in enumerate(log.frames(times)):
+        place = state.position[:, axis]
+        strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
+        cell = gas.species.astype(np.int64) * shape[1] + strip
+        spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
+        values = (np.ones(len(gas)), gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2, inertia * spin**2)
+        for c, value in enumerate(values):
+            sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
+        middle[k] = np.bincount(gas.species, place, shape[0]) / number
+        if progress is not None:
+            progress(k + 1, len(times))
+    kinetic = sums[..., 1].sum(axis=(1, 2))
+    return sums, tuple(series for series in (kinetic, *middle.T) if np.ptp(series) > 1e-9 * np.abs(series).max())
+
+
+def _of_species(
+    name: str, sums: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
+) -> SpeciesProfile:
+    """sums: (F, K, 3). strip: area."""
+    strips = range(sums.shape[1])
+    n, t = (None, None) if expected is None else (expected.density, expected.temperature)
+
+    def per_disc(k: int, column: int) -> Estimate:
+        if np.count_nonzero(sums[:, k, 0]) < FEWEST_FRAMES:
+            return Estimate(np.nan, np.nan, 0.0)
+        return ratio(sums[:, k, column], sums[:, k, 0], None if t is None else float(t[s, k]))
+
+    return SpeciesProfile(
+        name,
+        tuple(mean(sums[:, k, 0] / strip, None if n is None else float(n[s, k])) for k in strips),
+        tuple(per_disc(k, 1) for k in strips),
+        tuple(per_disc(k, 2) for k in strips) if spinning else None,
+    )
+
+
+def _heat(log: Log, window: Window) -> dict[str, Estimate]:
+    """Energy per time by the account of every wall that gave any, from sample to sample of it in the window."""
+    if "wall_energy" not in log.observables:
+        return {}
+    time, given = log.observables["wall_energy"]
+    inside = (time >= window.start) & (time <= window.end)
+    if inside.sum() < 2:
+        return {}
+    steps, gains = np.diff(time[inside]), np.diff(given[inside], axis=0)
+    some = steps > 0
+    return {wall.name: ratio(gains[some, k], steps[some]) for k, wall in enumerate(log.walls) if given[:, k].any()}

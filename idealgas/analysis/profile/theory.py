@@ -1,0 +1,76 @@
+"""Density and temperature along an axis where theory knows them: of dilute gases, of discs small beside a strip."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.equilibrium import column_temperature, known_ensemble, wall_temperatures
+from idealgas.log import Log
+from idealgas.scene import Scene, ThermalSide
+
+POINTS = 64
+"""Places in a strip that averages over it are taken from."""
+
+
+@dataclass(frozen=True)
+class Expected:
+    """law: in words. density, temperature: (S, K), averages over the strips; temperature of each degree of freedom."""
+
+    law: str
+    density: np.ndarray
+    temperature: np.ndarray
+
+
+def natural_axis(log: Log) -> int:
+    """The axis along which something changes: that of gravity, or of thermal sides of two temperatures; else x."""
+    if log.gravity[1] != 0:
+        return 1
+    bottom, top = log.scene.box.sides[2:]
+    return int(isinstance(bottom, ThermalSide) and isinstance(top, ThermalSide) and bottom != top)
+
+
+def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
+    """In the strips between edges (K + 1,), from time start on; None where no simple theory applies."""
+    scene, discs = log.scene, composition(log.discs)
+    if not _is_empty(scene, start) or scene.piston or log.gravity[1 - axis]:
+        return None
+    reach = np.zeros_like(discs.radius) if log.joined[axis] else discs.radius  # of centres, from the sides
+    inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
+    size = np.diff(inside)
+    places = inside[:, :-1, None] + size[:, :, None] * (np.arange(POINTS) + 0.5) / POINTS
+    found = _course(log, axis, places, discs)
+    if found is None:
+        return None
+    law, weight, temperature = found
+    parts = weight.mean(axis=2) * size
+    number = discs.number[:, None] * parts / parts.sum(axis=1, keepdims=True)
+    strips = np.diff(edges) * log.box[1 - axis]
+    return Expected(law, number / strips, (weight * temperature).mean(axis=2) / weight.mean(axis=2))
+
+
+def _is_empty(scene: Scene, start: float) -> bool:
+    """Whether no wall is in the box from a time on."""
+    return all(opens <= start and not math.isfinite(closes) for opens, closes in (w.absence for w in scene.wall))
+
+
+def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tuple[str, np.ndarray, np.ndarray] | None:
+    """The law, and at places (S, K, P) relative density and temperature."""
+    one = np.ones_like(places)
+    low, high = log.scene.box.sides[2 * axis : 2 * axis + 2]
+    if len(wall_temperatures(log.scene)) == 2 and isinstance(low, ThermalSide) and isinstance(high, ThermalSide):
+        if log.scene.gravity or "restitution" in log.scene.effects or low == high:
+            return None
+        power = low.thermal**1.5 + (high.thermal**1.5 - low.thermal**1.5) * places / log.box[axis]
+        temperature = power ** (2 / 3)
+        return "T^(3/2) in a straight line between the walls, nT the same (Fourier)", 1 / temperature, temperature
+    if log.gravity[axis]:
+        if (t := column_temperature(log, axis, discs)) is None:
+            return None
+        weight = np.exp(discs.mass[:, None, None] * log.gravity[axis] * (places - log.box[axis] / 2) / t)
+        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one
+    equilibrium = known_ensemble(log)
+    if equilibrium is None:
+        return None
+    return "uniform", one, equilibrium.of_species[:, None, None] * one

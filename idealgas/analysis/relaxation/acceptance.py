@@ -1,0 +1,108 @@
+"""What became of the trials of a Monte Carlo run: how many were accepted, beside kinetic theory and a published run."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.theory import hard_discs
+from idealgas.log import Log
+from idealgas.scene import Scene
+from idealgas.scene.defaults import reference_speed
+
+PUBLISHED = 6_552
+"""Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970): 200 molecules, v_ref 5 times their
+speed. It is 6.7 % below what theory expects."""
+
+MANY = 2000  # discs beyond which the mean over their pairs is taken over some of them
+
+
+@dataclass(frozen=True)
+class Trials:
+    """acceptance: its theory is that of these discs in equilibrium. at_start: of the pairs as they were then.
+
+    expected: in equilibrium, by name of the ensemble. published: collisions.
+    """
+
+    number: int
+    collisions: int
+    collisions_per_disc: float
+    acceptance: Estimate
+    at_start: float
+    expected: dict[str, float]
+    published: int | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "trials": self.number,
+            "collisions": self.collisions,
+            "collisions_per_disc": self.collisions_per_disc,
+            "acceptance": self.acceptance.as_dict(),
+            "acceptance_at_start": self.at_start,
+            "acceptance_in_equilibrium": self.expected,
+            "published_collisions": self.published,
+        }
+
+
+def trials(log: Log) -> Trials | None:
+    """Of a whole log; None if its method makes no trials."""
+    if "trial" not in log.columns:
+        return None
+    number = log.summary["trials"] if log.complete else last_trial(log)
+    collisions, n = len(log) // 2, len(log.discs)
+    share = collisions / max(number, 1)
+    error = float(np.sqrt(share * (1 - share) / max(number, 1)))
+    equilibrium = ensemble(log)
+    fixed = equilibrium_acceptance(log, equilibrium.temperature, equilibrium.dof)
+    expected = {
+        "Maxwell-Boltzmann": equilibrium_acceptance(log, log.discs.temperature),
+        f"fixed energy and momentum, D = {equilibrium.dof}": fixed,
+    }
+    acceptance = Estimate(share, error, float(number), theory=fixed)
+    published = PUBLISHED if is_published(log.scene) else None
+    return Trials(number, collisions, 2 * collisions / n, acceptance, start_acceptance(log), expected, published)
+
+
+def last_trial(log: Log) -> int:
+    """Number of the last trial that became a collision; 0 without any."""
+    return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
+
+
+def largest_product(log: Log) -> float:
+    """Sum of radii times relative speed at which a pair is accepted for certain."""
+    gas = log.discs
+    v_ref = reference_speed(log.scene.run, float(np.hypot(*gas.velocity.T).max()))
+    return float(np.sort(gas.radius)[-2:].sum()) * v_ref
+
+
+def equilibrium_acceptance(log: Log, temperature: float, dof: float = math.inf) -> float:
+    """Mean of S |v| over all pairs, in units of the largest: √(π/2)/5 for equal discs if v_ref is 5 times the rms."""
+    discs = composition(log.discs)
+    sigma = discs.radius[:, None] + discs.radius
+    reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
+    speed = np.sqrt(np.pi * temperature / (2 * reduced)) * hard_discs.finite_speed_factor(dof)
+    pairs = discs.number[:, None] * (discs.number - np.eye(len(discs.number)))
+    return float((pairs * sigma * speed).sum() / pairs.sum() / largest_product(log))
+
+
+def start_acceptance(log: Log) -> float:
+    """The same for the velocities at the start: (4/π)/5 for equal speeds in random directions."""
+    gas = log.discs
+    some = slice(None, None, -(-len(gas) // MANY))
+    v, r = gas.velocity[some], gas.radius[some]
+    product = (r[:, None] + r) * np.hypot(*(v[:, None] - v).T)
+    return float(product.sum() / (len(r) * (len(r) - 1)) / largest_product(log))
+
+
+def is_published(scene: Scene) -> bool:
+    """Whether a scene is the published run."""
+    run = scene.run
+    if len(scene.species) != 1 or scene.disc or run.trials != 28_000 or run.events or run.collisions_per_disc:
+        return False
+    (gas,) = scene.species
+    return gas.count == 200 and gas.speed is not None and (run.v_ref or 5 * gas.speed) == 5 * gas.speed

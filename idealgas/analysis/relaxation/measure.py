@@ -1,0 +1,238 @@
+"""How a gas comes to equilibrium: its velocities at instants, held against Maxwell and Boltzmann's distribution.
+
+All measures look at the reduced energy x = m v²/2T of a disc, whose law in equilibrium is exp(-x) whatever its mass:
+the Kolmogorov-Smirnov distance D; the kurtosis ⟨v⁴⟩/⟨v²⟩², from 1 of equal speeds to 2; and, since the energy is
+conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value, which is the relative entropy of the two laws.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import optimize
+
+from idealgas.analysis.core.equilibrium import Ensemble, ensemble
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.window import span
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+HORIZON = 40.0
+"""Collisions per disc after the start that are looked at unless an end is given: about ten relaxation times."""
+
+SAMPLES = 320
+GROUPS = 20  # of discs, for the jackknife
+CELLS = 32  # of equal probability, for H
+LEAST_RELAXATION = 4.0  # standard deviations of the kurtosis in equilibrium from which there is something to fit
+SETTLED = 3.0
+"""Relaxation times after which a gas counts as settled: 5 % of the distance is left."""
+
+LINEAR = 2.0
+"""Relaxation time of the kurtosis near equilibrium, in collisions per disc, for equal discs.
+
+First Sonine approximation: van Noije & Ernst, Granular Matter 1, 57 (1998), elastic discs in two dimensions. Far from
+equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
+"""
+
+STEADY = ("periodic sides", "wall segments")
+"""Effects that leave every disc its energy between collisions with other discs."""
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """What was seen at the instants `time` (K,), after `collisions` (K,) per disc.
+
+    kurtosis, distance, entropy: (K,), entropy being H - H_eq per disc. equilibrium_kurtosis: of N discs.
+    critical_distance: what one in twenty gases of N discs in equilibrium exceeds. in_time, in_collisions: the fitted
+    relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium. told_until: index of the
+    first instant at which the distance is below the critical one; None if it never is.
+    """
+
+    path: str
+    number: int
+    time: np.ndarray
+    collisions: np.ndarray
+    kurtosis: np.ndarray
+    distance: np.ndarray
+    entropy: np.ndarray
+    equilibrium_kurtosis: float
+    critical_distance: float
+    in_time: Estimate | None
+    in_collisions: Estimate | None
+    told_until: int | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        k = self.told_until
+        return {
+            "path": self.path,
+            "number": self.number,
+            "relaxation_time": self.in_time and self.in_time.as_dict(),
+            "relaxation_collisions_per_disc": self.in_collisions and self.in_collisions.as_dict(),
+            "settled_time": self.in_time and SETTLED * self.in_time.value,
+            "indistinguishable_after": None
+            if k is None
+            else {"time": float(self.time[k]), "collisions_per_disc": float(self.collisions[k])},
+            "equilibrium_kurtosis": self.equilibrium_kurtosis,
+            "critical_distance": self.critical_distance,
+            "time": self.time.tolist(),
+            "collisions_per_disc": self.collisions.tolist(),
+            "kurtosis": self.kurtosis.tolist(),
+            "distance": self.distance.tolist(),
+            "entropy": self.entropy.tolist(),
+        }
+
+
+def relaxation(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Relaxation:
+    """Follow a log from `start`, by default its own, to `end`, by default HORIZON collisions per disc later.
+
+    UserError if there is nothing in between, or if the energy of the discs is not constant.
+    """
+    check_steady(log)
+    first, last = colliding_span(log, start, end)
+    time = np.linspace(first, last, SAMPLES + 1)
+    equilibrium = ensemble(log)
+    number = len(log.discs)
+    groups = np.arange(number) % min(GROUPS, number)
+    distance, entropy = np.empty((2, len(time)))
+    sums = np.empty((2, len(time), groups.max() + 1))
+    for k, state in enumerate(log.frames(time)):
+        energy = reduced_energy(log, state.velocity, equilibrium)
+        distance[k], entropy[k] = ks_distance(energy), relative_entropy(energy)
+        sums[:, k] = np.bincount(groups, energy), np.bincount(groups, energy**2)
+        if progress is not None:
+            progress(k + 1, len(time))
+    members = np.bincount(groups)
+    collisions = collisions_per_disc(log, time)
+    target = 2 * equilibrium.dof / (equilibrium.dof + 2)
+    critical = critical_distance(number)
+    told = np.flatnonzero(distance < critical)
+    return Relaxation(
+        path=str(log.path),
+        number=number,
+        time=time,
+        collisions=collisions,
+        kurtosis=_kurtosis(sums.sum(axis=2), number),
+        distance=distance,
+        entropy=entropy,
+        equilibrium_kurtosis=target,
+        critical_distance=critical,
+        in_time=_fit(time - first, sums, members, target),
+        in_collisions=_fit(collisions, sums, members, target),
+        told_until=int(told[0]) if len(told) else None,
+    )
+
+
+def check_steady(log: Log) -> None:
+    """UserError if there is no law of Maxwell and Boltzmann that the discs of the log tend to, or no event in it."""
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events (made with log.events = false)")
+    if restless := [name for name in log.scene.effects if name not in STEADY]:
+        raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
+    if not log.discs.temperature > 0:
+        raise UserError(f"{log.path}: no disc moves")
+
+
+def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
+    """From `start` to `end`, by default HORIZON collisions per disc later or at the end of the log."""
+    first, last = span(log, start, end)
+    most = HORIZON * len(log.discs) if end is None else math.inf
+    found = 0
+    for rows in log.chunks(("time", "partner"), log.row_at(first, "right"), log.row_at(last, "right")):
+        pairs = np.flatnonzero(rows.partner >= 0)
+        if found + len(pairs) > most:
+            return first, float(rows.time[pairs[int(most) - found]])
+        found += len(pairs)
+    if not found:
+        raise UserError(f"{log.path}: no two discs collide between t = {first:g} and {last:g}")
+    return first, last
+
+
+def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
+    """(K,) collisions that a disc had on average from time[0] up to each of the times; a collision counts for both."""
+    rows_until = np.zeros(len(time))
+    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
+        place = np.searchsorted(time, rows.time[rows.partner >= 0])
+        rows_until += np.bincount(place, minlength=len(time))
+    return np.cumsum(rows_until) / len(log.discs)
+
+
+def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
+    """m v²/2T of every disc, with the T that it tends to."""
+    gas = log.discs
+    square = ((velocity - equilibrium.drift) ** 2).sum(axis=1)
+    return gas.mass * square / (2 * equilibrium.of_species[gas.species])
+
+
+def ks_distance(energy: np.ndarray) -> float:
+    """Largest distance between the distribution function of reduced energies and 1 - exp(-x)."""
+    n = len(energy)
+    law = -np.expm1(-np.sort(energy))
+    return float(max((np.arange(1, n + 1) / n - law).max(), (law - np.arange(n) / n).max()))
+
+
+def relative_entropy(energy: np.ndarray) -> float:
+    """∫ p ln(p/e^(-x)) dx from reduced energies, by cells of equal probability; less the bias (cells - 1)/2N.
+
+    Bias: Miller (1955). At most ln(cells): equal speeds, for which H is infinite, fill one cell.
+    """
+    n = len(energy)
+    cells = max(2, min(CELLS, n // 5))
+    place = np.minimum((-np.expm1(-energy) * cells).astype(int), cells - 1)
+    share = np.bincount(place, minlength=cells) / n
+    seen = share[share > 0]
+    return float((seen * np.log(seen * cells)).sum() - (cells - 1) / (2 * n))
+
+
+def critical_distance(number: int) -> float:
+    """The distance that one in twenty gases of N discs in equilibrium exceeds.
+
+    Their energies add up to the right mean, as for an exponential law with fitted mean: Stephens, J. Am. Stat. Assoc.
+    69, 730 (1974), table 1.5.
+    """
+    root = math.sqrt(number)
+    return 1.094 / (root + 0.26 + 0.5 / root) + 0.2 / number
+
+
+def _kurtosis(sums: np.ndarray, number: int | np.ndarray) -> np.ndarray:
+    return number * sums[1] / sums[0] ** 2
+
+
+def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float) -> Estimate | None:
+    """Relaxation time of the kurtosis, from its first value to its target, by least squares.
+
+    The error is the jackknife's over groups of discs: each is followed through all of time, so that what is correlated
+    in time, as fluctuations are that decay as slowly as the kurtosis itself, needs no model.
+    """
+    whole = _kurtosis(sums.sum(axis=2), members.sum())
+    if abs(whole[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(members.sum()):
+        return None
+    value = _decay_time(time, whole, target)
+    less = _kurtosis(sums.sum(axis=2)[..., None] - sums, members.sum() - members)
+    groups = len(members)
+    if groups < 2:
+        return Estimate(value, math.nan, 1.0)
+    parts = np.array([_decay_time(time, less[:, g], target) for g in range(groups)])
+    error = math.sqrt((groups - 1) / groups * ((parts - parts.mean()) ** 2).sum())
+    return Estimate(value, error, float(groups))
+
+
+def _decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
+    """τ of target + (series[0] - target) exp(-time/τ) that is nearest to the series."""
+
+    def misfit(logarithm: float) -> float:
+        model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))
+        return float(((series - model) ** 2).sum())
+
+    low, high = math.log(time[time > 0][0] / 10), math.log(10 * time[-1])
+    start = min(np.linspace(low, high, 40), key=misfit)
+    step = (high - low) / 39
+    found = optimize.minimize_scalar(misfit, bounds=(start - step, start + step), method="bounded")
+    return math.exp(found.x)

@@ -1,0 +1,100 @@
+"""The distribution of speeds as it develops: counts at instants, side by side."""
+
+import math
+from dataclasses import dataclass
+from itertools import count, takewhile
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.window import span
+from idealgas.analysis.relaxation.acceptance import last_trial
+from idealgas.analysis.relaxation.measure import check_steady, collisions_per_disc, ks_distance, reduced_energy
+from idealgas.analysis.theory.distributions import SpeedLaw
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+CLASSES = 0.3 * np.arange(9)
+"""Lower ends of the classes of speed, in units of the root mean square; the last class is open."""
+
+MOST_INSTANTS = 10_000
+
+
+@dataclass(frozen=True)
+class Development:
+    """Discs by speed, relative to the centre of mass where that moves on for ever, at the instants `time` (K,).
+
+    rms: root mean square of the speeds, length/time. edges: (C,) lower ends of the classes, length/time.
+    counts: (K, C). expected: (C,) by Maxwell and Boltzmann. trials: (K,) made until then, None for a method that makes
+    none. collisions: (K,) per disc. distance: (K,) Kolmogorov-Smirnov's.
+    """
+
+    time: np.ndarray
+    trials: np.ndarray | None
+    collisions: np.ndarray
+    distance: np.ndarray
+    rms: float
+    edges: np.ndarray
+    counts: np.ndarray
+    expected: np.ndarray
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "time": self.time.tolist(),
+            "trials": None if self.trials is None else self.trials.tolist(),
+            "collisions_per_disc": self.collisions.tolist(),
+            "distance": self.distance.tolist(),
+            "rms_speed": self.rms,
+            "speed_from": self.edges.tolist(),
+            "counts": self.counts.tolist(),
+            "maxwell_boltzmann": self.expected.tolist(),
+        }
+
+
+def development(log: Log, every: float, start: float | None = None, end: float | None = None) -> Development:
+    """Count speeds at the start and every so often: trials of a Monte Carlo run, else time. UserError if too often."""
+    check_steady(log)
+    first, last = span(log, start, end)
+    trials = None
+    if "trial" in log.columns:
+        trials, time = _at_trials(log, every, first, last)
+    else:
+        _check_number((last - first) / every)
+        time = np.array(list(takewhile(lambda t: t <= last, (first + k * every for k in count()))))
+    gas, equilibrium = log.discs, ensemble(log)
+    rms = math.sqrt(((gas.velocity - equilibrium.drift) ** 2).sum() / len(gas))
+    edges = rms * CLASSES
+    counts, distance = [], []
+    for state in log.frames(time):
+        speed = np.hypot(*(state.velocity - equilibrium.drift).T)
+        counts.append(np.histogram(speed, [*edges, math.inf])[0])
+        distance.append(ks_distance(reduced_energy(log, state.velocity, equilibrium)))
+    species = zip(equilibrium.of_species, range(len(gas.species_names)), strict=True)
+    expected = np.zeros(len(edges))
+    for temperature, s in species:
+        members = gas.species == s
+        law = SpeedLaw(float(temperature), float(gas.mass[members][0]))
+        expected += members.sum() * np.diff(law.cdf(edges), append=1.0)
+    return Development(
+        time, trials, collisions_per_disc(log, time), np.array(distance), rms, edges, np.array(counts), expected
+    )
+
+
+def _at_trials(log: Log, every: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of trials, and times of the last collision until each of them."""
+    total = log.summary["trials"] if log.complete else last_trial(log)
+    _check_number(total / every)
+    wanted = np.arange(0, total + 1, max(int(every), 1))
+    time = np.full(len(wanted), log.start_time)
+    for rows in log.chunks(("time", "trial")):
+        done = np.searchsorted(rows.trial, wanted.astype(np.uint64), "right")
+        time = np.where(done > 0, rows.time[np.maximum(done - 1, 0)], time)
+    inside = (first <= time) & (time <= last)
+    return wanted[inside], time[inside]
+
+
+def _check_number(instants: float) -> None:
+    if instants > MOST_INSTANTS:
+        raise UserError(f"{instants:.3g} instants are too many for a table (allowed <= {MOST_INSTANTS})")

@@ -1,0 +1,217 @@
+"""A log as one page: what it is, every analysis that applies to it, and a player; nothing else is needed to read it."""
+
+import base64
+import io
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from html import escape
+from importlib import resources
+from pathlib import Path
+from string import Template
+
+from matplotlib.figure import Figure
+
+from idealgas.analysis.info import info
+from idealgas.analysis.report.player import MOST_DISCS, Player, player
+from idealgas.analysis.report.sections import SECTIONS, Section, Table
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+PLAYER = """
+<section id="s0">
+<h2>$heading</h2>
+<div id="player" tabindex="0" role="group" aria-label="Player">
+<canvas id="discs" role="img" aria-label="The discs in their box, coloured by speed"$hidden></canvas>
+<div id="controls">
+<button id="play" type="button">Play</button>
+<input id="scrub" type="range" min="0" max="10000" step="1" value="0" aria-label="Time">
+<output id="clock"></output>
+<label>playback <select id="rate">
+<option value="0.125">⅛ ×</option><option value="0.25">¼ ×</option><option value="0.5">½ ×</option>
+<option value="1" selected>1 ×</option><option value="2">2 ×</option><option value="4">4 ×</option>
+<option value="8">8 ×</option>
+</select></label>
+</div>
+<canvas id="speeds" role="img" aria-label="Histogram of the speeds with Maxwell and Boltzmann's law"></canvas>
+</div>
+<p class="note">$shown</p>
+<p class="note keys">Keys, after a click into the player: space plays and pauses; ← → step by a frame, with shift by a
+second; ↑ ↓ change the playback; Home and End go to the start and the end.</p>
+</section>
+"""
+
+
+SUMMARY = {
+    "end_time": "end (time)",
+    "events": "events",
+    "disc_collisions": "disc collisions",
+    "wall_hits": "wall hits",
+    "trials": "trials of pairs",
+    "rows": "event rows",
+    "epochs": "epochs",
+    "energy_change": "energy change of the discs (energy)",
+    "energy_drift": "energy drift (share of the energy)",
+    "deepest_overlap": "deepest overlap (sums of two radii)",
+    "farthest_outside": "farthest outside (diameters)",
+    "seconds": "wall time (s)",
+    "compile_seconds": "making or loading machine code, before that (s)",
+}
+"""What is shown of the summary of a run, with units."""
+
+
+def write_report(
+    log: Log,
+    output: str | os.PathLike[str],
+    *,
+    start: float | None = None,
+    on_step: Callable[[int, int], None] = lambda done, total: None,
+) -> Path:
+    """Write the page; start: of what the player shows, time. on_step(done, total).
+
+    UserError for another ending than .html, a start that the log does not cover, and (exit code 1) if it cannot be
+    written.
+    """
+    path = Path(output)
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise UserError(f"{output}: unknown kind of report (allowed: .html)")
+    if not path.parent.is_dir():
+        raise UserError(f"{output}: no folder {path.parent}")
+    steps = len(SECTIONS) + 1
+    played = player(log, start)
+    on_step(1, steps)
+    sections, left_out = [], []
+    for k, (title, analyse) in enumerate(SECTIONS):
+        try:
+            sections.append((title, analyse(log)))
+        except UserError as error:
+            left_out.append((title, str(error).removeprefix(f"{log.path}: ")))
+        on_step(k + 2, steps)
+    try:
+        path.write_text(_page(log, played, sections, left_out), encoding="utf-8")
+    except OSError as error:
+        failure = UserError(f"{path}: cannot be written: {error.strerror}")
+        failure.exit_code = 1
+        raise failure from error
+    return path
+
+
+def _page(
+    log: Log,
+    played: Player | None,
+    sections: Sequence[tuple[str, Section]],
+    left_out: Sequence[tuple[str, str]],
+) -> str:
+    found = info(log)
+    gas, run, file = found["gas"], found["run"], found["file"]
+    parts = [("The run", _run(log, found)), *((title, _section(section)) for title, section in sections)]
+    if left_out:
+        rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
+        parts.append(("What does not apply", f"<ul>{rows}</ul>"))
+    title = log.scene.scene.title or Path(log.path).name
+    phi = gas["packing_fraction"]
+    subtitle = (
+        f"{gas['number']:,} discs, packing fraction {phi:.4g}, {log.scene.run.method.replace('_', '-')}, "
+        f"{run['end_time']:.6g} units of time, {run['event_rows'] or 0:,} event rows"
+    )
+    names = ["The discs" if log.has_positions else "The speeds", *(name for name, _ in parts)]
+    contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
+    return Template(_text("report.html")).substitute(
+        title=escape(title),
+        subtitle=escape(subtitle),
+        style=_text("report.css"),
+        script=_text("player.js"),
+        contents=f"<ul>{contents}</ul>",
+        player=_player(log, played, names[0]),
+        sections="\n".join(
+            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 1)
+        ),
+        data="" if played is None else _data(played),
+        footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
+    )
+
+
+def _text(name: str) -> str:
+    return resources.files("idealgas.analysis.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _player(log: Log, played: Player | None, heading: str) -> str:
+    """The player's part of the page, and which part of the log it has."""
+    if played is None:
+        why = "no events are on record" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
+        return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {why}.</p></section>'
+    if log.has_positions:
+        width, height = log.box
+        shown = (
+            f"A box of {width:g} × {height:g} (length); the strip below the speeds tells the colours of the discs. "
+            "Positions are exact at any time: every event is in the page. Very small discs are drawn larger."
+        )
+    else:
+        shown = f"No discs to show: {log.scene.run.method} does not know where they are. Their speeds are exact."
+    shown += " The player has "
+    if played.end < log.end_time or played.start > log.start_time:
+        shown += f"t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}."
+    else:
+        shown += "the whole run."
+    shown += f" At 1 × a second is {played.head['speed']:.3g} units of time."
+    return Template(PLAYER).substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
+
+
+def _data(played: Player) -> str:
+    head = json.dumps(played.head, allow_nan=False).replace("</", "<\\/")
+    arrays = (f'<script type="text/plain" id="data-{name}">{packed}</script>' for name, packed in played.arrays.items())
+    return "\n".join([f'<script type="application/json" id="data-head">{head}</script>', *arrays])
+
+
+def _run(log: Log, found: dict) -> str:
+    """Scene, discs and how the run ended."""
+    species = [
+        (s["name"], f"{s['number']:,}", f"{s['radius']:.6g}", f"{s['mass']:.6g}") for s in found["gas"]["species"]
+    ]
+    summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
+    if "trial" not in log.columns:
+        summary = [row for row in summary if row[0] != SUMMARY["trials"]]
+    state = [("state", found["file"]["state"]), ("created", found["file"]["created"]), *summary]
+    tables = (
+        Table("Discs", ("species", "N", "radius (length)", "mass (mass)"), species),
+        Table("Run", ("", ""), state),
+    )
+    return _tables(tables) + f"<details><summary>Scene</summary><pre>{escape(log.scene_text)}</pre></details>"
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "–"
+    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
+
+
+def _section(section: Section) -> str:
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in section.notes)
+    picture = "" if section.picture is None else _picture(section.picture, section.caption)
+    return f'{notes}<div class="beside">{picture}{_tables(section.tables)}</div>'
+
+
+def _picture(figure: Figure, caption: str) -> str:
+    file = io.BytesIO()
+    figure.savefig(file, format="svg", metadata={"Date": None})
+    source = base64.b64encode(file.getvalue()).decode()
+    text = escape(caption)
+    return (
+        f'<figure><img alt="{text}" src="data:image/svg+xml;base64,{source}"><figcaption>{text}</figcaption></figure>'
+    )
+
+
+def _tables(tables: Sequence[Table]) -> str:
+    return f'<div class="tables">{"".join(map(_table, tables))}</div>'
+
+
+def _table(table: Table) -> str:
+    def row(cells: Iterable[str], tag: str) -> Iterator[str]:
+        yield "<tr>"
+        for cell in cells:
+            yield f"<{tag}>{escape(cell)}</{tag}>"
+        yield "</tr>"
+
+    head = "".join(row(table.heads, "th")) if any(table.heads) else ""
+    body = "".join("".join(row(cells, "td")) for cells in table.rows)
+    return f'<div class="wide"><table><caption>{escape(table.title)}</caption>{head}{body}</table></div>'

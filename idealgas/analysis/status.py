@@ -1,0 +1,104 @@
+"""What a log tells at a glance, of a run that may still go on: its latest state and the events just before."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.pressure.measure import PAIRS, pressure
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+ROWS = 2**20
+"""Event rows that a glance reads at most, twice."""
+
+BINS, HIGHEST = 20, 4.0
+
+
+@dataclass(frozen=True)
+class Glance:
+    """The latest state of a log.
+
+    time: of the last event. rows: of events; None where none are kept. events: so far, to the accuracy of their share
+    in the rows at the last checkpoint. temperature: kinetic, of all discs. pressure, compressibility: from the virial
+    of the last pair collisions; None if that says nothing. ks_distance: of the speeds in units of √(T/m) from
+    Maxwell-Boltzmann's; edges (BINS + 1,), density and expected (BINS,): of these speeds; None if nothing moves.
+    """
+
+    time: float
+    rows: int | None
+    events: int
+    temperature: float
+    pressure: Estimate | None
+    compressibility: Estimate | None
+    ks_distance: float | None
+    edges: np.ndarray
+    density: np.ndarray | None
+    expected: np.ndarray
+
+
+def glance(log: Log) -> Glance:
+    """Look at the last state and events, of which no more are read than a bounded number."""
+    seen = _time_seen(log)
+    state, mass = log.state_at(seen), log.discs.mass
+    squares = mass * (state.velocity**2).sum(axis=1)
+    temperature = float(squares.mean() / 2)
+    edges = np.linspace(0, HIGHEST, BINS + 1)
+    speeds = np.sort(np.sqrt(squares / temperature)) if temperature > 0 else None
+    p, z = _pressure(log, seen)
+    return Glance(
+        time=log.end_time,
+        rows=len(log) if log.has_events else None,
+        events=_events(log),
+        temperature=temperature,
+        pressure=p,
+        compressibility=z,
+        ks_distance=None if speeds is None else _ks_distance(speeds),
+        edges=edges,
+        density=None if speeds is None else np.histogram(speeds, edges)[0] / len(speeds) / np.diff(edges),
+        expected=np.diff(_reduced_speed_cdf(edges)) / np.diff(edges),
+    )
+
+
+def _time_seen(log: Log) -> float:
+    """The last time, or one before if too many events separate it from the last checkpoint."""
+    if not log.has_events:
+        return float(log.checkpoints.times[-1]) if len(log.checkpoints) else log.start_time
+    last = int(log.checkpoints.rows[-1]) + ROWS if len(log.checkpoints) else ROWS
+    if len(log) <= last:
+        return log.end_time
+    return float(next(log.chunks(("time",), last - 1, last)).time[0])
+
+
+def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
+    """Since an earlier checkpoint, or the last."""
+    if not log.has_events:
+        return None, None
+    first = int(log.checkpoints.rows.searchsorted(log.row_at(seen) - ROWS))
+    times = log.checkpoints.times
+    start = times[min(first, len(times) - 1)] if len(times) else log.start_time
+    try:
+        routes = pressure(log, float(start), seen).routes
+    except UserError:
+        return None, None
+    return next(((route.pressure, route.compressibility) for route in routes if route.name == PAIRS), (None, None))
+
+
+def _events(log: Log) -> int:
+    if "events" in log.summary:
+        return log.summary["events"]
+    if not len(log.checkpoints):
+        return 0
+    last = log.checkpoints[-1]
+    share = last.values["events"] / last.row if last.row else 1.0
+    return int(last.values["events"] + share * (len(log) - last.row if log.has_events else 0))
+
+
+def _reduced_speed_cdf(speed: np.ndarray) -> np.ndarray:
+    return 1 - np.exp(-(speed**2) / 2)
+
+
+def _ks_distance(speeds: np.ndarray) -> float:
+    """Largest distance of the distribution function of sorted speeds from the law's."""
+    law, steps = _reduced_speed_cdf(speeds), np.arange(len(speeds) + 1) / len(speeds)
+    return float(max((law - steps[:-1]).max(), (steps[1:] - law).max()))

@@ -1,0 +1,91 @@
+"""Equipartition: the temperature of every degree of freedom, species by species."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import known_ensemble
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.window import Window, measure
+from idealgas.log import Log
+from idealgas.scene import EFFECTS
+
+
+@dataclass(frozen=True)
+class SpeciesTemperature:
+    """Mean of m vx², m vy² and m v²/2 of the discs of one species, k_B = 1, beside what equipartition gives them.
+
+    history: (B,), m v²/2 in every block that was read, those before the window included.
+    """
+
+    species: str
+    number: int
+    x: Estimate
+    y: Estimate
+    both: Estimate
+    history: np.ndarray
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {"x": self.x.as_dict(), "y": self.y.as_dict(), "both": self.both.as_dict()}
+        return {"species": self.species, "number": self.number, **values, "history": self.history.tolist()}
+
+
+@dataclass(frozen=True)
+class Temperature:
+    """Temperatures by species, the last of them that of all discs; expected: its E/N if that is known beforehand."""
+
+    window: Window
+    expected: float | None
+    species: tuple[SpeciesTemperature, ...]
+
+    @property
+    def apart(self) -> tuple[SpeciesTemperature, ...]:
+        """Those that differ: with one species alone, it is all discs."""
+        return self.species[:1] if len(self.species) == 2 else self.species
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "window": self.window.as_dict(),
+            "expected": self.expected,
+            "block_edges": self.window.edges.tolist(),
+            "species": [entry.as_dict() for entry in self.species],
+        }
+
+
+def temperature(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Temperature:
+    """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
+    moments = Moments(log.gravity)
+    window = measure(log, [moments], start, end, progress, allowed=EFFECTS)
+    discs = composition(log.discs)
+    equilibrium = known_ensemble(log)
+    shares: list[float] | list[None] = [None] * len(discs.name)
+    expected = None
+    if equilibrium is not None:
+        shares = equilibrium.of_species.tolist()
+        expected = float(discs.number @ equilibrium.of_species / discs.number.sum())
+    sums = moments.flights[:, :, 1:3] / window.width
+
+    def entry(name: str, number: int, expected: float | None, directions: np.ndarray) -> SpeciesTemperature:
+        """directions: (B, 2), sums of m vx² and m vy²."""
+        x, y = directions[window.first :].T / number
+        history = directions.sum(axis=1) / (2 * number)
+        return SpeciesTemperature(
+            name, number, mean(x, expected), mean(y, expected), mean((x + y) / 2, expected), history
+        )
+
+    entries = [
+        entry(name, int(number), shares[s], sums[:, s])
+        for s, (name, number) in enumerate(zip(discs.name, discs.number, strict=True))
+    ]
+    return Temperature(window, expected, (*entries, entry("all discs", len(log.discs), expected, sums.sum(axis=1))))

@@ -1,0 +1,197 @@
+"""What kinetic theory expects of a scene before it is run."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.analysis.theory import hard_discs
+from idealgas.gas.state import Gas
+from idealgas.scene import Scene
+from idealgas.scene.defaults import reference_speed
+from idealgas.scene.geometry import room
+
+BYTES_A_ROW = {"gzip": 38, "none": 49}
+"""Size of an event's row in the log, by compression..."""
+
+MORE_BYTES = {"rotation": {"gzip": 7, "none": 8}, "periodic sides": {"gzip": 2, "none": 8}}
+"""...and what columns of effects add to it."""
+
+
+@dataclass(frozen=True)
+class SpeciesForecast:
+    """One species at the start; collision_rate: collisions per disc and time in equilibrium, None if not known."""
+
+    name: str
+    number: int
+    radius: float
+    mass: float
+    packing_fraction: float
+    temperature: float
+    collision_rate: float | None
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """The gas in equilibrium: rates per time, collision_rate per disc too. Of the run: duration to bytes.
+
+    None stands for what the theory of a uniform gas that keeps its energy does not know; beyond: the effects that make
+    it so.
+    """
+
+    number: int
+    packing_fraction: float
+    beyond: tuple[str, ...]
+    temperature: float | None
+    collision_rate: float | None
+    pair_collision_rate: float | None
+    wall_hit_rate: float | None
+    duration: float | None
+    events: float | None
+    rows: float | None
+    bytes: float | None
+    species: tuple[SpeciesForecast, ...]
+
+
+BEYOND_THEORY = ("gravity", "wall segments", "restitution", "thermal walls", "piston")
+"""Effects under which a gas is not uniform or does not keep its energy."""
+
+
+class _Rates(NamedTuple):
+    """In equilibrium. per_disc: (species,), collisions per disc and time; pairs, hits, trials: numbers per time."""
+
+    temperature: float
+    per_disc: np.ndarray
+    pairs: float
+    hits: float
+    trials: float = 0.0
+
+
+def forecast(scene: Scene, gas: Gas) -> Forecast:
+    """Rates by Enskog's theory at the temperature all species will share; sizes by the stop rule met first."""
+    beyond = _beyond_theory(scene)
+    rates = None if beyond else _rates(scene, gas)
+    duration = _duration(scene, len(gas), rates)
+    events = rows = None
+    if rates and duration is not None:
+        events = duration * (rates.pairs + rates.hits)
+        rows = duration * (2 * rates.pairs + rates.hits)
+    if not scene.log.events:
+        rows = 0.0
+    x0, y0, x1, y1 = room(scene.box, scene.piston)
+    area = (x1 - x0) * (y1 - y0)
+    return Forecast(
+        number=len(gas),
+        packing_fraction=gas.packing_fraction * gas.area / area,
+        beyond=beyond,
+        temperature=rates.temperature if rates else None,
+        collision_rate=2 * rates.pairs / len(gas) if rates else None,
+        pair_collision_rate=rates.pairs if rates else None,
+        wall_hit_rate=rates.hits if rates else None,
+        duration=duration,
+        events=events,
+        rows=rows,
+        bytes=None if rows is None else rows * _bytes_a_row(scene),
+        species=tuple(_species(gas, k, area, rates) for k in range(len(gas.species_names))),
+    )
+
+
+def _bytes_a_row(scene: Scene) -> int:
+    compression = scene.log.compression
+    more = sum(MORE_BYTES[name][compression] for name in scene.effects if name in MORE_BYTES)
+    return BYTES_A_ROW[compression] + more
+
+
+def _beyond_theory(scene: Scene) -> tuple[str, ...]:
+    lossy = scene.rotation and not {abs(scene.rotation.roughness), abs(scene.rotation.wall_roughness)} <= {1}
+    return tuple(name for name in scene.effects if name in BEYOND_THEORY or (name == "rotation" and lossy))
+
+
+def _spin_energy(scene: Scene) -> float:
+    """At the start."""
+    if scene.rotation is None:
+        return 0.0
+    energy = 0.0
+    for count, item in [(1, d) for d in scene.disc] + [(s.count, s) for s in scene.species]:
+        inertia = scene.rotation.inertia * item.mass * item.radius**2
+        temperature = getattr(item, "spin_temperature", None) or inertia * (item.angular_velocity or 0.0) ** 2
+        energy += count * temperature / 2
+    return energy
+
+
+def _rates(scene: Scene, gas: Gas) -> _Rates:
+    freedom = 3 if scene.rotation else 2
+    temperature = 2 * (gas.kinetic_energy + _spin_energy(scene)) / (freedom * len(gas))
+    number = np.bincount(gas.species)
+    _, first = np.unique(gas.species, return_index=True)
+    radius, mass = gas.radius[first], gas.mass[first]
+    if scene.run.method == "monte_carlo":
+        return _homogeneous_rates(scene, gas, temperature, radius, mass, number)
+    per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
+    per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # no disc meets itself
+    hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.box.joined)
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits)
+
+
+def _homogeneous_rates(
+    scene: Scene, gas: Gas, temperature: float, radius: np.ndarray, mass: np.ndarray, number: np.ndarray
+) -> _Rates:
+    """Of a gas without positions, whose pairs are tried at the rate of the fastest there may be."""
+    reduced = mass[:, None] * mass / (mass[:, None] + mass)
+    contacts = hard_discs.homogeneous_contacts(radius, number, gas.box)
+    per_disc = (contacts * np.sqrt(np.pi * temperature / (2 * reduced))).sum(axis=1)
+    v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
+    largest = np.sort(gas.radius)[-2:].sum() * v_ref * float(hard_discs.contact_value(gas.packing_fraction))
+    trials = len(gas) * (len(gas) - 1) * largest / gas.area
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials)
+
+
+def _species(gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
+    members = gas.species == k
+    mass, radius, number = gas.mass[members][0], gas.radius[members][0], int(members.sum())
+    return SpeciesForecast(
+        name=gas.species_names[k],
+        number=number,
+        radius=float(radius),
+        mass=float(mass),
+        packing_fraction=float(np.pi * radius**2 * number / area),
+        temperature=float(mass * (gas.velocity[members] ** 2).sum() / (2 * number)),
+        collision_rate=float(rates.per_disc[k]) if rates else None,
+    )
+
+
+def _wall_hit_rate(
+    gas: Gas,
+    radius: np.ndarray,
+    mass: np.ndarray,
+    number: np.ndarray,
+    temperature: float,
+    joined: tuple[bool, bool],
+) -> float:
+    """Flux onto the lines that the centres reach; hard discs stand Z times as dense there as in the gas."""
+    crowding = hard_discs.mixture_compressibility(radius, number, gas.area)
+    rate = 0.0
+    for r, m, n in zip(radius, mass, number, strict=True):
+        width, height = (
+            length if periodic else length - 2 * r for length, periodic in zip(gas.box, joined, strict=True)
+        )
+        if width > 0 and height > 0:
+            flux = hard_discs.effusion_flux(crowding * n / (width * height), temperature, m)
+            rate += 2 * (height * (not joined[0]) + width * (not joined[1])) * flux
+    return float(rate)
+
+
+def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
+    """Time at which the first stop rule is met."""
+    run = scene.run
+    if rates is None:
+        return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None
+    ends = [run.until or math.inf]
+    if run.events is not None and rates.pairs + rates.hits > 0:
+        ends.append(run.events / (rates.pairs + rates.hits))
+    if run.collisions_per_disc is not None and rates.pairs > 0:
+        ends.append(run.collisions_per_disc * number / (2 * rates.pairs))
+    if run.trials is not None and rates.trials > 0:
+        ends.append(run.trials / rates.trials)
+    return min(ends)

@@ -1,0 +1,226 @@
+"""How discs move among each other: collisions, memory of the velocity, diffusion, and neighbours.
+
+Rates and free paths count every event of the window; velocities and displacements are those of discs at evenly spaced
+instants, exact by their events.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths
+from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.equilibrium import Ensemble, drift, ensemble
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
+from idealgas.analysis.transport.trajectories import sample_trajectories
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+LAGS = 200  # steps of the correlation functions
+LONGEST_LAG = 20.0  # in mean free times, of which every step is a tenth
+FEWEST_SEGMENTS, MOST_SEGMENTS = 8, 64
+MOST_SAMPLES = 2**21  # discs times instants
+FITTED_FROM = 0.5  # share of the longest lag from which on displacements grow by diffusion
+
+
+@dataclass(frozen=True)
+class Diffusion:
+    """One species. lag: (L,), time. correlation: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩; displacement: (L,), mean square, length².
+
+    Errors beside both. tail: (L,), what becomes of the correlation by theory, for one species alone. coefficient: D, a
+    quarter of the slope of the displacement at late lags; theory: Enskog's. memory: ∫ correlation dt to the last lag.
+    """
+
+    species: str
+    lag: np.ndarray
+    correlation: np.ndarray
+    correlation_error: np.ndarray
+    displacement: np.ndarray
+    displacement_error: np.ndarray
+    tail: np.ndarray | None
+    coefficient: Estimate
+    memory: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        series = ("lag", "correlation", "correlation_error", "displacement", "displacement_error")
+        return {
+            "species": self.species,
+            "coefficient": self.coefficient.as_dict(),
+            "memory": self.memory.as_dict(),
+            **{name: getattr(self, name).tolist() for name in series},
+            "tail": None if self.tail is None else [None, *self.tail[1:].tolist()],
+        }
+
+
+@dataclass(frozen=True)
+class Contact:
+    """χ, the pair distribution at contact, by the rate of collisions."""
+
+    species: str
+    other: str
+    value: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"species": self.species, "other": self.other, "value": self.value.as_dict()}
+
+
+@dataclass(frozen=True)
+class Transport:
+    """All of it, species by species. walled: whether walls turn diffusing discs back."""
+
+    window: Window
+    walled: bool
+    collision_rates: tuple[CollisionRate, ...]
+    free_paths: tuple[FreePath, ...]
+    contacts: tuple[Contact, ...]
+    diffusion: tuple[Diffusion, ...]
+    pair_distributions: tuple[PairDistribution, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {
+            name: [entry.as_dict() for entry in getattr(self, name)]
+            for name in ("collision_rates", "free_paths", "contacts", "diffusion", "pair_distributions")
+        }
+        return {"window": self.window.as_dict(), "walled": self.walled, **values}
+
+
+def transport(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Transport:
+    """Measure a log between two times, by default from detected equilibrium to the end."""
+    equilibrium = ensemble(log)
+    if not equilibrium.temperature > 0:
+        raise UserError(f"{log.path}: no disc moves")
+    moments, impacts = Moments(), Impacts(len(log.walls), log.joined)
+    window = measure(log, [moments, impacts], start, end, progress, allowed=("periodic sides",))
+    gas, discs = log.discs, composition(log.discs)
+    expected = expected_rates(discs, gas.box, equilibrium, log.joined)
+    rates = collision_rates(discs, expected, window, impacts)
+    return Transport(
+        window=window,
+        walled=not all(log.joined),
+        collision_rates=rates,
+        free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
+        contacts=_contacts(discs, gas.area, expected, equilibrium, rates),
+        diffusion=_diffusion(log, discs, window, equilibrium, rates),
+        pair_distributions=pair_distributions(log, discs, window.start, window.end),
+    )
+
+
+def _contacts(
+    discs: Composition, area: float, expected: np.ndarray, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
+) -> tuple[Contact, ...]:
+    """Γ_ij over what it would be if discs did not crowd each other. No disc meets itself."""
+    contacts = []
+    for k, found in enumerate(rates):
+        i, j = divmod(k, len(discs.name))
+        reduced = discs.mass[i] * discs.mass[j] / (discs.mass[i] + discs.mass[j])
+        speed = math.sqrt(math.pi * equilibrium.temperature / (2 * reduced))
+        speed *= hard_discs.finite_speed_factor(equilibrium.dof)
+        alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed
+        if j < i or alone == 0:
+            continue
+        rate, known = found.rate, np.isfinite(expected[i, j])
+        chi = Estimate(
+            rate.value / alone,
+            rate.standard_error / alone,
+            rate.independent_samples,
+            float(expected[i, j] / alone) if known else None,
+        )
+        contacts.append(Contact(found.species, found.other, chi))
+    return tuple(contacts)
+
+
+def _diffusion(
+    log: Log, discs: Composition, window: Window, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
+) -> tuple[Diffusion, ...]:
+    per_disc = [sum(r.rate.value for r in rates if r.species == name) for name in discs.name]
+    slowest = min((rate for rate in per_disc if rate > 0), default=0.0)
+    longest = min(LONGEST_LAG / slowest if slowest else math.inf, window.duration / FEWEST_SEGMENTS)
+    segments = min(int(window.duration / longest), MOST_SEGMENTS)
+    lag = np.linspace(0.0, longest, LAGS + 1)
+    starts = np.linspace(window.start, window.end - longest, segments)
+    times = (starts[:, None] + lag).ravel()
+    times = np.minimum(np.maximum.accumulate(times), window.end)
+    most = max(MOST_SAMPLES // len(times) // len(discs.name), 1)
+    members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
+    chosen = [ids[:: -(-len(ids) // most)] for ids in members]
+    places, velocities = sample_trajectories(log, times, np.concatenate(chosen))
+    shape = (segments, len(lag), -1, 2)
+    places, velocities = places.reshape(shape), velocities.reshape(shape) - drift(log)
+    places = places - lag[:, None, None] * drift(log)
+    cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
+    parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), strict=True)
+    return tuple(
+        _of_species(name, lag, r, v, _enskog(log, discs, equilibrium) if len(discs.name) == 1 else None)
+        for name, r, v in parts
+    )
+
+
+def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float, float, float] | None:
+    """(number density, D, kinematic viscosity); None where the fluid freezes."""
+    gas = log.discs
+    if gas.packing_fraction > hard_discs.FREEZING:
+        return None
+    density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
+    chi = float((hard_discs.compressibility(gas.packing_fraction) - 1) / (2 * gas.packing_fraction))
+    state = (sigma, density, equilibrium.temperature, discs.mass[0], chi)
+    viscosity = hard_discs.enskog_viscosity(*state) / (density * discs.mass[0])
+    return density, hard_discs.enskog_diffusion(*state), viscosity
+
+
+def _of_species(
+    name: str, lag: np.ndarray, places: np.ndarray, velocities: np.ndarray, enskog: tuple[float, float, float] | None
+) -> Diffusion:
+    """places, velocities: (segments, L, discs, 2)."""
+    correlation = _autocorrelation(velocities)
+    square = correlation[:, 0].mean()
+    displacement = _mean_square_displacement(places)
+    late = slice(int(FITTED_FROM * LAGS), None)
+    slope = np.polyfit(lag[late], displacement[:, late].T, 1)[0] / 4
+    memory = np.trapezoid(correlation, lag, axis=1) / square
+    count = math.sqrt(len(places))
+    return Diffusion(
+        name,
+        lag,
+        correlation.mean(axis=0) / square,
+        correlation.std(axis=0, ddof=1) / square / count,
+        displacement.mean(axis=0),
+        displacement.std(axis=0, ddof=1) / count,
+        tail=None if enskog is None else hard_discs.long_time_tail(np.maximum(lag, 1e-300), *enskog),
+        coefficient=mean(slope, theory=enskog[1] if enskog else None),
+        memory=mean(memory),
+    )
+
+
+def _autocorrelation(velocities: np.ndarray) -> np.ndarray:
+    """(segments, L), ⟨v(t)·v(t + lag)⟩ over discs and over the times t of each segment."""
+    length = velocities.shape[1]
+    spectrum = np.fft.rfft(velocities, 2 * length, axis=1)
+    raw = np.fft.irfft((np.abs(spectrum) ** 2).sum(axis=3).mean(axis=2), 2 * length, axis=1)[:, :length]
+    return raw / np.arange(length, 0, -1)
+
+
+def _mean_square_displacement(places: np.ndarray) -> np.ndarray:
+    """(segments, L), by Σ r² and the autocorrelation of places: Calandrini et al., Collection SFN 12, 201 (2011)."""
+    length = places.shape[1]
+    places = places - places[:, :1]  # keeps the digits
+    square = (places**2).sum(axis=3).mean(axis=2)
+    both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
+    steps = np.arange(length)
+    first, last = both[:, length - steps], both[:, -1:] - both[:, steps]
+    return (first + last) / (length - steps) - 2 * _autocorrelation(places)

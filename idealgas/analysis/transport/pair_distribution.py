@@ -1,0 +1,82 @@
+"""The pair distribution g(r) of discs at some instants."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from idealgas.analysis.core.composition import Composition
+from idealgas.log import Log
+
+FRAMES = 64  # instants, at most
+BINS_A_DIAMETER = 20
+REACH = 5.0  # in units of the sum of the radii
+
+
+@dataclass(frozen=True)
+class PairDistribution:
+    """g(r) of species and other. edges: (bins + 1,), length, from contact on. value, error: (bins,)."""
+
+    species: str
+    other: str
+    edges: np.ndarray
+    value: np.ndarray
+    error: np.ndarray
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        values = {name: getattr(self, name).tolist() for name in ("edges", "value", "error")}
+        return {"species": self.species, "other": self.other, **values}
+
+
+def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:
+    """Of every pair of species; in a box with walls beside how often discs are so far apart by chance."""
+    sigma = discs.radius[:, None] + discs.radius
+    pairs = [(i, j) for i in range(len(discs.name)) for j in range(i, len(discs.name))]
+    edges = {}
+    for i, j in pairs:
+        reach = min(REACH * sigma[i, j], min(log.box) / 2)
+        bins = max(int(BINS_A_DIAMETER * (reach / sigma[i, j] - 1)), 1)
+        edges[i, j] = np.linspace(sigma[i, j], max(reach, 1.01 * sigma[i, j]), bins + 1)
+    counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
+    members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
+    box = np.array(log.box)
+    turn = np.where(log.joined, box, 0.0)  # 0: no images along this axis
+    for state in log.frames(np.linspace(start, end, FRAMES)):
+        inside = np.where(log.joined, np.clip(state.position, 0.0, np.nextafter(box, 0.0)), state.position)
+        trees = [cKDTree(inside[ids], boxsize=turn) for ids in members]
+        for i, j in pairs:
+            found = trees[i].count_neighbors(trees[j], edges[i, j], cumulative=True)
+            counts[i, j].append(np.diff(found))
+    return tuple(_normalised(log, discs, i, j, edges[i, j], np.array(counts[i, j], float)) for i, j in pairs)
+
+
+def _normalised(
+    log: Log, discs: Composition, i: int, j: int, edges: np.ndarray, counts: np.ndarray
+) -> PairDistribution:
+    """counts: (frames, bins), each pair of like discs twice."""
+    reach = [
+        (side, side) if joined else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
+        for side, joined in zip(log.box, log.joined, strict=True)
+    ]
+    expected = discs.number[i] * (discs.number[j] - (i == j)) * np.diff(_chance(edges, reach, log.joined))
+    g = counts / expected
+    return PairDistribution(
+        discs.name[i], discs.name[j], edges, g.mean(axis=0), g.std(axis=0, ddof=1) / math.sqrt(len(g))
+    )
+
+
+def _chance(r: np.ndarray, reach: list[tuple[float, float]], joined: tuple[bool, bool]) -> np.ndarray:
+    """Probability that two points at random, in rectangles of sides `reach` about one centre, are closer than r."""
+    angle = (np.arange(720) + 0.5) / 720 * math.pi / 2
+    steps = np.linspace(0.0, 1.0, 65)
+    rho = (r[:, None] * steps)[:, :, None]
+    density = np.ones((len(r), len(steps), len(angle)))
+    for (a, b), periodic, component in zip(reach, joined, (np.cos(angle), np.sin(angle)), strict=True):
+        if periodic:
+            density /= a
+        else:
+            density *= np.clip((a + b) / 2 - rho * component, 0.0, min(a, b)) / (a * b)
+    return np.trapezoid(2 * math.pi * rho[:, :, 0] * density.mean(axis=2), r[:, None] * steps, axis=1)

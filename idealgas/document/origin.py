@@ -1,0 +1,43 @@
+"""Where the keys of a scene were written: what turns a fault into a line for people."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from idealgas.document.error import Fault, Key
+from idealgas.document.lines import key_lines
+
+
+@dataclass
+class Origin:
+    """A text, its file's name, the places of overrides by the key they set, and the key of the scene in the text.
+
+    All origins are equal, as they are no part of a scene.
+    """
+
+    text: str = field(default="", compare=False)
+    name: str = field(default="", compare=False)
+    overridden: Mapping[Key, str] = field(default_factory=dict, compare=False)
+    above: Key = field(default=(), compare=False)
+
+    def report(self, faults: Sequence[Fault]) -> list[str]:
+        """One line a fault, in order of the file's lines, those of overrides last."""
+        lines = []
+        for fault in faults:
+            blamed = next((o for key in fault.keys if (o := self._override(key)) is not None), None)
+            line = self.line(fault.keys[0])
+            place = f"{blamed}: " if blamed is not None else f"{self.name}:{line}: " if self.name else ""
+            lines.append((blamed is not None, line, f"{place}{fault}"))
+        return [text for *_, text in sorted(lines, key=lambda item: item[:2])]
+
+    def _override(self, key: Key) -> str | None:
+        return next((o for k, o in self.overridden.items() if key[: len(k)] == k), None)
+
+    def line(self, key: Key) -> int:
+        """Line of the key or of the closest table above it; the first line if there is none."""
+        key = (*self.above, *key)
+        return next((self._lines[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self._lines), 1)
+
+    @cached_property
+    def _lines(self) -> dict[Key, int]:
+        return key_lines(self.text)

@@ -1,0 +1,185 @@
+"""The earliest contact of a disc: with the discs of the cells around it and the wall segments of its own."""
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.engine.event_driven.cells import cell_index
+from idealgas.engine.event_driven.scheduler import NO_CONTACT, images_of, partner_rank, segment_partner
+from idealgas.engine.event_driven.state import copy_image, image_of, note_image
+from idealgas.engine.event_driven.wall_cells import images_to_item
+from idealgas.engine.order import image_precedes, precedes
+from idealgas.physics.disc_disc import contact_time, first_touch
+from idealgas.physics.periodic import NO_IMAGES, images_between
+from idealgas.physics.wall import segment_contact
+
+U = np.uintp
+
+
+@inline
+def place(index, count, joined):
+    """A column or row, and the image it is met in, for an index that may lie beyond joined sides."""
+    if joined:
+        if index < 1:
+            return index + count - 2, -1
+        if index > count - 2:
+            return index - (count - 2), 1
+    return index, 0
+
+
+@inline
+def gather_line(agenda, count, column, row, along_y, periodic):
+    """Put the first discs of three cells in a row or column, from (column, row) on, behind `count` candidates."""
+    cells = agenda.cells
+    stride = cells.columns if along_y else 1
+    cell = row * cells.columns + column
+    for step in range(3):
+        if periodic is not None:
+            c, image_x = place(column + (0 if along_y else step), cells.columns, periodic.x)
+            r, image_y = place(row + (step if along_y else 0), cells.rows, periodic.y)
+            cell = r * cells.columns + c
+            note_image(agenda.images, count, image_x, image_y)
+        j = cells.head[U(cell)]
+        agenda.candidates[U(count)] = j
+        count += 1 if j >= 0 else 0
+        cell += stride
+    return count
+
+
+@inline
+def gather_block(agenda, disc, periodic):
+    """Make the first discs of a disc's own and the eight cells around it the candidates; return how many."""
+    column = np.int64(disc.column) - 1
+    row = np.int64(disc.row) - 1
+    count = gather_line(agenda, 0, column, row, False, periodic)
+    count = gather_line(agenda, count, column, row + 1, False, periodic)
+    return gather_line(agenda, count, column, row + 2, False, periodic)
+
+
+@inline
+def images_to(agenda, k, ids, i, j, periodic):
+    """Box lengths between the records of disc i and candidate k, disc j."""
+    if periodic is not None:
+        return images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
+    return NO_IMAGES
+
+
+@inline
+def store_images(prediction, images, periodic):
+    """Remember how many box lengths away a disc meets its partner."""
+    if periodic is not None:
+        prediction.image_x = images[0]
+        prediction.image_y = images[1]
+
+
+@inline
+def store_contact(agenda, record, ids, i, j, k, time, periodic):
+    """Make disc j, candidate k, the partner of disc i's contact."""
+    prediction = agenda.prediction[U(i)]
+    prediction.contact = time
+    prediction.partner = j
+    prediction.partner_count = record[U(j)].count
+    store_images(prediction, images_to(agenda, k, ids, i, j, periodic), periodic)
+
+
+@inline
+def test_candidates(record, ids, agenda, count, i, now, effects):
+    """Keep disc i's earliest contact among the candidates; the chains behind them are appended on the way.
+
+    The quick loop has no branches; ties and contacts at this very instant are rare and settled by `test_carefully`.
+    """
+    candidates = agenda.candidates
+    disc = record[U(i)]
+    best = agenda.prediction[U(i)].contact
+    partner = -1
+    chosen = -1
+    tied = False
+    k = 0
+    while k < count:
+        j = candidates[U(k)]
+        behind = agenda.cells.link[U(j)].next
+        candidates[U(count)] = behind
+        copy_image(agenda.images, count, k)
+        count += 1 if behind >= 0 else 0
+        images = images_to(agenda, k, ids, i, j, effects.periodic)
+        time = first_touch(disc, record[U(j)], effects.gravity, effects.periodic, images)
+        tied |= time == best
+        hit = time < best
+        best = time if hit else best
+        partner = j if hit else partner
+        chosen = k if hit else chosen
+        k += 1
+    if tied | (best <= now):
+        test_carefully(record, ids, agenda, count, i, effects)
+    elif partner >= 0:
+        store_contact(agenda, record, ids, i, partner, chosen, best, effects.periodic)
+
+
+@njit
+def test_carefully(record, ids, agenda, count, i, effects):
+    """What `test_candidates` is for, with the rules for ties and for collisions that are done."""
+    prediction = agenda.prediction[U(i)]
+    own = np.int64(ids[U(i)])
+    for k in range(count):
+        j = agenda.candidates[U(k)]
+        other = np.int64(ids[U(j)])
+        images = images_to(agenda, k, ids, i, j, effects.periodic)
+        time = contact_time(
+            record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
+        )
+        earlier = time < prediction.contact
+        if time == prediction.contact:
+            earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))
+            if prediction.partner == j:
+                earlier = image_precedes(own, other, images, images_of(prediction))
+        if earlier:
+            store_contact(agenda, record, ids, i, j, k, time, effects.periodic)
+
+
+@inline
+def test_segments(record, ids, agenda, i, segments, effects):
+    """Keep disc i's earliest contact among the wall segments of its cell."""
+    if segments is not None:
+        cell = U(cell_index(agenda.cells, record[U(i)]))
+        prediction = agenda.prediction[U(i)]
+        own = np.int64(ids[U(i)])
+        for entry in range(agenda.walls.start[cell], agenda.walls.start[cell + U(1)]):
+            k = agenda.walls.item[U(entry)]
+            images = images_to_item(agenda.walls, U(entry), ids[U(i)], effects.periodic)
+            time = segment_contact(
+                record[U(i)], own, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
+            )
+            earlier = time < prediction.contact
+            if time == prediction.contact:
+                rank = partner_rank(ids, segment_partner(k))
+                earlier = precedes(own, rank, own, partner_rank(ids, prediction.partner))
+                if prediction.partner == segment_partner(k):
+                    earlier = image_precedes(own, rank, images, images_of(prediction))
+            if earlier:
+                prediction.contact = time
+                prediction.partner = segment_partner(k)
+                store_images(prediction, images, effects.periodic)
+
+
+@inline
+def predict_contact(record, ids, agenda, i, now, effects):
+    """Disc i's earliest contact with any disc of its own and the eight cells around, or a segment of its own."""
+    prediction = agenda.prediction[U(i)]
+    prediction.contact = NO_CONTACT
+    prediction.partner = -1
+    disc = record[U(i)]
+    count = gather_block(agenda, disc, effects.periodic)
+    test_candidates(record, ids, agenda, count, i, now, effects)
+    test_segments(record, ids, agenda, i, effects.segments, effects)
+
+
+@inline
+def extend_contact(record, ids, agenda, i, exit_code, now, effects):
+    """After a step into the next cell: test the three cells that came within reach; the contact so far stays valid."""
+    disc = record[U(i)]
+    forward = 1 if exit_code & 1 else -1
+    along_y = exit_code >= 2
+    column = np.int64(disc.column) + (-1 if along_y else forward)
+    row = np.int64(disc.row) + (forward if along_y else -1)
+    count = gather_line(agenda, 0, column, row, not along_y, effects.periodic)
+    test_candidates(record, ids, agenda, count, i, now, effects)
+    test_segments(record, ids, agenda, i, effects.segments, effects)

@@ -1,0 +1,186 @@
+"""The event-driven method: cells find the neighbours, a tournament tree finds the next event.
+
+Every prediction is a pure function of the records involved, so the trajectory does not depend on cells, schedule or
+batches. The disc that predicted last owns a pair; a contact whose partner has moved on since is stale and re-predicted.
+"""
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.engine.event_driven.cells import Cells, cell_index, cell_of, discs_per_cell, enter, make_cells
+from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
+from idealgas.engine.event_driven.crossings import change_cell, predict_exit
+from idealgas.engine.event_driven.overlap import deepest_overlap
+from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
+from idealgas.engine.event_driven.scheduler import (
+    SIDE_OF_BOX,
+    clear,
+    contact_is_next,
+    images_of,
+    next_disc,
+    schedule,
+    segment_of,
+)
+from idealgas.engine.event_driven.state import make_agenda
+from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
+from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
+from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
+from idealgas.events import EventBatch
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
+
+U = np.uintp
+
+
+@inline
+def predict(record, ids, agenda, i, now, effects):
+    """Everything disc i meets next, entered in the schedule."""
+    predict_contact(record, ids, agenda, i, now, effects)
+    predict_exit(record, ids, agenda, i, now, effects)
+    schedule(agenda.tree, agenda.prediction, ids, i)
+    offer_to_piston(record, ids, agenda, i, effects.piston, effects.gravity)
+
+
+@inline
+def predict_contact_again(record, ids, agenda, i, now, effects):
+    """The partner has moved on: another contact is disc i's, entered in the schedule."""
+    predict_contact(record, ids, agenda, i, now, effects)
+    schedule(agenda.tree, agenda.prediction, ids, i)
+
+
+@inline
+def step_into_next_cell(record, ids, agenda, i, exit_code, now, effects):
+    """Membership changes, the record does not; the contact found so far stays valid."""
+    change_cell(record, ids, agenda, i, exit_code, effects.periodic)
+    extend_contact(record, ids, agenda, i, exit_code, now, effects)
+    predict_exit(record, ids, agenda, i, now, effects)
+    schedule(agenda.tree, agenda.prediction, ids, i)
+
+
+@njit
+def rebuild(record, ids, agenda, effects):
+    """Fill cells, predictions and schedule from records whose column and row are set."""
+    agenda.cells.head[:] = -1
+    for i in range(record.shape[0]):
+        enter(agenda.cells, i, cell_index(agenda.cells, record[U(i)]))
+    clear(agenda.tree.key)
+    predict_piston(record, ids, agenda, effects.piston, effects.gravity)
+    for i in range(record.shape[0]):
+        predict(record, ids, agenda, i, 0.0, effects)
+
+
+@njit
+def advance_events(record, ids, agenda, effects, until, most_events, most_collisions, epoch_start, batch, counters):
+    """Process events up to local time `until`, or to a limit, or until the batch is full.
+
+    Return the number of rows written and whether everything up to `until` has happened.
+
+    batch: None where no log is kept. counters: (1,) COUNTERS, updated.
+    """
+    events = 0
+    collisions = 0
+    crossings = 0
+    stale = 0
+    rows = 0
+    now = counters[0].time
+    still = counters[0].still
+    reached = False
+    capacity = batch_capacity(batch)
+    while events < most_events and collisions < most_collisions and rows < capacity:
+        i = next_disc(agenda.tree)
+        prediction = agenda.prediction[U(i)]
+        at_contact = contact_is_next(prediction, ids, i)
+        time = prediction.contact if at_contact else prediction.exit
+        if time > until:
+            reached = True
+            break
+        other = np.int64(-1)
+        if is_piston(i, ids, effects.piston):
+            i = np.int64(prediction.partner)
+            if not at_contact:
+                resolve_stop(time, effects.piston)
+            if not at_contact or record[U(i)].count != prediction.partner_count:
+                stale += at_contact
+                predict_piston(record, ids, agenda, effects.piston, effects.gravity)
+                continue
+            resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+            predict_piston(record, ids, agenda, effects.piston, effects.gravity)
+            rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
+        elif at_contact and prediction.partner >= 0:
+            other = np.int64(prediction.partner)
+            if record[U(other)].count != prediction.partner_count:
+                stale += 1
+                predict_contact_again(record, ids, agenda, i, time, effects)
+                continue
+            images = images_of(prediction)
+            resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
+            rows += write_pair(batch, rows, epoch_start + time, record, ids, i, other, effects)
+            collisions += 1
+        elif at_contact:
+            wall = segment_of(prediction.partner)
+            at_end = resolve_segment(
+                record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
+            )
+            rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
+        elif prediction.exit_code < SIDE_OF_BOX:
+            crossings += 1
+            step_into_next_cell(record, ids, agenda, i, prediction.exit_code, time, effects)
+            continue
+        else:
+            side = prediction.exit_code - SIDE_OF_BOX
+            resolve_side(record[U(i)], ids[U(i)], side, time, effects)
+            rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
+        while i >= 0:  # both discs at one place: a second would double the machine code
+            predict(record, ids, agenda, i, time, effects)
+            i, other = other, np.int64(-1)
+        events += 1
+        still = check_clock(time, now, still, record.shape[0])
+        now = time
+    add_to_counters(counters[0], events, collisions, crossings, stale, now, still)
+    return rows, reached
+
+
+class EventDriven:
+    """The method as an object: what an epoch needs between its start and its end."""
+
+    homogeneous = False
+    single_epoch = False
+
+    def __init__(self, filling: float | None = None) -> None:
+        """filling: discs per cell, chosen by packing fraction if not given; it changes the speed and nothing else."""
+        self._filling = filling
+        self._walls: tuple[bytes, WallCells] | None = None
+
+    def start(self, gas: Gas, effects: Effects) -> None:
+        """Begin an epoch: put the discs in memory in the order of their cells and predict everything."""
+        filling = self._filling or discs_per_cell(gas.packing_fraction)
+        largest_radius = float(gas.radius.max())
+        cells = make_cells(len(gas), gas.box, largest_radius, filling)
+        column, row = cell_of(gas.position, cells)
+        order = np.argsort(row * cells.columns + column, kind="stable")
+        self.discs = make_discs(gas, order)
+        self.discs.record.column, self.discs.record.row = column[order], row[order]
+        self._effects = effects
+        self._agenda = make_agenda(len(gas), cells, effects, self._wall_cells(effects, cells, largest_radius))
+        rebuild(self.discs.record, self.discs.id, self._agenda, effects)
+
+    def _wall_cells(self, effects: Effects, cells: Cells, largest_radius: float) -> WallCells | None:
+        """Those of the epoch before, unless a gate has opened or closed since: the cells stay as they are."""
+        if effects.segments is None:
+            return None
+        active = effects.segments.active.tobytes()
+        if self._walls is None or self._walls[0] != active:
+            self._walls = active, make_wall_cells(effects.segments, effects.periodic, cells, largest_radius)
+        return self._walls[1]
+
+    def advance(
+        self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    ) -> tuple[int, bool]:
+        """See `advance_events`."""
+        record, ids, _ = self.discs
+        return advance_events(record, ids, self._agenda, self._effects, *limits[:3], epoch_start, batch, counters)
+
+    def deepest_overlap(self) -> float:
+        """Deepest overlap at the start of the epoch; call it before `advance`."""
+        return deepest_overlap(self.discs.record, self._agenda, self._effects.periodic)

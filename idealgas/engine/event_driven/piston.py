@@ -1,0 +1,59 @@
+"""The piston in the schedule: one more leaf, which owns the contacts of all discs with the piston."""
+
+import numpy as np
+
+from idealgas._jit import inline
+from idealgas.engine.event_driven.scheduler import NO_CONTACT, SIDE_OF_BOX, schedule
+from idealgas.engine.order import precedes, wall_rank
+from idealgas.physics.piston import piston_contact, stop_contact
+
+U = np.uintp
+
+
+@inline
+def is_piston(i, ids, piston):
+    """Whether a leaf is the piston's."""
+    if piston is not None:
+        return i == ids.shape[0]
+    return False
+
+
+@inline
+def keep_if_earlier(record, ids, prediction, j, time, side):
+    """Make disc j the piston's next if it is; return whether."""
+    earlier = time < prediction.contact
+    if time == prediction.contact:
+        rank = wall_rank(side)
+        earlier = precedes(np.int64(ids[U(j)]), rank, np.int64(ids[U(prediction.partner)]), rank)
+    if earlier:
+        prediction.contact = time
+        prediction.partner = j
+        prediction.partner_count = record[U(j)].count
+    return earlier
+
+
+@inline
+def predict_piston(record, ids, agenda, piston, gravity):
+    """What the piston meets next, entered in the schedule."""
+    if piston is not None:
+        leaf = ids.shape[0]
+        p = piston[0]
+        prediction = agenda.prediction[U(leaf)]
+        prediction.contact = NO_CONTACT
+        prediction.partner = -1
+        for j in range(leaf):
+            keep_if_earlier(record, ids, prediction, j, piston_contact(record[U(j)], p, gravity), p.side)
+        prediction.exit = stop_contact(p)
+        prediction.exit_code = SIDE_OF_BOX + p.side
+        schedule(agenda.tree, agenda.prediction, ids, leaf)
+
+
+@inline
+def offer_to_piston(record, ids, agenda, i, piston, gravity):
+    """After disc i's record changed: it may now be the piston's next."""
+    if piston is not None:
+        leaf = ids.shape[0]
+        p = piston[0]
+        prediction = agenda.prediction[U(leaf)]
+        if keep_if_earlier(record, ids, prediction, i, piston_contact(record[U(i)], p, gravity), p.side):
+            schedule(agenda.tree, agenda.prediction, ids, leaf)

@@ -1,0 +1,216 @@
+"""The schedule: one entry a disc in an implicit 8-ary tournament tree; its root is the next event.
+
+The keys of a level lie side by side, padded with times after NEVER, and each winner's place stands beside its key.
+An update climbs only while the winner of a group changes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import aligned, inline
+from idealgas.engine.order import precedes, wall_rank
+from idealgas.physics.constants import NEVER
+
+PREDICTION = np.dtype(
+    [
+        ("contact", "f8"),  # time of the best contact with another disc
+        ("exit", "f8"),  # time at which the disc leaves its cell or meets a side of the box
+        ("partner", "i4"),  # place of the other disc, -1 for none, -2 - k for wall segment k
+        (
+            "partner_count",
+            "u4",
+        ),  # the partner's count then: once it has moved on, the contact is stale
+        ("image_x", "i2"),  # box lengths to the other's record or the segment, where sides are periodic
+        ("image_y", "i2"),
+        ("exit_code", "i4"),  # 0-3: into the cell on the left, right, below, above; 4-7: meets that side of the box
+    ],
+    align=True,
+)
+SIDE_OF_BOX = 4
+SEGMENT_WALL = 4  # walls 0-3 are the sides of the box
+
+NO_CONTACT = 0.5 * NEVER  # before NEVER, so that a miss never ties with "none yet"
+NO_CONTACT_KEY = int(np.float64(NO_CONTACT).view(np.int64))
+NEVER_KEY = int(np.float64(NEVER).view(np.int64))
+
+U = np.uintp  # unsigned indices spare the check for negative ones
+
+
+class Tree(NamedTuple):
+    """time, key: (total,) f8 and the same memory as i8; times are not negative, so their bits are ordered as they are.
+
+    winner: (total,) i4, place of the disc that each node's time belongs to. start: (levels,) first node of a level.
+    """
+
+    time: np.ndarray
+    key: np.ndarray
+    winner: np.ndarray
+    start: np.ndarray
+
+
+def make_tree(n: int) -> Tree:
+    """A tree of n leaves, to be cleared before use."""
+    start = [0]
+    nodes = n
+    total = -(-n // 8) * 8
+    while nodes > 1 or len(start) == 1:
+        nodes = -(-nodes // 8)
+        start.append(total)
+        total += -(-nodes // 8) * 8
+    time = aligned(total, np.dtype("f8"))
+    winner = aligned(total, np.dtype("i4"))
+    winner[:n] = np.arange(n)
+    return Tree(time, time.view(np.int64), winner, np.array(start))
+
+
+@inline
+def clear(key):
+    """Schedule nothing; the keys differ, so that nothing ties with the padding."""
+    for node in range(key.shape[0]):
+        key[node] = NEVER_KEY + node
+
+
+@inline
+def segment_partner(segment):
+    """What stands for a wall segment among partners."""
+    return -2 - segment
+
+
+@inline
+def segment_of(partner):
+    """The wall segment that a partner stands for."""
+    return -2 - partner
+
+
+@inline
+def images_of(prediction):
+    """Box lengths between the record and what it meets."""
+    return np.int64(prediction.image_x), np.int64(prediction.image_y)
+
+
+@inline
+def partner_rank(ids, partner):
+    """A partner's place in the order of simultaneous events."""
+    if partner >= 0:
+        return np.int64(ids[U(partner)])
+    return np.int64(wall_rank(SEGMENT_WALL + segment_of(partner)))
+
+
+@inline
+def contact_is_next(prediction, ids, i):
+    """Whether a disc's next event is its contact, not its exit; an exit into a cell precedes all events of its time."""
+    if prediction.contact != prediction.exit:
+        return prediction.contact < prediction.exit
+    if prediction.exit_code < SIDE_OF_BOX or prediction.partner == -1 or i == ids.shape[0]:
+        return False
+    own = np.int64(ids[U(i)])
+    return precedes(own, partner_rank(ids, prediction.partner), own, wall_rank(prediction.exit_code - SIDE_OF_BOX))
+
+
+@inline
+def event_ids(prediction, ids, i):
+    """The two ids by which the disc's next event is ordered among simultaneous ones.
+
+    The last leaf, beyond the discs, is the piston's: its contact is a hit of its side, its exit the end stop.
+    """
+    contact = contact_is_next(prediction, ids, i)
+    side = np.int64(wall_rank(prediction.exit_code - SIDE_OF_BOX))
+    if i == ids.shape[0]:
+        return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), np.int64(-1))
+    own = np.int64(ids[U(i)])
+    if contact:
+        return own, partner_rank(ids, prediction.partner)
+    if prediction.exit_code < SIDE_OF_BOX:
+        return np.int64(-1), own
+    return own, side
+
+
+@inline
+def first_of_tied(tree, group, key, predictions, ids):
+    """The node, of those in a group that share the earliest time, whose event comes first."""
+    best = -1
+    for node in range(group, group + 8):
+        if tree.key[node] == key:
+            i = np.int64(tree.winner[node])
+            if best < 0:
+                best = node
+                a, b = event_ids(predictions[i], ids, i)
+            else:
+                c, d = event_ids(predictions[i], ids, i)
+                if precedes(c, d, a, b):
+                    best, a, b = node, c, d
+    return best
+
+
+@inline
+def first_of_eight(tree, group, predictions, ids):
+    """Earliest key of a group of nodes and the node that has it."""
+    key = tree.key
+    k0 = key[U(group)]
+    k1 = key[U(group + 1)]
+    k2 = key[U(group + 2)]
+    k3 = key[U(group + 3)]
+    k4 = key[U(group + 4)]
+    k5 = key[U(group + 5)]
+    k6 = key[U(group + 6)]
+    k7 = key[U(group + 7)]
+    n0 = 1 if k1 < k0 else 0
+    n1 = 3 if k3 < k2 else 2
+    n2 = 5 if k5 < k4 else 4
+    n3 = 7 if k7 < k6 else 6
+    tied = (k0 == k1) | (k2 == k3) | (k4 == k5) | (k6 == k7)
+    k0 = min(k0, k1)
+    k2 = min(k2, k3)
+    k4 = min(k4, k5)
+    k6 = min(k6, k7)
+    n0 = n1 if k2 < k0 else n0
+    n2 = n3 if k6 < k4 else n2
+    tied |= (k0 == k2) | (k4 == k6)
+    k0 = min(k0, k2)
+    k4 = min(k4, k6)
+    node = group + (n2 if k4 < k0 else n0)
+    tied |= k0 == k4
+    earliest = min(k0, k4)
+    if tied and earliest < NO_CONTACT_KEY:
+        node = first_of_tied(tree, group, earliest, predictions, ids)
+    return earliest, node
+
+
+@inline
+def schedule(tree, predictions, ids, i):
+    """Enter disc i's next time.
+
+    A group whose winner is another node needs no search: either the changed node beats it or nothing changes.
+    """
+    _, key, winner, start = tree
+    prediction = predictions[U(i)]
+    tree.time[U(i)] = min(prediction.contact, prediction.exit)
+    earliest = key[U(i)]
+    first = np.int64(i)
+    node = np.int64(i)
+    base = 0
+    shift = 0
+    for level in range(1, start.shape[0]):
+        group = node & ~7
+        place = (node - base) >> 3
+        base = start[U(level)]
+        parent = base + place
+        if winner[U(parent)] >> shift != i >> shift and earliest != key[U(parent)]:
+            if earliest > key[U(parent)]:
+                return
+        else:
+            earliest, best = first_of_eight(tree, group, predictions, ids)
+            first = np.int64(winner[U(best)])
+            if key[U(parent)] == earliest and winner[U(parent)] == first and first != i:
+                return
+        key[U(parent)] = earliest
+        winner[U(parent)] = first
+        node = parent
+        shift += 3
+
+
+@inline
+def next_disc(tree):
+    """Place of the disc whose event is next."""
+    return np.int64(tree.winner[U(tree.start[U(tree.start.shape[0] - 1)])])

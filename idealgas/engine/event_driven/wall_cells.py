@@ -1,0 +1,63 @@
+"""Which wall segments a disc may touch while its centre is in a cell."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import inline
+from idealgas.engine.event_driven.cells import Cells
+from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, joined_axes
+
+
+class WallCells(NamedTuple):
+    """The segments of cell c are item[start[c] : start[c + 1]]; both i4. image: (…, 2) i4, box lengths that each
+    stands away from its place, as seen from the cell.
+    """
+
+    start: np.ndarray
+    item: np.ndarray
+    image: np.ndarray
+
+
+def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
+    """Every active segment, in every cell of which some point is within the largest radius of it or nearly so."""
+    reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
+    across, along = (range(-1, 2) if joined else (0,) for joined in joined_axes(periodic))
+    cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
+    for k in np.flatnonzero(segments.active):
+        for image in ((x, y) for x in across for y in along):
+            found = _cells_near(segments[k], image, cells, reach)
+            cell_parts.append(found)
+            item_parts.append(np.full((len(found), 3), (k, *image), np.int32))
+    cell, item = np.concatenate(cell_parts), np.concatenate(item_parts)
+    order = np.argsort(cell, kind="stable")
+    start = np.searchsorted(cell[order], np.arange(cells.columns * cells.rows + 1))
+    return WallCells(
+        start.astype(np.int32), np.ascontiguousarray(item[order, 0]), np.ascontiguousarray(item[order, 1:])
+    )
+
+
+@inline
+def images_to_item(walls, entry, own, periodic):
+    """Box lengths between a disc's record and an entry of its cell."""
+    if periodic is not None:
+        return images_to_wall(periodic, own, (walls.image[entry, 0], walls.image[entry, 1]))
+    return NO_IMAGES
+
+
+def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
+    """Indices of the cells whose centre is near enough to an image of a segment for a corner to be within reach."""
+    start = np.array([segment.x + image[0] * cells.Lx, segment.y + image[1] * cells.Ly])
+    tangent = np.array([segment.tx, segment.ty])
+    length = segment.length
+    size = np.array([cells.width, cells.height])
+    last = np.array([cells.columns, cells.rows]) - 2
+    ends = np.array([start, start + length * tangent])
+    low = np.clip(np.floor((ends.min(axis=0) - reach) / size).astype(int) + 1, 1, last)
+    high = np.clip(np.floor((ends.max(axis=0) + reach) / size).astype(int) + 1, 1, last)
+    column, row = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
+    centre = (np.stack((column, row), axis=-1) - 0.5) * size - start
+    along = np.clip(centre @ tangent, 0.0, length)
+    distance = np.hypot(*np.moveaxis(centre - along[..., None] * tangent, -1, 0))
+    near = distance <= reach + 0.5 * np.hypot(*size)
+    return (row[near] * cells.columns + column[near]).ravel()

@@ -1,0 +1,114 @@
+"""A scene's discs as arrays: the one place for their dtypes and shapes."""
+
+import numpy as np
+
+from idealgas.document.error import Fault
+from idealgas.gas.contacts import resting_faults
+from idealgas.gas.state import Gas
+from idealgas.scene import Scene, SceneError, Species
+from idealgas.scene.geometry import room
+
+
+def make_gas(scene: Scene) -> Gas:
+    """Discs of a scene at time 0: the explicit ones have the first ids, then each species in the order of the file.
+
+    Every species of the gas has one radius and one mass: explicit discs are the species "disc", or, if they differ,
+    "disc 1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or rest where gravity or
+    a piston presses them.
+    """
+    kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
+    count = [len(scene.disc), *(s.count for s in scene.species)]
+    radius = np.repeat([s.radius for s in scene.species], count[1:])
+    mass = np.repeat([s.mass for s in scene.species], count[1:])
+    explicit = np.array([kinds.index((disc.radius, disc.mass)) for disc in scene.disc], np.uint16)
+    names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
+    radius = np.concatenate(([disc.radius for disc in scene.disc], radius))
+    gas = Gas(
+        box=scene.box.size,
+        position=_positions(scene, radius),
+        velocity=np.concatenate(
+            [
+                np.array([disc.velocity for disc in scene.disc]).reshape(-1, 2),
+                *(_velocities(s, stream(scene.scene.seed, f"velocities {s.name}")) for s in scene.species),
+            ]
+        ),
+        radius=radius,
+        mass=np.concatenate(([disc.mass for disc in scene.disc], mass)),
+        species=np.concatenate(
+            (explicit, np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count[1:]))
+        ),
+        species_names=(*names, *(s.name for s in scene.species)),
+    )
+    if faults := list(resting_faults(scene, gas)):
+        raise SceneError(scene.report(faults))
+    return gas
+
+
+def stream(seed: int, use: str) -> np.random.Generator:
+    """Random numbers for one use, the same whatever else the scene asks for."""
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))
+
+
+def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
+    """(count, 2). With a temperature: no total momentum (if there are two discs or more) and energy count * T."""
+    n = species.count
+    if species.velocities is not None:
+        return np.array(species.velocities)
+    if species.speed is not None:
+        angle = 2 * np.pi * random.random(n)
+        return species.speed * np.column_stack((np.cos(angle), np.sin(angle)))
+    velocity = random.standard_normal((n, 2))
+    if n > 1:
+        velocity -= velocity.mean(axis=0)
+    mean_square = (velocity**2).sum() / n
+    return velocity * np.sqrt(2 * (species.temperature or 0.0) / (species.mass * mean_square))
+
+
+def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
+    """(N, 2): explicit discs, then lattices, one for all species of the same region, then discs at random."""
+    from idealgas.gas import placement  # compiled code, which a reader of logs does not need
+
+    box = scene.box
+    space = room(box, scene.piston)
+    walls = np.array([(*w.start, *w.end) for w in scene.wall if w.there_at_start]).reshape(-1, 4)
+    bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
+    grid = placement.make_grid(box.size, radius, box.joined, walls)
+    random = stream(scene.scene.seed, "placement")
+    ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
+    if scene.disc:
+        position[ids[0]] = [disc.position for disc in scene.disc]
+        placement.insert(grid, position, radius, ids[0])
+    lattices: dict[tuple[float, ...], list[int]] = {}
+    at_random: list[int] = []
+    for k, s in enumerate(scene.species):
+        x0, y0, x1, y1 = region = s.region or space
+        bounds[ids[k + 1]] = x0 + s.radius, y0 + s.radius, x1 - s.radius, y1 - s.radius
+        if s.placement == "lattice":
+            lattices.setdefault(region, []).append(k)
+        else:
+            at_random.append(k)
+            for axis in (a for a in range(2) if box.joined[a] and s.region is None):
+                bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
+    for members in lattices.values():
+        chosen = np.concatenate([ids[k + 1] for k in members])
+        if len(members) > 1:
+            random.shuffle(chosen)
+        largest = bounds[chosen[radius[chosen].argmax()]]
+        if not placement.insert_on_lattice(grid, position, radius, largest, chosen):
+            raise _no_room(
+                scene, members[0], "on a lattice", f"{len(chosen)} discs", "fewer or smaller discs, or more room"
+            )
+    if at_random:
+        chosen = np.concatenate([ids[k + 1] for k in sorted(at_random, key=lambda k: -scene.species[k].radius)])
+        patience = max(placement.PATIENCE * len(chosen), placement.LEAST_PATIENCE)
+        placed = placement.insert_randomly(grid, position, radius, bounds, chosen, random, patience)
+        if placed < len(chosen):
+            k = next(k for k in at_random if chosen[placed] in ids[k + 1])
+            got = f"{len(chosen)} discs, {placed} placed"
+            raise _no_room(scene, k, "at random", got, 'fewer or smaller discs, or placement = "lattice"')
+    return position
+
+
+def _no_room(scene: Scene, species: int, how: str, got: str, allowed: str) -> SceneError:
+    keys = (*(("species", species, key) for key in ("count", "radius", "region")), ("box", "size"))
+    return SceneError(scene.report([Fault(keys, f"no room for all discs {how}", got, allowed)]))

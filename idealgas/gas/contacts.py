@@ -1,0 +1,66 @@
+"""Discs at rest on what they are pressed to: they would collide for ever at one instant.
+
+Only a disc that touches exactly, and has no velocity along the normal, is at rest; any other flies or bounces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.document.error import Fault, Key
+from idealgas.scene import Scene
+from idealgas.scene.tables.box import SIDES
+
+if TYPE_CHECKING:
+    from idealgas.gas.state import Gas
+
+
+def resting_faults(scene: Scene, gas: Gas) -> Iterator[Fault]:
+    """A fault for each explicit disc, and each species, of which something rests on a side, a wall or the piston."""
+    blamed = set()
+    for name, resting in _supports(scene, gas):
+        for i in np.flatnonzero(resting):
+            key = _key_of(scene, gas, int(i))
+            if key not in blamed:
+                blamed.add(key)
+                got = f"disc {i} in contact, without a velocity along the normal"
+                yield Fault((key,), f"at rest on {name}, to which it is pressed", got, "a gap or a velocity")
+
+
+def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
+    """Name of each thing that something may be pressed to, and the mask (N,) of the discs that rest on it."""
+    pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
+    for side, name in enumerate(SIDES):
+        axis, upper = divmod(side, 2)
+        inward = -1.0 if upper else 1.0
+        if pull[axis] * inward < 0 and not (scene.piston and scene.piston.side == name):
+            place = gas.position[:, axis]
+            touches = place >= gas.box[axis] - gas.radius if upper else place <= gas.radius
+            yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
+    if pull.any():
+        for k, wall in enumerate(scene.wall):
+            if wall.there_at_start:
+                start, along = np.array(wall.start), np.array(wall.end) - wall.start
+                share = np.clip((gas.position - start) @ along / (along @ along), 0.0, 1.0)
+                normal = gas.position - start - share[:, None] * along
+                touches = (normal**2).sum(axis=1) <= gas.radius**2
+                yield f"wall {k}", touches & (normal @ pull < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
+    if scene.piston:
+        piston = scene.piston
+        gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
+        pressed = piston.outward * (piston.acceleration(gas.box, scene.gravity) - pull[piston.axis]) < 0
+        resting = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
+        yield "the piston", resting & pressed
+
+
+def _key_of(scene: Scene, gas: Gas, i: int) -> Key:
+    """The key that says how disc i moves."""
+    if i < len(scene.disc):
+        return "disc", i, "velocity"
+    names = [s.name for s in scene.species]
+    k = names.index(gas.species_names[gas.species[i]])
+    motion = next(key for key in ("temperature", "speed", "velocities") if getattr(scene.species[k], key) is not None)
+    return "species", k, motion

@@ -1,0 +1,76 @@
+"""Logs as files that other programs read: tables of events or discs, and frames of all discs."""
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.log.errors import LogError, check_output, give_name, storage_error
+from idealgas.log.export import frames, tables
+from idealgas.log.reader import Log
+
+
+class Format(NamedTuple):
+    """A kind of file. write_events is None where it can only hold frames; both write to a path and count."""
+
+    ending: str
+    write_frames: Callable[[Log, Sequence[float], Path], int]
+    write_events: Callable[[Log, Path], int] | None = None
+
+
+FORMATS = {
+    "csv": Format(".csv", tables.write_csv_frames, tables.write_csv_events),
+    "parquet": Format(".parquet", tables.write_parquet_frames, tables.write_parquet_events),
+    "gsd": Format(".gsd", frames.write_gsd),
+    "extxyz": Format(".extxyz", frames.write_extxyz),
+    "h5md3d": Format(".h5md", frames.write_h5md3d),
+}
+
+
+def export(
+    log: Log, kind: str, output: str | os.PathLike[str], times: Sequence[float] | None = None, force: bool = False
+) -> int:
+    """Write the states at some times, or without `times` all events, to a file of one of FORMATS.
+
+    The file appears when it is whole; an existing one is replaced only with `force`. Returns the number of frames or
+    event rows. Raises LogError for what this kind of file or this log does not have, or when a package is missing.
+    """
+    path, written = Path(output), FORMATS[kind]
+    check_output(path, force)
+    if times is None and written.write_events is None:
+        raise LogError(f"{kind} has no room for events (allowed frames; events go into csv or parquet)")
+    if times is None and not log.has_events:
+        raise LogError(f"{log.path}: has no events (made with log.events = false)")
+    if times is not None and kind not in ("csv", "parquet") and not log.has_positions:
+        raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        if times is not None:
+            number = written.write_frames(log, times, part)
+        else:
+            assert written.write_events is not None
+            number = written.write_events(log, part)
+        give_name(part, path, force, fsync=False)
+    except ModuleNotFoundError as error:
+        raise LogError(f"{kind} needs {error.name}: pip install 'idealgas[export]'") from error
+    except OSError as error:
+        raise storage_error(path, error) from error
+    finally:
+        part.unlink(missing_ok=True)
+    return number
+
+
+def frame_times(log: Log, choice: str) -> np.ndarray:
+    """Times of frames: `N` of them from the start to the end of the log, or `every=DT`. LogError for anything else."""
+    every, equals, text = choice.rpartition("=")
+    start, end = log.start_time, log.end_time
+    try:
+        if equals and every == "every" and 0 < (step := float(text)) < np.inf:
+            return start + step * np.arange(int((end - start) / step) + 1)
+        if not equals and (number := int(text)) > 0:
+            return np.linspace(start, end, number)
+    except (ValueError, OverflowError, MemoryError):
+        pass
+    raise LogError(f"no choice of frames (got {choice}; allowed a number of them, or every=DT with a time > 0)")

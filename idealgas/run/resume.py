@@ -1,0 +1,125 @@
+"""Going on with a log from its last checkpoint, to what one run without a break would have written."""
+
+import os
+from collections.abc import Callable, Sequence
+
+from idealgas._jit import compile_timer
+from idealgas.document.dump import dump_document
+from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
+from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
+from idealgas.run.effects import make_effects
+from idealgas.run.energy import energy_of
+from idealgas.run.layout import restore
+from idealgas.run.simulate import TOTALS, LoggedRun, Past, Progress, Summary, batch_maker, method_of, stop_of
+from idealgas.scene import Scene, parse_scene
+
+TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
+
+STOP_RULES = ("until", "events", "collisions_per_disc", "trials")
+"""Keys of [run] that say where it ends: all that may change when a log is gone on with."""
+
+
+def resume(
+    path: str | os.PathLike[str],
+    overrides: Sequence[str] = (),
+    *,
+    command: str = "",
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+    interrupted: Callable[[], bool] = lambda: False,
+) -> Summary:
+    """Go on with a log from its last checkpoint, to a log that is bit for bit that of a run without a break.
+
+    overrides: `run.until=...` and the other STOP_RULES, to end later than the log's scene says. A log that is at its
+    end stays as it is. Raises SceneError for a wrong override; LogError if another process writes the log, if the
+    program or a change of the scene would make it go on otherwise than it began, or if it goes beyond the end asked
+    for.
+    """
+    with compile_timer() as compilation:
+        with open_log(path) as log:
+            if log.live:
+                raise LogError(f"{log.path}: another process has this file open")
+            scene = _scene_to_go_on_with(log, overrides)
+            if log.complete and scene == log.scene:
+                return Summary(**log.summary)
+            last = log.checkpoints[-1] if len(log.checkpoints) else None
+            _check_end(log, last, stop_of(scene, len(log.discs)))
+            _check_laws(log, last, _simulation_at(log, last, scene))
+            simulation = _simulation_at(log, last, scene)
+            past = _past_of(log, last, scene)
+        with LogWriter.resume(
+            path,
+            None if last is None else -1,
+            fsync=scene.log.fsync,
+            make_batch=batch_maker(simulation.effects, simulation.method),
+            scene_text=dump_document(scene),
+            command=command,
+        ) as writer:
+            return LoggedRun(scene, simulation, writer, past, compilation).to_the_end(on_progress, interrupted)
+
+
+def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
+    if (made_with := log.attributes.get("trajectory")) != TRAJECTORY:
+        versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
+        raise LogError(f"{log.path}: cannot be resumed: {versions}")
+    scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides)
+    run = log.scene.run.model_copy(update={rule: getattr(scene.run, rule) for rule in STOP_RULES})
+    expected = log.scene.model_copy(update={"run": run})
+    changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]
+    if changed:
+        tables = " and ".join(f"[{name}]" for name in changed)
+        raise LogError(f"{log.path}: cannot be resumed with another {tables}: only {', '.join(STOP_RULES)} may change")
+    return scene
+
+
+def _check_end(log: Log, last: Checkpoint | None, stop: Stop) -> None:
+    """Raise LogError where a run would have to end before the log does."""
+    if last is None:
+        return
+    end_time = log.end_time if log.complete else last.time
+    counts = log.summary if log.complete else last.values
+    events, collisions, trials = (int(counts[name]) for name in ("events", "disc_collisions", "trials"))
+    if end_time > stop.time or events >= stop.events or collisions >= stop.disc_collisions or trials >= stop.trials:
+        so_far = f"t = {end_time:g}, {events} events"
+        raise LogError(f"{log.path}: goes on to {so_far} already, not before the end that is asked for")
+
+
+def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Simulation:
+    """The simulation of a scene as it was at a checkpoint, or at its start."""
+    start = log.discs
+    effects = make_effects(scene, start)
+    method = method_of(scene, start)
+    if checkpoint is None:
+        return Simulation(start, method, effects)
+    gas = restore(start, effects, checkpoint)
+    totals = Totals(**{column.name: int(checkpoint.values[column.name]) for column in TOTALS})
+    return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, totals)
+
+
+def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
+    """Raise LogError unless the discs go on from the last checkpoint as they did."""
+    first = 0 if last is None else last.row
+    batch = batch_maker(simulation.effects, simulation.method)(TRIAL_ROWS + 2)
+    rows = min(simulation.advance(Stop(), batch, TRIAL_ROWS), len(log) - first)
+    for stored in log.chunks(None, first, first + rows):
+        again, batch = batch.rows(0, len(stored.time)), batch.rows(len(stored.time), TRIAL_ROWS + 2)
+        for name in log.columns:
+            differs = (getattr(again, name) != getattr(stored, name)).reshape(len(stored.time), -1).any(axis=1)
+            if differs.any():
+                row = first + int(differs.argmax())
+                why = f"{name} in event row {row} comes out differently with this program on this machine"
+                raise LogError(f"{log.path}: cannot be resumed: {why}")
+        first += len(stored.time)
+
+
+def _past_of(log: Log, last: Checkpoint | None, scene: Scene) -> Past:
+    if last is None:
+        return Past(energy_of(log.discs, make_effects(scene, log.discs)))
+    effects = make_effects(scene, log.discs)
+    gas = restore(log.discs, effects, log.checkpoints[0])
+    deepest = {
+        name: float(values[times <= last.time].max())
+        for name, (times, values) in log.observables.items()
+        if name in ("overlap", "outside")
+    }
+    snapshots = int(log.snapshot_times.searchsorted(last.time, "right"))
+    return Past(energy_of(gas, effects), **deepest, snapshots=snapshots, begun=True)

@@ -1,0 +1,293 @@
+"""From a scene to a run: the discs, the method, the log, and where it stops."""
+
+import math
+import os
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.core.event import TimingListener
+
+from idealgas._jit import compile_timer
+from idealgas.document.dump import dump_document
+from idealgas.engine.audit import Audit
+from idealgas.engine.methods import make_method
+from idealgas.engine.records import LATEST
+from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
+from idealgas.events import BLOCK, empty_batch
+from idealgas.gas.build import make_gas
+from idealgas.gas.state import Gas
+from idealgas.log import Column, LogWriter
+from idealgas.physics.effects import Effects
+from idealgas.run.effects import make_effects
+from idealgas.run.energy import Energy, energy_of, is_conserved
+from idealgas.run.layout import (
+    boundary_of,
+    by_name,
+    disc_constants,
+    disc_state,
+    event_columns,
+    observed,
+    snapshot_state,
+    walls_of,
+    whole_state,
+)
+from idealgas.scene import Scene
+from idealgas.scene.defaults import reference_speed
+
+SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
+
+TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
+OBSERVABLES = (
+    Column("kinetic_energy", "f8", unit="energy"),
+    Column("momentum", "f8", (2,), "mass length/time"),
+    Column("overlap", "f8"),
+    Column("outside", "f8"),
+    *TOTALS,
+)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run came to.
+
+    completed: whether it reached its end. end_time: time. trials: of pairs, by Monte Carlo. energy_change: of the
+    discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
+    discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
+    starts of epochs and at the end; in time steps the overlap is that of any collision, each of which has one).
+    seconds: wall time, start-up and compilation not counted.
+    """
+
+    completed: bool
+    end_time: float
+    events: int
+    disc_collisions: int
+    wall_hits: int
+    trials: int
+    rows: int
+    epochs: int
+    energy_change: float
+    energy_drift: float | None
+    deepest_overlap: float
+    farthest_outside: float
+    seconds: float
+    compile_seconds: float
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run is. share: of the way to its end, 0 to 1. time: simulated time of the last event. events: so far."""
+
+    share: float
+    time: float
+    events: int
+
+
+def stop_of(scene: Scene, n: int) -> Stop:
+    """Where the scene of n discs ends."""
+    run = scene.run
+    stop = Stop()
+    if run.until is not None:
+        stop = stop._replace(time=run.until)
+    if run.events is not None:
+        stop = stop._replace(events=run.events)
+    if run.collisions_per_disc is not None:
+        stop = stop._replace(disc_collisions=math.ceil(run.collisions_per_disc * n / 2))
+    if run.trials is not None:
+        stop = stop._replace(trials=run.trials)
+    return stop
+
+
+def method_of(scene: Scene, start: Gas) -> Method:
+    """The method a scene calls for; start: its discs at time 0."""
+    run = scene.run
+    return make_method(
+        run.method,
+        precision=run.precision or "float64",
+        dt=run.dt,
+        v_ref=reference_speed(run, float(np.hypot(*start.velocity.T).max())),
+        seed=scene.scene.seed,
+        one_sided=run.impact == "one_sided",
+    )
+
+
+def simulate(
+    scene: Scene,
+    path: str | os.PathLike[str],
+    *,
+    force: bool = False,
+    command: str = "",
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+    interrupted: Callable[[], bool] = lambda: False,
+) -> Summary:
+    """Run a scene and write its log.
+
+    force: replace an existing file. command: stored in the log. interrupted: asked several times a second; once true,
+    the run ends at its last event, with a readable log. Raises SceneError if the discs do not fit, LogError if the log
+    cannot be written.
+    """
+    with compile_timer() as compilation:
+        gas = make_gas(scene)
+        effects = make_effects(scene, gas)
+        method = method_of(scene, gas)
+        with LogWriter(
+            path,
+            gas,
+            scene_text=dump_document(scene),
+            seed=scene.scene.seed,
+            command=command,
+            trajectory=TRAJECTORY,
+            walls=walls_of(scene),
+            boundary=boundary_of(scene),
+            gravity=scene.gravity.acceleration if scene.gravity else (0.0, 0.0),
+            events=scene.log.events,
+            compression=scene.log.compression,
+            fsync=scene.log.fsync,
+            force=force,
+            disc_columns=disc_constants(effects),
+            event_columns=event_columns(effects, method.homogeneous),
+            make_batch=batch_maker(effects, method),
+            checkpoint_arrays=tuple(disc_state(gas, effects, method.homogeneous)),
+            checkpoint_values=(*TOTALS, *whole_state(effects)),
+            observables=(*OBSERVABLES, *observed(gas, effects)),
+            snapshot_arrays=tuple(snapshot_state(gas, effects, method.homogeneous)) if scene.log.snapshot_every else (),
+            most_rows=2 * (scene.run.events or BLOCK),
+        ) as log:
+            run = LoggedRun(scene, Simulation(gas, method, effects), log, Past(energy_of(gas, effects)), compilation)
+            return run.to_the_end(on_progress, interrupted)
+
+
+def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
+    """`empty_batch` for a run with these effects by this method."""
+    return partial(
+        empty_batch,
+        rotating=effects.rotation is not None,
+        periodic=effects.periodic is not None,
+        homogeneous=method.homogeneous,
+    )
+
+
+class Past(NamedTuple):
+    """What a run has behind it: energy at time 0, largest overlap and reach outside, snapshots, whether it began."""
+
+    start_energy: Energy
+    overlap: float = 0.0
+    outside: float = 0.0
+    snapshots: int = 0
+    begun: bool = False
+
+
+class LoggedRun:
+    """A simulation and its log on the way to a stop."""
+
+    def __init__(
+        self, scene: Scene, simulation: Simulation, log: LogWriter, past: Past, compilation: TimingListener
+    ) -> None:
+        self._scene = scene
+        self._simulation = simulation
+        self._log = log
+        self._compilation = compilation
+        self._stop = stop_of(scene, len(simulation.gas))
+        self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
+
+    def to_the_end(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
+        simulation, stop = self._simulation, self._stop
+        if not self._begun:
+            if self._scene.log.snapshot_every:
+                self._snapshot()
+            self._checkpoint()
+        self._slice(0)  # compiles, before the clock starts
+        started = time.perf_counter()
+        slice_events = 4096
+        while not simulation.finished(stop):
+            before = time.perf_counter()
+            self._slice(slice_events)
+            if simulation.paused:
+                self._snapshot()
+            if simulation.epoch_over and not simulation.finished(stop):
+                simulation.next_epoch()
+                self._checkpoint()
+            on_progress(self._progress())
+            if interrupted():
+                break
+            taken = time.perf_counter() - before
+            if taken < SHORTEST_SLICE and not simulation.paused:
+                slice_events *= 2
+            elif taken > LONGEST_SLICE:
+                slice_events = max(slice_events // 2, 1)
+        summary = self._finish(time.perf_counter() - started)
+        self._log.close(asdict(summary) if summary.completed else None)
+        return summary
+
+    def _slice(self, events: int) -> None:
+        """Advance by at most so many events and hand their rows to the log."""
+        if not self._scene.log.events:
+            self._simulation.advance(self._stop, None, events, self._next_snapshot)
+            return
+        batch = self._log.batch()
+        rows = self._simulation.advance(self._stop, batch, events, self._next_snapshot)
+        self._log.write(rows)
+
+    @property
+    def _next_snapshot(self) -> float:
+        every = self._scene.log.snapshot_every
+        return self._snapshots * every if every else LATEST
+
+    def _snapshot(self) -> None:
+        """Store a copy of the discs as they are now, and a sample, unless the epoch that begins here gives one."""
+        simulation, time = self._simulation, self._next_snapshot
+        gas, effects = simulation.state_now()
+        state = by_name(snapshot_state(gas, effects, simulation.method.homogeneous))
+        if time > simulation.time and not simulation.epoch_over:
+            self._observe(time, gas, simulation.audit_of(gas))
+        self._log.snapshot(time, self._snapshots, state)
+        self._snapshots += 1
+
+    def _checkpoint(self) -> None:
+        """At the start of an epoch: audit, and store the state from which everything else can be rebuilt."""
+        simulation = self._simulation
+        self._observe(simulation.time, simulation.gas, simulation.audit())
+        if simulation.epoch % self._scene.log.checkpoint_every == 0:
+            state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.homogeneous))
+            values = asdict(simulation.totals) | by_name(whole_state(simulation.effects))
+            self._log.checkpoint(simulation.time, simulation.epoch, state, values)
+
+    def _observe(self, time: float, gas: Gas, audit: Audit) -> None:
+        self._overlap = max(self._overlap, audit.overlap)
+        self._outside = max(self._outside, audit.outside)
+        simulation = self._simulation
+        sample = by_name(observed(gas, simulation.effects, time - simulation.time))
+        self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.so_far) | sample)
+
+    def _finish(self, seconds: float) -> Summary:
+        """Audit the state at the end; the run may be continued from its last checkpoint as if it had not ended."""
+        simulation, stop = self._simulation, self._stop
+        ended_by_time = simulation.epoch_over and stop.time < LATEST
+        end_time = stop.time if ended_by_time else simulation.last_event_time
+        gas = simulation.gas_now()
+        self._observe(end_time, gas, simulation.audit_of(gas))
+        start, end = self._start_energy, energy_of(gas, simulation.effects, end_time - simulation.time)
+        drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
+        totals = simulation.so_far
+        return Summary(
+            completed=simulation.finished(stop),
+            end_time=end_time,
+            **asdict(totals),
+            rows=2 * totals.disc_collisions + totals.wall_hits,
+            epochs=simulation.epoch + 1,
+            energy_change=end.gas - start.gas,
+            energy_drift=drift if is_conserved(simulation.effects) else None,
+            deepest_overlap=self._overlap,
+            farthest_outside=self._outside,
+            seconds=seconds,
+            compile_seconds=self._compilation.duration if self._compilation.done else 0.0,
+        )
+
+    def _progress(self) -> Progress:
+        done, stop = self._simulation.so_far, self._stop
+        now = self._simulation.last_event_time
+        counted = (done.events / stop.events, done.disc_collisions / stop.disc_collisions, done.trials / stop.trials)
+        return Progress(max(now / stop.time, *counted), now, done.events)

@@ -1,0 +1,149 @@
+"""Whether the discs fit into the box and move; nothing here makes an array."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
+from typing import TYPE_CHECKING
+
+from idealgas.document.error import Fault, Key
+from idealgas.document.table import Rectangle
+from idealgas.scene.checks.piston import CLOSE_PACKING
+from idealgas.scene.geometry import images
+
+if TYPE_CHECKING:
+    from idealgas.scene.tables.box import Box
+    from idealgas.scene.tables.discs import Disc, Species
+
+RANDOM_PACKING = 0.65
+"""Packing fraction up to which discs are placed at random; see `idealgas.gas.placement`."""
+
+RESOLUTION = 1e-9
+"""Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""
+
+
+def species_faults(kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
+    first: dict[str, int] = {}
+    for i, s in kinds:
+        if s.name == "disc":
+            yield Fault((("species", i, "name"),), "name taken by the [[disc]] tables", '"disc"', "any other word")
+        elif first.setdefault(s.name, i) != i:
+            yield Fault((("species", i, "name"),), "second species of this name", f'"{s.name}"', "a name of its own")
+        given = [key for key in ("temperature", "speed", "velocities") if getattr(s, key) is not None]
+        if len(given) != 1:
+            keys = (("species", i), *(("species", i, key) for key in given))
+            what = "more than one motion" if given else "no motion"
+            yield Fault(
+                keys, what, " and ".join(given) or "nothing", "exactly one of temperature, speed and velocities"
+            )
+        if s.velocities is not None and len(s.velocities) != s.count:
+            keys = (("species", i, "velocities"), ("species", i, "count"))
+            yield Fault(keys, "not one velocity for each disc", str(len(s.velocities)), f"{s.count}, as count says")
+
+
+def overlap_faults(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Fault]:
+    """Explicit discs that overlap an earlier one, found by a sweep along x over the discs and their images."""
+    seen: set[tuple[int, int]] = set()
+    active: list[tuple[int, Disc, float, float]] = []
+    placed = [(i, d, x, y) for i, d in discs for x, y in images(d.position, d.radius, box)]
+    for i, d, x, y in sorted(placed, key=lambda item: item[2] - item[1].radius):
+        active = [item for item in active if item[2] + item[1].radius > x - d.radius]
+        for k, a, a_x, a_y in active:
+            dx, dy, contact = a_x - x, a_y - y, a.radius + d.radius
+            low, high = sorted((i, k))
+            if dx * dx + dy * dy < contact * contact and low != high and (low, high) not in seen:
+                seen.add((low, high))
+                keys: tuple[Key, ...] = tuple(("disc", n, key) for key in ("position", "radius") for n in (high, low))
+                distance = f"a distance of {math.hypot(dx, dy)} between centres"
+                yield Fault(keys, f"overlaps disc {low}", distance, f">= {contact}, the sum of the radii")
+        active.append((i, d, x, y))
+
+
+def room_faults(
+    box: Box,
+    space: Rectangle,
+    kinds: list[tuple[int, Species]],
+    discs: list[tuple[int, Disc]],
+    unsound: AbstractSet[str],
+) -> Iterator[Fault]:
+    """Discs that are outside the space the gas has, too large or too small for it, or too many."""
+    outside = [*_regions_outside(box, space, kinds), *_discs_outside(box, space, discs)]
+    yield from outside
+    smallest = RESOLUTION * max(box.size)
+    for table, items in (("species", kinds), ("disc", discs)):
+        for i, item in items:
+            if item.radius < smallest:
+                keys = ((table, i, "radius"), ("box", "size"))
+                yield Fault(keys, "too small for the box in double precision", f"{item.radius}", f">= {smallest}")
+    if not outside and not {"species", "disc"} & unsound:
+        yield from _crowding(space, _name_of(box, space), kinds, discs)
+
+
+def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
+    left, bottom, right, top = space
+    place = _name_of(box, space)
+    others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
+    for i, s in kinds:
+        key: Key = ("species", i, "region")
+        x0, y0, x1, y1 = s.region or space
+        if not (left <= x0 < x1 <= right and bottom <= y0 < y1 <= top):
+            allowed = f"[x0, y0, x1, y1] with {left:.17g} <= x0 < x1 <= {right} and {bottom:.17g} <= y0 < y1 <= {top}"
+            yield Fault((key, *others), f"region not in the {place}", str(list(s.region or space)), allowed)
+        elif 2 * s.radius > min(x1 - x0, y1 - y0):
+            keys = (("species", i, "radius"), key, *others)
+            where = "region" if s.region else place
+            yield Fault(keys, f"discs wider than the {where}", f"{s.radius}", f"<= {min(x1 - x0, y1 - y0) / 2}")
+
+
+def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) -> Iterator[Fault]:
+    place = _name_of(box, space)
+    others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
+    widest = min(space[2] - space[0], space[3] - space[1])
+    for i, d in discs:
+        if 2 * d.radius > widest:
+            yield Fault(
+                (("disc", i, "radius"), *others), f"disc wider than the {place}", f"{d.radius}", f"<= {widest / 2}"
+            )
+            continue
+        allowed = []
+        inside = True
+        for axis, name in enumerate("xy"):
+            low, high = space[axis] + d.radius, space[axis + 2] - d.radius
+            if box.joined[axis]:
+                inside &= 0 <= d.position[axis] < box.size[axis]
+                allowed.append(f"0 <= {name} < {box.size[axis]}")
+            else:
+                inside &= low <= d.position[axis] <= high
+                allowed.append(f"{low} <= {name} <= {high}")
+        if not inside:
+            keys = (("disc", i, "position"), ("disc", i, "radius"), *others)
+            yield Fault(keys, f"disc not in the {place}", str(list(d.position)), " and ".join(allowed))
+
+
+def _name_of(box: Box, space: Rectangle) -> str:
+    return "box" if space == (0.0, 0.0, *box.size) else "space before the piston"
+
+
+def _crowding(
+    whole: Rectangle, name: str, kinds: list[tuple[int, Species]], discs: list[tuple[int, Disc]]
+) -> Iterator[Fault]:
+    """More discs than a region, or the whole space of that name, can hold."""
+    for region in dict.fromkeys(s.region or whole for _, s in kinds):
+        here = [(i, s) for i, s in kinds if region in (whole, s.region)]
+        covered = math.pi * sum(s.count * s.radius**2 for _, s in here)
+        if region == whole:
+            covered += math.pi * sum(d.radius**2 for _, d in discs)
+        packing = covered / ((region[2] - region[0]) * (region[3] - region[1]))
+        random = all(s.placement == "random" for _, s in here)
+        if packing > (RANDOM_PACKING if random else CLOSE_PACKING):
+            most = max(here, key=lambda item: item[1].count * item[1].radius ** 2)[0]
+            others = [("species", i, key) for i, _ in here for key in ("count", "radius", "region", "placement")]
+            place = name if region == whole else "region"
+            allowed = f"<= {CLOSE_PACKING:.4f} on a lattice, <= {RANDOM_PACKING} at random"
+            yield Fault(
+                (("species", most, "count"), *others, ("box", "size"), ("piston", "position")),
+                f"too many discs for the {place}",
+                f"packing fraction {packing:.4g}",
+                allowed,
+            )

@@ -1,0 +1,110 @@
+"""What only one of the methods has, and what it cannot have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
+from typing import TYPE_CHECKING
+
+from idealgas.document.error import Fault, Key
+from idealgas.scene.defaults import mean_speed
+from idealgas.scene.tables.box import SIDES
+
+if TYPE_CHECKING:
+    from idealgas.scene.tables.document import Document
+
+MONTE_CARLO, TIME_DRIVEN, BRUTE_FORCE = "monte_carlo", "time_driven", "brute_force"
+OWNERS = {
+    "trials": (MONTE_CARLO, "trials"),
+    "v_ref": (MONTE_CARLO, "trials"),
+    "impact": (MONTE_CARLO, "trials"),
+    "dt": (TIME_DRIVEN, "steps"),
+    "precision": (BRUTE_FORCE, "choice of precision"),
+}
+"""The one method that each of these keys belongs to, and what the others have none of."""
+
+PLAIN = "float64"
+"""The precision that everything else has too."""
+
+
+def method_faults(scene: Document, unsound: AbstractSet[str]) -> Iterator[Fault]:
+    """Keys of another method, what the method needs, and what it cannot have."""
+    run = scene.run
+    for key, (owner, thing) in OWNERS.items():
+        if run.method != owner and (value := getattr(run, key)) is not None:
+            allowed = f'no {key}, or method = "{owner}"'
+            yield Fault((("run", key), ("run", "method")), f"no {thing} in {run.method}", str(value), allowed)
+    if run.method == MONTE_CARLO:
+        yield from _homogeneous_faults(scene, unsound)
+    elif run.method == TIME_DRIVEN:
+        yield from _step_faults(scene)
+    elif run.method == BRUTE_FORCE and run.precision not in (None, PLAIN):
+        yield from _precision_faults(scene, unsound)
+
+
+def _step_faults(scene: Document) -> Iterator[Fault]:
+    got = f'method = "{TIME_DRIVEN}"'
+    if scene.run.dt is None:
+        yield Fault((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
+    places: list[Key] = [("wall", i) for i, wall in enumerate(scene.wall) if wall is not None]
+    for place in places + ([("piston",)] if scene.piston else []):
+        yield Fault((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
+
+
+def _precision_faults(scene: Document, unsound: AbstractSet[str]) -> Iterator[Fault]:
+    got = f'precision = "{scene.run.precision}"'
+    spun = [(name,) for name in ("rotation",) if scene.rotation]
+    lossy = [("restitution",)] if scene.restitution and not scene.restitution.elastic else []
+    for place in (*_places(scene, unsound), *spun, *lossy):
+        wrong = "smooth elastic discs in a reflecting box are all there is"
+        yield Fault((place, ("run", "precision")), wrong, got, f'"{PLAIN}"')
+
+
+def _homogeneous_faults(scene: Document, unsound: AbstractSet[str]) -> Iterator[Fault]:
+    """Effects that need positions, and gases in which no pair ever meets."""
+    for place in _places(scene, unsound):
+        got = f'method = "{MONTE_CARLO}"'
+        yield Fault((place, ("run", "method")), "needs discs that are somewhere", got, "event_driven, brute_force")
+    if not {"species", "disc"} & unsound and (scene.species or scene.disc):
+        if sum(s.count for s in scene.species) + len(scene.disc) < 2:
+            yield Fault((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
+        elif mean_speed(scene.species, scene.disc) == 0:
+            yield Fault((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
+
+
+def _places(scene: Document, unsound: AbstractSet[str]) -> Iterator[Key]:
+    """Keys of everything that acts at a place."""
+    if scene.gravity:
+        yield ("gravity",)
+    if "box" not in unsound:
+        for name, side in zip(SIDES, scene.box.sides, strict=True):
+            if side != "reflecting":
+                yield ("box", name)
+    for i, wall in enumerate(scene.wall):
+        if wall is not None:
+            yield ("wall", i)
+    if scene.piston:
+        yield ("piston",)
+
+
+def endless_faults(scene: Document) -> Iterator[Fault]:
+    """Runs without a stop rule, or with one that is never met."""
+    run = scene.run
+    keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
+    if run.until is not None or run.trials is not None:
+        return
+    if run.events is None and run.collisions_per_disc is None:
+        yield Fault(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
+        return
+    alone = sum(s.count for s in scene.species) + len(scene.disc) == 1
+    if (
+        not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in scene.species)
+        and not any(any(d.velocity) for d in scene.disc)
+        and not scene.gravity
+        and not scene.piston
+    ):
+        yield Fault(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
+    elif run.events is None and alone:
+        yield Fault(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
+    elif alone and all(scene.box.joined) and not scene.wall:
+        yield Fault(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")

@@ -1,0 +1,24 @@
+"""The table of inelastic collisions."""
+
+from pydantic import Field
+
+from idealgas.document.table import Positive, Table
+
+
+class Restitution(Table):
+    """`[restitution]`: discs part more slowly than they met.
+
+    A disc that collided less than the contact duration ago collides elastically: this keeps a gas from infinitely many
+    collisions in a finite time (Luding & McNamara, Granular Matter 1, 113 (1998)).
+    """
+
+    normal: float = Field(default=1.0, ge=0, le=1, description="of two discs, 0 to 1")
+    wall: float = Field(default=1.0, ge=0, le=1, description="of a disc with a wall or piston, 0 to 1")
+    contact_duration: Positive | None = Field(
+        default=None, description="time > 0; if absent 1e-6 * mean diameter / mean speed at the start"
+    )
+
+    @property
+    def elastic(self) -> bool:
+        """Whether nothing is lost."""
+        return self.normal == 1 and self.wall == 1

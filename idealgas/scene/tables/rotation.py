@@ -1,0 +1,18 @@
+"""The table of rough discs that spin."""
+
+from pydantic import Field
+
+from idealgas.document.table import Table
+
+
+class Rotation(Table):
+    """`[rotation]`: discs have a spin, and a tangential coefficient couples it to their motion.
+
+    The coefficient runs from -1 (smooth) to 1 (perfectly rough); energy is conserved at these two. A piston is smooth.
+    """
+
+    inertia: float = Field(
+        default=0.5, gt=0, le=1, description="moment of inertia in units of mass * radius²: 0.5 for a uniform disc"
+    )
+    roughness: float = Field(default=1.0, ge=-1, le=1, description="of discs, -1 to 1")
+    wall_roughness: float = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")

@@ -1,0 +1,110 @@
+"""The rungs that accuracy is compared on: methods, steps and precisions, and how a gas is taken along one of them."""
+
+import copy
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.document.dump import dump_document
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.precise import PreciseBruteForce
+from idealgas.engine.records import UNLIMITED
+from idealgas.engine.simulation import Method, Simulation, Stop
+from idealgas.engine.time_driven import TimeDriven
+from idealgas.events import EventBatch
+from idealgas.gas.build import make_gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
+from idealgas.run.effects import make_effects
+from idealgas.scene import Scene, parse_scene
+
+FIRST_STEP = 0.5  # diameters that a disc of mean square speed moves in the longest step
+STEPS = 8  # each half as long as the one before
+PRECISIONS = ("float32", "float64", "double-double")
+MIXING = 10.0  # collisions a disc, after which a gas is taken to have forgotten its start
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One way to run a scene. dt: time, of time steps. precision: of brute force."""
+
+    method: str
+    dt: float | None = None
+    precision: str | None = None
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return f"dt = {self.dt:.3g}" if self.dt is not None else self.precision or "event-driven"
+
+    def make(self) -> Method:
+        """A fresh method."""
+        if self.dt is not None:
+            return TimeDriven(self.dt)
+        return PreciseBruteForce(self.precision) if self.precision else EventDriven()
+
+    def scene(self, scene: Scene, until: float) -> Scene:
+        """The scene run this way to a time, without other stop rules. SceneError if it cannot be."""
+        ends = (f"run.until={until!r}", "run.events=", "run.collisions_per_disc=", "run.dt=", "run.precision=")
+        settings = [f'run.method="{self.method}"', *ends, "log.events=true", "log.snapshot_every="]
+        if self.dt is not None:
+            settings.append(f"run.dt={self.dt!r}")
+        if self.precision is not None:
+            settings.append(f'run.precision="{self.precision}"')
+        return parse_scene(dump_document(scene), f"{scene.scene.title or 'scene'}, {self.name}", settings)
+
+
+@dataclass(frozen=True)
+class Start:
+    """A gas in equilibrium, from which every rung can set out."""
+
+    gas: Gas
+    effects: Effects
+
+    def simulation(self, method: Method) -> Simulation:
+        """A run of its own; the effects are a copy."""
+        return Simulation(self.gas, method, copy.deepcopy(self.effects))
+
+
+def ladder(gas: Gas, precise: bool) -> list[Rung]:
+    """Event-driven, time steps from coarse to fine, and if asked for brute force in all precisions."""
+    speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
+    first = FIRST_STEP * 2 * float(gas.radius.min()) / speed
+    steps = [Rung("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]
+    return [
+        Rung("event_driven"),
+        *steps,
+        *(Rung("brute_force", precision=precision) for precision in PRECISIONS if precise),
+    ]
+
+
+def mixed(scene: Scene) -> Start:
+    """The scene's gas after MIXING collisions a disc, event-driven."""
+    gas = make_gas(scene)
+    simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
+    stop = Stop(disc_collisions=round(MIXING * len(gas) / 2), events=round(20 * MIXING * len(gas)))
+    while not simulation.finished(stop):
+        simulation.advance(stop, None)
+        if simulation.epoch_over:
+            simulation.next_epoch()
+    gas, effects = simulation.state_now()
+    return Start(gas, effects)
+
+
+def follow(simulation: Simulation, until: float, batch: EventBatch | None = None) -> int:
+    """Take a simulation to a time, exactly, from wherever it is; the rows written. Epochs follow one another."""
+    rows = simulation.advance(Stop(), batch, UNLIMITED, until)
+    while not simulation.paused:
+        if simulation.epoch_over:
+            simulation.next_epoch()
+        free = None if batch is None else batch.rows(rows, len(batch.time))
+        rows += simulation.advance(Stop(), free, UNLIMITED, until)
+    return rows
+
+
+def cpu_seconds(simulation: Simulation, until: float) -> float:
+    """CPU time that it takes to follow a simulation to a time; only the kernel's thread counts."""
+    started = time.thread_time()
+    follow(simulation, until)
+    return time.thread_time() - started

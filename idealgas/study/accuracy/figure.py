@@ -1,0 +1,147 @@
+"""The pictures of a study of accuracy: error against time, error against collisions, and survival against digits."""
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.study.accuracy.orbit import OrbitStudy
+from idealgas.study.accuracy.study import Accuracy, Row
+
+Measure = Callable[[Row], tuple[float, float] | None]
+"""An error of a row with its standard error; None if it has none."""
+
+
+def _estimate(name: str) -> Measure:
+    def measure(row: Row) -> tuple[float, float] | None:
+        found = getattr(row, name)
+        return None if found is None else (abs(found.value), found.standard_error)
+
+    return measure
+
+
+def _missed(row: Row) -> tuple[float, float] | None:
+    return (row.missed.share, row.missed.error) if row.missed and row.missed.missed else None
+
+
+def _overlap(row: Row) -> tuple[float, float] | None:
+    return (row.averages.overlap, 0.0) if row.averages and row.averages.overlap > 1e-9 else None
+
+
+def _drift(row: Row) -> tuple[float, float] | None:
+    return (abs(row.averages.drift), 0.0) if row.averages and row.averages.drift else None
+
+
+def _distance(row: Row) -> tuple[float, float] | None:
+    return (row.averages.distance, 0.0) if row.averages and row.averages.distance else None
+
+
+def _way_back(row: Row) -> tuple[float, float] | None:
+    return (row.way_back, 0.0) if row.way_back else None
+
+
+def _trajectory(index: int) -> Measure:
+    return lambda row: (float(row.trajectory[index]), 0.0) if row.trajectory is not None else None
+
+
+AVERAGES: dict[str, Measure] = {
+    "collision rate (relative)": _estimate("rate"),
+    "pressure, pairs (relative)": _estimate("z_pairs"),
+    "pressure, walls (relative)": _estimate("z_walls"),
+    "missed collisions (share)": _missed,
+    "deepest overlap (σ)": _overlap,
+    "Kolmogorov-Smirnov distance": _distance,
+}
+MARKERS = "osD^vP*X"
+ENTRIES = (0.5, 1.0, 2.0)  # collisions a disc at which trajectories are shown against time
+
+
+def accuracy_figure(found: Accuracy) -> Figure:
+    """Errors of averages and of the motion against time; trajectories against collisions. Lines join the time steps."""
+    motion = bool(len(found.collisions))
+    figure, axes = panels(3 if motion else 1)
+    _errors_against_time(axes[0], found, AVERAGES)
+    axes[0].set_ylabel("error of averages (no unit)")
+    if motion:
+        picks = [int(np.abs(found.collisions - entry).argmin()) for entry in ENTRIES]
+        measures = {f"trajectory at {found.collisions[k]:.2g} collisions a disc": _trajectory(k) for k in picks}
+        _errors_against_time(axes[1], found, measures | {"way back (σ)": _way_back, "energy drift (relative)": _drift})
+        axes[1].set_ylabel("error of the motion (diameters)")
+        _trajectories(axes[2], found)
+    figure.set_figheight(4.6 * len(axes))
+    return figure
+
+
+def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]) -> None:
+    """One curve for each error; the event-driven run and the precisions are points."""
+    for (name, measure), colour, marker in zip(measures.items(), COLOURS, MARKERS, strict=False):
+        points = [(row.timing.median, *error) for row in found.steps if (error := measure(row))]
+        if points:
+            time, value, spread = np.array(points).T
+            ax.errorbar(time, value, np.minimum(spread, 0.9 * value), fmt=f"-{marker}", ms=4, color=colour, label=name)
+        for row in (found.event_driven, *found.precisions):
+            if error := measure(row):
+                filled = colour if row is found.event_driven else "none"
+                ax.plot(row.timing.median, error[0], marker, ms=9, mfc=filled, mec=colour)
+    own = found.event_driven.timing.median
+    ax.axvline(own, color=GREY, linestyle="--", linewidth=0.8, label="event-driven (filled)")
+    for k, row in enumerate(found.precisions):
+        ax.axvline(row.timing.median, color=GREY, linestyle=":", linewidth=0.8)
+        place = (row.timing.median, 1.0)
+        ax.annotate(
+            row.rung.precision or "", place, xycoords=("data", "axes fraction"), rotation=90, fontsize="x-small",
+            color=GREY, ha="left" if k % 2 else "right", va="top",
+        )  # fmt: skip
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_xlabel("CPU seconds per unit of simulated time")
+    ax.plot([], [], color=GREY, label="joined: time steps, coarse to fine")
+    ax.legend(frameon=False, fontsize="x-small", loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+def _trajectories(ax: Axes, found: Accuracy) -> None:
+    """Typical distance from the double-double motion."""
+    rows = [row for row in found.rows if row.rung.precision != "float64"]
+    for k, row in enumerate(rows):
+        if row.trajectory is None:
+            continue
+        steps = row.rung.dt is not None
+        colour = COLOURS[1] if steps else COLOURS[0] if row.rung.precision is None else COLOURS[2]
+        shade = 0.3 + 0.7 * k / len(rows) if steps else 1.0
+        ax.plot(
+            found.collisions,
+            np.maximum(row.trajectory, 1e-17),
+            "-o",
+            ms=3,
+            color=colour,
+            alpha=shade,
+            label=row.rung.name,
+        )
+    ax.set_yscale("log")
+    ax.set_xlabel("collisions a disc (no unit)")
+    ax.set_ylabel("rms distance from the truth (diameters)")
+    ax.legend(frameon=False, fontsize="x-small", loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+def orbit_figure(found: OrbitStudy) -> Figure:
+    """Survival against digits: every placement, the medians, and a line through them."""
+    figure, (ax,) = panels(1)
+    for k, survival in enumerate(found.survivals):
+        x = survival.digits + np.linspace(-0.5, 0.5, len(survival.times))
+        label = "one box and radius" if k == 0 else None
+        ax.plot(x, survival.times, ".", color=COLOURS[5], label=label)
+        ax.annotate(survival.precision, (survival.digits, survival.median), (8, -14), textcoords="offset points")
+    digits, median = np.array([(s.digits, s.median) for s in found.survivals]).T
+    ax.plot(digits, median, "D", color=COLOURS[0], label=f"median of {found.placements}")
+    x = np.array([0.0, 1.05 * digits.max()])
+    line = median.mean() + found.time_per_digit * (x - digits.mean())
+    ax.plot(x, line, "--", color=COLOURS[1], label=f"{found.time_per_digit:.3g} time units a digit")
+    ax.set_xlim(0, 1.2 * digits.max())
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("decimal digits carried (no unit)")
+    ax.set_ylabel("orbit lasts (time, at speed 1)")
+    ax.legend(frameon=False)
+    figure.set_figheight(4.5)
+    return figure

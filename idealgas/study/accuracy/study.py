@@ -1,0 +1,233 @@
+"""How wrong each way of running a scene is, and what it costs: the ladder of rungs, climbed in one process."""
+
+import math
+import statistics
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.errors import UserError
+from idealgas.gas.build import make_gas
+from idealgas.gas.state import Gas
+from idealgas.run.simulate import Summary
+from idealgas.scene import Scene
+from idealgas.study.accuracy.averages import Averages, measure_averages
+from idealgas.study.accuracy.cases import Rung, Start, cpu_seconds, ladder, mixed
+from idealgas.study.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
+
+SHORTEST_TIMING = 0.1  # CPU seconds of a run that is timed
+LONGEST_RUN = 40.0  # CPU seconds that a rung may take for its averages, and the reference for the trajectories
+MOST_PRECISE = 4000  # discs, whose time brute force takes
+FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
+"""Collisions a disc at which trajectories are compared: at the last, no digit of a float64 is left."""
+
+Progress = Callable[[str, float], None]
+"""Called with what is being done, and the share of it."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """CPU seconds per unit of simulated time: median, least and most of the repeats. collisions: per unit of time."""
+
+    median: float
+    least: float
+    most: float
+    collisions: float
+
+    @property
+    def per_collision(self) -> float:
+        """CPU seconds per pair collision."""
+        return self.median / self.collisions if self.collisions else math.nan
+
+
+@dataclass(frozen=True)
+class Row:
+    """A rung and all its errors; None where there is no such number.
+
+    rate, z_pairs, z_walls: relative bias with its standard error, of the collision rate against the event-driven run
+    and of the pressure against theory. trajectory: (T,) rms distance from the reference, in diameters. way_back:
+    rms distance from the start after going back, in diameters.
+    """
+
+    rung: Rung
+    timing: Timing
+    averages: Averages | None
+    rate: Estimate | None
+    z_pairs: Estimate | None
+    z_walls: Estimate | None
+    missed: Missed | None
+    trajectory: np.ndarray | None
+    way_back: float | None
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """The rows of all rungs. until: time that averages were run for. collisions: (T,) a disc, where trajectories were
+    compared; none if they were not. left_out: why there are no precisions; empty if there are.
+    """
+
+    title: str
+    number: int
+    until: float
+    repeats: int
+    collisions: np.ndarray
+    left_out: str
+    rows: tuple[Row, ...]
+
+    @property
+    def event_driven(self) -> Row:
+        return self.rows[0]
+
+    @property
+    def steps(self) -> list[Row]:
+        """Time steps, from coarse to fine."""
+        return [row for row in self.rows if row.rung.dt is not None]
+
+    @property
+    def precisions(self) -> list[Row]:
+        """Brute force, from few digits to many."""
+        return [row for row in self.rows if row.rung.precision is not None]
+
+
+def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda what, share: None) -> Accuracy:
+    """Run a scene on all rungs. UserError if it cannot be run in time steps, or nothing collides."""
+    check(scene)
+    progress("mixing the gas", 0.0)
+    start = mixed(scene)
+    left_out = why_not_precise(scene, start.gas)
+    rungs = ladder(start.gas, precise=not left_out)
+    timings = measure_timings(start, rungs, repeats, progress)
+    averages, until = _all_averages(scene, rungs, timings, progress)
+    truth = averages[0]
+    assert truth is not None
+    rate = 2 * truth.rate.value / len(start.gas)
+    steps = [rung for rung in rungs if rung.dt is not None]
+    missed = dict(
+        zip(steps, count_missed(start, steps, rate, lambda share: progress("missed collisions", share)), strict=True)
+    )
+    collisions, trajectories, ways_back = _motion(start, rungs, timings, rate, progress)
+    rows = [
+        Row(
+            rung, timing, found,
+            rate=None if found is None or k == 0 else relative(found.rate, truth.rate),
+            z_pairs=None if found is None else from_theory(found.z_pairs),
+            z_walls=None if found is None else from_theory(found.z_walls),
+            missed=missed.get(rung),
+            trajectory=trajectories.get(rung),
+            way_back=ways_back.get(rung),
+        )
+        for k, (rung, timing, found) in enumerate(zip(rungs, timings, averages, strict=True))
+    ]  # fmt: skip
+    return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, tuple(rows))
+
+
+def check(scene: Scene) -> None:
+    """UserError unless the scene can be run in time steps, and anything collides."""
+    if scene.run.method == "monte_carlo":
+        raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
+    if strange := [effect for effect in scene.effects if effect in ("wall segments", "piston")]:
+        raise UserError(f"nothing to compare: time steps know nothing of {' and '.join(strange)}")
+    if len(make_gas(scene)) < 2:
+        raise UserError("nothing to compare: one disc alone collides with none")
+
+
+def why_not_precise(scene: Scene, gas: Gas) -> str:
+    """Why a gas cannot be run in all precisions; empty if it can."""
+    if scene.effects:
+        return f"no other precision than float64 knows of {', '.join(scene.effects)}"
+    if len(gas) > MOST_PRECISE:
+        return f"brute force takes too long with more than {MOST_PRECISE} discs"
+    return ""
+
+
+def relative(value: Estimate, reference: Estimate) -> Estimate:
+    """value/reference - 1, of independent estimates."""
+    ratio = value.value / reference.value
+    error = ratio * math.hypot(value.standard_error / value.value, reference.standard_error / reference.value)
+    return Estimate(ratio - 1, error, math.inf)
+
+
+def from_theory(value: Estimate | None) -> Estimate | None:
+    """value/theory - 1."""
+    if value is None or value.theory is None or not math.isfinite(value.theory):
+        return None
+    return Estimate(value.value / value.theory - 1, value.standard_error / value.theory, math.inf)
+
+
+def measure_timings(start: Start, rungs: Sequence[Rung], repeats: int, progress: Progress) -> list[Timing]:
+    """CPU time on every rung, in turn; each run is as long as it takes to be timed, found out before."""
+    durations = []
+    for k, rung in enumerate(rungs):
+        progress("compiling and first timing", k / len(rungs))
+        durations.append(_long_enough(start, rung))
+    seconds: list[list[float]] = [[] for _ in rungs]
+    rates = []
+    for repeat in range(repeats):
+        for k, (rung, duration) in enumerate(zip(rungs, durations, strict=True)):
+            progress("timing", (repeat + k / len(rungs)) / repeats)
+            simulation = start.simulation(rung.make())
+            seconds[k].append(cpu_seconds(simulation, duration) / duration)
+            if repeat == 0:
+                rates.append(simulation.so_far.disc_collisions / duration)
+    return [
+        Timing(statistics.median(each), min(each), max(each), rate) for each, rate in zip(seconds, rates, strict=True)
+    ]
+
+
+def _long_enough(start: Start, rung: Rung) -> float:
+    """Simulated time that takes SHORTEST_TIMING; the machine code is there afterwards."""
+    speed = float(np.hypot(*start.gas.velocity.T).mean())
+    duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
+    cpu_seconds(start.simulation(rung.make()), duration)
+    simulation = start.simulation(rung.make())
+    while cpu_seconds(simulation, duration) < SHORTEST_TIMING:
+        duration *= 2
+        simulation = start.simulation(rung.make())
+    return duration
+
+
+def _all_averages(
+    scene: Scene, rungs: Sequence[Rung], timings: Sequence[Timing], progress: Progress
+) -> tuple[list[Averages | None], float]:
+    """From runs of the whole scene, on the rungs that are quick enough; the event-driven one says how long."""
+    found: list[Averages | None] = []
+    with tempfile.TemporaryDirectory(prefix="idealgas-accuracy-") as folder:
+        path = Path(folder) / "run.h5"
+
+        def run(scene: Scene, rung: Rung, window: float | None = None) -> tuple[Averages, Summary]:
+            return measure_averages(scene, path, window, lambda share: progress(f"averages, {rung.name}", share))
+
+        own = scene.model_copy(
+            update={"run": scene.run.model_copy(update={"method": "event_driven", "dt": None, "precision": None})}
+        )
+        first, summary = run(own, rungs[0])
+        found.append(first)
+        for rung, timing in zip(rungs[1:], timings[1:], strict=True):
+            quick = timing.median * summary.end_time < LONGEST_RUN and rung.precision != "float64"  # the same motion
+            found.append(run(rung.scene(scene, summary.end_time), rung, first.window)[0] if quick else None)
+    return found, summary.end_time
+
+
+def _motion(
+    start: Start, rungs: Sequence[Rung], timings: Sequence[Timing], rate: float, progress: Progress
+) -> tuple[np.ndarray, dict[Rung, np.ndarray], dict[Rung, float]]:
+    """Collisions a disc, distance from the double-double motion on each rung, and from the start after going back."""
+    if rungs[-1].precision is None:
+        return np.empty(0), {}, {}
+    reference, timing = rungs[-1], timings[-1]
+    longest = LONGEST_RUN / 2 / timing.median * rate
+    collisions = np.array([count for count in FOLLOWED if count <= max(longest, FOLLOWED[0])])
+    times = (collisions / rate).tolist()
+    progress("reference trajectory, double-double", 0.0)
+    truth = positions(start.simulation(reference.make()), times)
+    trajectories, ways_back = {}, {}
+    for k, rung in enumerate(rungs):
+        progress("trajectories and ways back", k / len(rungs))
+        if rung is not reference:
+            trajectories[rung] = rms_distance(positions(start.simulation(rung.make()), times), truth, start.gas)
+        ways_back[rung] = error_on_return(start, rung, min(times[-1], 1 / rate))
+    return collisions, trajectories, ways_back

@@ -1,0 +1,80 @@
+"""How fast the engine is on this machine, with the event log and without."""
+
+import math
+import statistics
+import tempfile
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from idealgas.run.simulate import simulate
+from idealgas.scene import Box, Header, Log, Run, Scene, Species
+
+RADIUS = 0.5
+
+
+class Row(NamedTuple):
+    """One line of the table; the rate is the median over the repeats, slowest and fastest beside it.
+
+    ratio: of the rates with the log and without, the median over pairs of runs that followed each other; with a log.
+    """
+
+    N: int
+    phi: float
+    log: bool
+    collisions_per_s: float
+    slowest: float
+    fastest: float
+    ratio: float | None
+
+
+@dataclass(frozen=True)
+class Bench:
+    """compile_seconds: what the first run spends on machine code (little if it is cached). rows: the table."""
+
+    compile_seconds: float
+    rows: list[Row]
+
+
+def bench_scene(n: int, phi: float, collisions: int, log: bool) -> Scene:
+    """n equal discs from a lattice at temperature 1 in a square box."""
+    side = math.sqrt(n * math.pi * RADIUS**2 / phi)
+    return Scene(
+        scene=Header(title=f"bench, N = {n}, packing fraction {phi:g}"),
+        box=Box(size=(side, side)),
+        species=(Species(name="gas", count=n, radius=RADIUS, temperature=1.0, placement="lattice"),),
+        run=Run(collisions_per_disc=2.0 * collisions / n),
+        log=Log(events=log),
+    )
+
+
+def bench(
+    numbers: Iterable[int],
+    fractions: Iterable[float],
+    collisions: int = 1_000_000,
+    repeats: int = 3,
+    on_row: Callable[[Row], None] = lambda row: None,
+) -> Bench:
+    """Time runs of at least `collisions` pair collisions, and two a disc, without the log and with it in turn."""
+    with tempfile.TemporaryDirectory(prefix="idealgas-bench-") as folder:
+        path = Path(folder) / "bench.h5"
+        started = time.perf_counter()
+        for log in (False, True):
+            simulate(bench_scene(10, 0.1, 10, log), path, force=True)
+        compile_seconds = time.perf_counter() - started
+        rows = []
+        for n in numbers:
+            for phi in fractions:
+                rates: dict[bool, list[float]] = {False: [], True: []}
+                for repeat in range(repeats):
+                    for log in (False, True) if repeat % 2 else (True, False):
+                        summary = simulate(bench_scene(n, phi, max(collisions, 2 * n), log), path, force=True)
+                        rates[log].append(summary.disc_collisions / summary.seconds)
+                pairs = statistics.median(on / off for off, on in zip(*rates.values(), strict=True))
+                for log, measured in rates.items():
+                    ratio = pairs if log else None
+                    rows.append(Row(n, phi, log, statistics.median(measured), min(measured), max(measured), ratio))
+                    on_row(rows[-1])
+    return Bench(compile_seconds, rows)

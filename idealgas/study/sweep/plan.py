@@ -1,0 +1,250 @@
+"""A sweep: a base scene, axes along which it changes, and the points that follow, each a scene of its own."""
+
+import copy
+import hashlib
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError
+
+from idealgas.document.dump import dump_document, toml_value
+from idealgas.document.error import Fault, Key
+from idealgas.document.messages import as_faults
+from idealgas.document.origin import Origin
+from idealgas.document.overrides import OverrideError, apply
+from idealgas.document.table import Number, Positive, Table
+from idealgas.document.text import parse_document, read_text
+from idealgas.scene import Scene, SceneError
+from idealgas.scene.loader import make_scene
+
+PHI, BASE = "phi", "base"
+"""Axis keys that no scene has: the packing fraction, reached by scaling the box; the path of the base scene."""
+
+Analysis = Literal["temperature", "pressure", "heat-capacity", "transport", "effusion"]
+Value = bool | int | float | str | tuple[Any, ...]
+Count = Annotated[int, Field(ge=1, le=100_000)]
+
+
+class Settings(Table):
+    """`[sweep]`"""
+
+    scene: str | None = Field(default=None, description="path of the base scene, from this file's folder")
+    seed: int = Field(default=0, ge=0, lt=2**63, description="whole number from which the seeds of all points follow")
+    replicates: Count = Field(default=1, description="runs of each point that differ in their seeds, 1 to 100000")
+    analyses: Annotated[tuple[Analysis, ...], Field(strict=False)] = Field(
+        default=(), description="temperature, pressure, heat-capacity, transport, effusion"
+    )
+    keep_logs: bool = Field(default=True, description="whether the logs stay after their analyses")
+
+
+class Axis(Table):
+    """`[[axis]]`: one key and the values it takes. Axes are crossed; those with the same `zip` go along together."""
+
+    key: str = Field(description='a key of the scene, as for --set, or "phi" or "base"')
+    values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1)] | None = Field(
+        default=None, description="at least one value"
+    )
+    range: Annotated[tuple[Number, Number, Count], Field(strict=False)] | None = Field(
+        default=None, description="[first, last, number of values]"
+    )
+    log_range: Annotated[tuple[Positive, Positive, Count], Field(strict=False)] | None = Field(
+        default=None, description="[first, last, number of values], first and last > 0"
+    )
+    zip: str | None = Field(default=None, description="a word; axes of one word are as long as one another")
+
+    @property
+    def steps(self) -> list[Value]:
+        """The values, one after another; whole numbers of a range as such, as keys like `count` want them."""
+        if self.range:
+            steps = np.linspace(*self.range).tolist()
+        elif self.log_range:
+            steps = np.geomspace(*self.log_range).tolist()
+        else:
+            return list(self.values or ())
+        return [round(step) if math.isclose(step, round(step), rel_tol=1e-12) else step for step in steps]
+
+
+class Tables(Table):
+    """A sweep's file."""
+
+    sweep: Settings = Field(
+        default_factory=Settings, description="[sweep]: scene, seed, replicates, analyses, keep_logs"
+    )
+    axis: Annotated[tuple[Axis, ...], Field(strict=False)] = Field(default=(), description="[[axis]] tables")
+    base: dict[str, Any] | None = Field(default=None, description="[base.box] and so on: a scene's tables")
+
+
+@dataclass(frozen=True)
+class Point:
+    """One run. combination: number of its values; values: by the key of their axis."""
+
+    index: int
+    combination: int
+    replicate: int
+    values: dict[str, Value]
+    scene: Scene
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A whole sweep. text: what tells it from others, the file with a digest of its points."""
+
+    analyses: tuple[Analysis, ...]
+    keep_logs: bool
+    axes: tuple[str, ...]
+    points: tuple[Point, ...]
+    text: str
+
+
+def load_sweep(path: str | PathLike[str]) -> Sweep:
+    """Read a sweep and make all of its points. SceneError with every fault of the file, its base scene and points."""
+    text, name = read_text(path).replace("\r\n", "\n"), str(path)
+    document = parse_document(text, name)
+    origin = Origin(text, name)
+    try:
+        tables = Tables.model_validate(document)
+    except ValidationError as error:
+        raise SceneError(origin.report(as_faults(error.errors(include_url=False), Tables))) from None
+    if found := list(_faults(tables)):
+        raise SceneError(origin.report(found))
+    points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
+    digest = hashlib.sha256("".join(dump_document(point.scene) for point in points).encode()).hexdigest()
+    return Sweep(
+        tables.sweep.analyses,
+        tables.sweep.keep_logs,
+        tuple(axis.key for axis in tables.axis),
+        points,
+        f"# {len(points)} points, SHA-256 of their scenes {digest}\n{text}",
+    )
+
+
+Base = tuple[dict[str, Any], Origin]
+
+
+def _bases(tables: Tables, path: Path, origin: Origin) -> dict[Value | None, Base]:
+    """Base scenes by their value of the axis "base", or the only one by None."""
+    if tables.base is not None:
+        return {None: (tables.base, Origin(origin.text, origin.name, above=("base",)))}
+    if tables.sweep.scene is not None:
+        return {None: _read_base(path.parent / tables.sweep.scene)}
+    (axis,) = (axis for axis in tables.axis if axis.key == BASE)
+    return {value: _read_base(path.parent / str(value)) for value in axis.steps}
+
+
+def _read_base(path: Path) -> Base:
+    text = read_text(path).replace("\r\n", "\n")
+    return parse_document(text, str(path)), Origin(text, str(path))
+
+
+def _faults(tables: Tables) -> Iterator[Fault]:
+    """What no table can know alone."""
+    along = [i for i, axis in enumerate(tables.axis) if axis.key == BASE]
+    given = ["sweep.scene"] * (tables.sweep.scene is not None) + ["[base]"] * (tables.base is not None)
+    given += ["an axis base"] * bool(along)
+    if len(given) != 1:
+        allowed = "one of sweep.scene, [base] tables, and an axis base of paths"
+        yield Fault((("sweep", "scene"), ("base",)), "not one base scene", " and ".join(given) or "nothing", allowed)
+    for i in along:
+        if not all(isinstance(value, str) for value in tables.axis[i].steps):
+            yield Fault((("axis", i, "values"),), "not paths of scenes", toml_value(tables.axis[i].steps), "texts")
+    seen: set[str] = set()
+    lengths: dict[str, int] = {}
+    for i, axis in enumerate(tables.axis):
+        given = [name for name in ("values", "range", "log_range") if getattr(axis, name) is not None]
+        if len(given) != 1:
+            got = " and ".join(given) or "nothing"
+            yield Fault((("axis", i),), "not one list of values", got, "exactly one of values, range and log_range")
+        if axis.key == "scene.seed":
+            yield Fault((("axis", i, "key"),), "seeds are no axis", axis.key, "sweep.seed and sweep.replicates")
+        if axis.key in seen:
+            yield Fault((("axis", i, "key"),), "second axis of this key", axis.key, "one axis for each key")
+        seen.add(axis.key)
+        if axis.zip is not None and lengths.setdefault(axis.zip, len(axis.steps)) != len(axis.steps):
+            got, allowed = f"{len(axis.steps)} values", f"{lengths[axis.zip]}, as the others of zip = {axis.zip}"
+            yield Fault((("axis", i, "zip"),), "not as long as the axes it goes along with", got, allowed)
+
+
+# ── points ──
+
+
+def _points(tables: Tables, bases: dict[Value | None, Base], origin: Origin) -> Iterator[Point]:
+    """Points in order of their axes, the last axis fastest, replicates together."""
+    settings = tables.sweep
+    errors: dict[str, None] = {}  # each line once
+    points: list[Point] = []
+    for combination, steps in enumerate(product(*_groups(tables.axis))):
+        pairs = [pair for step in steps for pair in step]
+        pairs.sort(key=lambda pair: tables.axis[pair[0]].key == PHI)  # last, as it depends on the discs
+        base, base_origin = bases[next((value for i, value in pairs if tables.axis[i].key == BASE), None)]
+        document = copy.deepcopy(base)
+        places: dict[Key, str] = {}
+        try:
+            for i, value in pairs:
+                axis, line = tables.axis[i], origin.line(("axis", i, "key"))
+                place = f"{origin.name}:{line}: {axis.key} = {toml_value(value)}"
+                if axis.key == BASE:
+                    continue
+                if axis.key == PHI:
+                    places[("box", "size")] = place
+                    scale_box(document, make_scene(document, _placed(base_origin, places)), value, place)
+                else:
+                    places[_apply(axis.key, value, document, place)] = place
+            for replicate in range(settings.replicates):
+                document.setdefault("scene", {})["seed"] = _seed(settings.seed, combination, replicate)
+                scene = make_scene(document, _placed(base_origin, places))
+                named = {tables.axis[i].key: value for i, value in pairs}
+                points.append(Point(len(points), combination, replicate, named, scene))
+        except SceneError as error:
+            errors |= dict.fromkeys(error.errors)
+    if errors:
+        raise SceneError(list(errors))
+    return iter(points)
+
+
+def _groups(axes: Sequence[Axis]) -> list[list[tuple[tuple[int, Value], ...]]]:
+    """Axes that are crossed; each a list of steps, in which one or more axes (by number) take a value."""
+    together: dict[Any, list[int]] = {}
+    for i, axis in enumerate(axes):
+        together.setdefault(axis.zip or i, []).append(i)
+    return [
+        list(zip(*([(i, value) for value in axes[i].steps] for i in members), strict=True))
+        for members in together.values()
+    ]
+
+
+def _placed(origin: Origin, places: dict[Key, str]) -> Origin:
+    return Origin(origin.text, origin.name, places, origin.above)
+
+
+def _apply(key: str, value: Value, document: dict[str, Any], place: str) -> Key:
+    try:
+        return apply(f"{key}={toml_value(value)}", document)
+    except OverrideError as error:
+        raise SceneError([f"{place}: {error}"]) from None
+
+
+def _seed(seed: int, combination: int, replicate: int) -> int:
+    """A scene's seed; it depends neither on other points nor on who runs it."""
+    drawn = np.random.SeedSequence(seed, spawn_key=(combination, replicate)).generate_state(1, np.uint64)
+    return int(drawn[0]) >> 1
+
+
+def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) -> None:
+    """Scale the document's box so that its discs cover a share phi of it. SceneError if that has no meaning."""
+    fixed = [name for name in ("disc", "wall", "piston") if getattr(scene, name)]
+    fixed += ["species.region"] if any(s.region for s in scene.species) else []
+    if fixed:
+        allowed = "a scene in which nothing but the box has a place"
+        raise SceneError([f"{place}: the box alone is scaled (got a scene with {', '.join(fixed)}; allowed {allowed})"])
+    if isinstance(phi, bool) or not isinstance(phi, int | float) or not 0 < phi < 1:
+        raise SceneError([f"{place}: not a packing fraction (got {toml_value(phi)}; allowed 0 < phi < 1)"])
+    width, height = scene.box.size
+    covered = math.pi * sum(s.count * s.radius**2 for s in scene.species)
+    scale = math.sqrt(covered / (phi * width * height))
+    document["box"]["size"] = [width * scale, height * scale]

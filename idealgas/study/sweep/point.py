@@ -1,0 +1,86 @@
+"""One point of a sweep, run by a worker: its log, its analyses, and a file that says that it is done."""
+
+import json
+import os
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from idealgas.scene import parse_scene
+
+ANALYSES = {
+    "temperature": ("idealgas.analysis.temperature.measure", "temperature"),
+    "pressure": ("idealgas.analysis.pressure.measure", "pressure"),
+    "heat-capacity": ("idealgas.analysis.heat_capacity.measure", "measure_heat"),
+    "transport": ("idealgas.analysis.transport.measure", "transport"),
+    "effusion": ("idealgas.analysis.effusion.measure", "effusion"),
+}
+"""Module and function of each analysis of one log; imported when called for."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a worker is told of a point: plain values. folder: of the sweep; values: by the key of their axis."""
+
+    folder: str
+    index: int
+    combination: int
+    replicate: int
+    values: dict[str, Any]
+    scene: str
+    analyses: tuple[str, ...]
+    keep_log: bool
+
+
+def points_folder(folder: str | os.PathLike[str]) -> Path:
+    """Where the files of a sweep's points are."""
+    return Path(folder) / "points"
+
+
+def result_path(folder: str | os.PathLike[str], index: int) -> Path:
+    """The file that a point leaves when it is done."""
+    return points_folder(folder) / f"{index:04d}.json"
+
+
+def log_path(folder: str | os.PathLike[str], index: int) -> Path:
+    """The point's log."""
+    return points_folder(folder) / f"{index:04d}.h5"
+
+
+def run_point(task: Task) -> None:
+    """Simulate and analyse a point. Its files appear under their names when they are whole, the results last."""
+    from idealgas.log import open_log
+    from idealgas.run.simulate import simulate
+
+    done, log = result_path(task.folder, task.index), log_path(task.folder, task.index)
+    if done.exists():
+        return
+    scene = parse_scene(task.scene)
+    if not task.keep_log:  # nobody will ask how large it was
+        scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
+    part = log.with_name(f"{log.name}.part")
+    simulate(scene, part, force=True, command="idealgas sweep")
+    with open_log(part) as opened:
+        summary = {name: value for name, value in opened.summary.items() if not name.endswith("seconds")}
+        results = {name: _analysis(name)(opened).as_dict() for name in task.analyses}
+    if task.keep_log:
+        part.replace(log)
+    else:
+        part.unlink()
+    labels = {
+        "point": task.index,
+        "seed": scene.scene.seed,
+        "combination": task.combination,
+        "replicate": task.replicate,
+    }
+    found = {**labels, "values": task.values, "scene": task.scene, "summary": summary, "analyses": results}
+    text = json.dumps(found, indent=1, allow_nan=False)
+    unfinished = done.with_name(f"{done.name}.part")
+    unfinished.write_text(text)
+    unfinished.replace(done)
+
+
+def _analysis(name: str) -> Any:
+    module, function = ANALYSES[name]
+    return getattr(import_module(module), function)

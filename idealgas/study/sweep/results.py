@@ -1,0 +1,109 @@
+"""What a sweep found, as one tidy table: a row for each number that an analysis of a point gave."""
+
+import csv
+import json
+import os
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.effusion.measure import Effusion
+from idealgas.analysis.heat_capacity.measure import Measured
+from idealgas.analysis.pressure.equation_of_state import Sample
+from idealgas.analysis.pressure.measure import PAIRS
+from idealgas.errors import UserError
+from idealgas.study.sweep.point import points_folder
+
+ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "deviation")
+
+
+def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
+    """The result files of a sweep in order of their points. UserError if there are none, or one cannot be read."""
+    paths = sorted(points_folder(folder).glob("*.json"), key=lambda path: int(path.stem))
+    if not paths:
+        raise UserError(f"{folder}: holds no results of a sweep")
+    try:
+        return [json.loads(path.read_text()) for path in paths]
+    except (OSError, ValueError) as error:
+        raise UserError(f"{folder}: damaged results ({error})") from None
+
+
+def pressure_samples(folder: str | os.PathLike[str]) -> list[Sample]:
+    """Z of every point of a sweep with the analysis "pressure". UserError if there are none."""
+    samples = []
+    for found in _found(folder, "pressure"):
+        pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
+        samples.append(Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs)))
+    return samples
+
+
+def heat_measurements(folder: str | os.PathLike[str]) -> list[Measured]:
+    """What every point of a sweep with the analysis "heat-capacity" gives. UserError if there are none."""
+    return [Measured.from_dict(found) for found in _found(folder, "heat-capacity")]
+
+
+def effusions(folder: str | os.PathLike[str]) -> Iterator[tuple[str, Effusion]]:
+    """What every point of a sweep with the analysis "effusion" gives, by the values of its axes."""
+    found = _found(folder, "effusion")
+    for point, values in zip(read_points(folder), found, strict=True):
+        name = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
+        yield name, Effusion.from_dict(values)
+
+
+def _found(folder: str | os.PathLike[str], analysis: str) -> Iterator[dict[str, Any]]:
+    for point in read_points(folder):
+        if analysis not in point["analyses"]:
+            raise UserError(f'{folder}: a sweep without the analysis "{analysis}"')
+        yield point["analyses"][analysis]
+
+
+def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
+    """Write `results.csv`, and `results.parquet` where pyarrow is installed, from the result files there are."""
+    rows = [row for point in read_points(folder) for row in _rows(point)]
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    names.sort(key=lambda name: name in ("analysis", "quantity", *ESTIMATE))  # what tells points apart comes first
+    tables = [Path(folder) / "results.csv"]
+    part = tables[0].with_name("results.csv.part")
+    with part.open("w", newline="") as file:
+        writer = csv.DictWriter(file, names, restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    part.replace(tables[0])
+    if find_spec("pyarrow"):
+        import pyarrow
+        from pyarrow import parquet
+
+        tables.append(Path(folder) / "results.parquet")
+        columns = {name: [row.get(name) for row in rows] for name in names}
+        parquet.write_table(pyarrow.table(columns), tables[-1])
+    return tables
+
+
+def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    labels = {name: point[name] for name in ("point", "replicate", "seed")}
+    labels |= {key: json.dumps(v) if isinstance(v, list) else v for key, v in point["values"].items()}
+    for name, value in point["summary"].items():
+        if isinstance(value, bool | int | float):
+            yield {**labels, "analysis": "run", "quantity": name, "value": float(value)}
+    for analysis, found in point["analyses"].items():
+        for quantity, estimate in _estimates(found):
+            yield {**labels, "analysis": analysis, "quantity": quantity, **estimate}
+
+
+def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict[str, float | None]]]:
+    """Numbers in a result by their path; an entry of a list is named by its own texts, long series are left out."""
+    if isinstance(found, dict):
+        if "standard_error" in found:
+            yield "/".join(path), {name: found[name] for name in ESTIMATE}
+            return
+        for name, value in found.items():
+            yield from _estimates(value, (*path, name))
+    elif isinstance(found, list):
+        for entry in found:
+            if isinstance(entry, dict):
+                label = ", ".join(value for value in entry.values() if isinstance(value, str))
+                yield from _estimates(entry, (*path, label))
+    elif isinstance(found, int | float):
+        yield "/".join(path), {"value": float(found)}

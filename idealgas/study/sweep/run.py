@@ -1,0 +1,170 @@
+"""Running a sweep: one task a point on dask.distributed, on this machine or on a cluster.
+
+A point is done when its result file is in place, and only then: whoever is killed, loses the points in hand at most,
+and the next start goes on from the files. Nothing that a point writes depends on the worker that ran it.
+"""
+
+import asyncio
+import logging
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from idealgas.document.dump import dump_document
+from idealgas.errors import UserError
+from idealgas.study.sweep.plan import Sweep
+from idealgas.study.sweep.point import Task, points_folder, result_path, run_point
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+RETRIES = 2
+"""How often a point is tried again that failed, or whose worker died."""
+
+DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What a worker here does first: Ctrl-C is for the process that has it end in order."""
+
+LOCAL = {
+    "distributed.scheduler.allowed-failures": RETRIES,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
+}
+"""Of the cluster made here: nothing but the points takes time, and memory that one needed is there for the next."""
+
+PATIENCE = 10.0  # seconds in which a scheduler must answer
+
+
+@dataclass(frozen=True)
+class Progress:
+    """done: points whose results are there; failed: those given up; total: all."""
+
+    done: int
+    failed: int
+    total: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """ran: points done now; before: points that were done already. failures: what went wrong, by point."""
+
+    ran: int
+    before: int
+    failures: dict[int, str]
+
+
+def run_sweep(
+    sweep: Sweep,
+    folder: str | os.PathLike[str],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+) -> Outcome:
+    """Run what is not done of a sweep; the folder is made, or has to be that of the same sweep.
+
+    workers: processes on this machine, by default one a core. scheduler: address of a dask scheduler whose workers see
+    the folder under the same path; it takes the place of workers. Raises UserError if the sweep cannot be run at all.
+    """
+    folder = Path(folder).absolute()
+    prepare(sweep, folder)
+    open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
+    before = len(sweep.points) - len(open_points)
+    tasks = [
+        Task(
+            str(folder), p.index, p.combination, p.replicate, p.values, dump_document(p.scene), sweep.analyses,
+            sweep.keep_logs,
+        )
+        for p in open_points
+    ]  # fmt: skip
+    failures: dict[int, str] = {}
+    on_progress(Progress(before, 0, len(sweep.points)))
+    if tasks:
+        with _client(min(workers or os.cpu_count() or 1, len(tasks)), scheduler) as client:
+            for k, (index, failure) in enumerate(_run(client, tasks)):
+                if failure is not None:
+                    failures[index] = failure
+                on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
+    return Outcome(len(tasks) - len(failures), before, dict(sorted(failures.items())))
+
+
+def prepare(sweep: Sweep, folder: Path) -> None:
+    """Make the folder, with the sweep in it. UserError if it holds another sweep or cannot be written."""
+    plan = folder / "sweep.toml"
+    try:
+        if plan.exists():
+            if plan.read_text() != sweep.text:
+                raise UserError(f"{folder}: holds another sweep (see {plan}): give another folder, or remove it")
+        elif folder.exists() and any(folder.iterdir()):
+            raise UserError(f"{folder}: exists and is no sweep's folder")
+        points_folder(folder).mkdir(parents=True, exist_ok=True)
+        plan.write_text(sweep.text)
+    except OSError as error:
+        failure = UserError(f"{folder}: cannot be written: {error.strerror}")
+        failure.exit_code = 1
+        raise failure from error
+
+
+def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]]:
+    """Each point's index as it ends, with what went wrong."""
+    from distributed import as_completed
+
+    futures = client.map(run_point, tasks, pure=False, retries=RETRIES, key=[f"point-{task.index}" for task in tasks])
+    index = {future.key: task.index for future, task in zip(futures, tasks, strict=True)}
+    try:
+        for future in as_completed(futures, loop=client.loop):
+            if future.status == "cancelled":
+                raise CancelledError
+            yield index[future.key], None if future.status == "finished" else _reason(future.exception())
+    except (CancelledError, asyncio.CancelledError):
+        raise UserError("the scheduler is gone; the same command goes on where this one stopped") from None
+
+
+def _reason(error: Any) -> str:
+    """One line on why a point failed."""
+    from distributed.scheduler import KilledWorker
+
+    if isinstance(error, KilledWorker):
+        return f"its worker died {RETRIES + 1} times"
+    lines = str(error).strip().splitlines() or [""]
+    return lines[0] if isinstance(error, UserError) else f"{type(error).__name__}: {lines[0]}"
+
+
+@contextmanager
+def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
+    """A client of the scheduler at an address, or of one made here with so many workers of one thread."""
+    try:
+        import dask
+        from distributed import Client, LocalCluster
+        from distributed.comm import parse_address, parse_host_port
+    except ImportError:
+        raise UserError("a sweep needs dask.distributed: pip install 'idealgas[sweep]'") from None
+    if scheduler is not None:
+        try:
+            parse_host_port(parse_address(scheduler)[1])  # a client of no address at all can hardly be closed
+            client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+        except ValueError as error:
+            raise UserError(f"{scheduler}: no address of a scheduler ({error})") from None
+        except OSError:
+            raise UserError(f"{scheduler}: no scheduler answers there within {PATIENCE:g} s") from None
+        with client:
+            yield client
+        return
+    with (
+        dask.config.set(LOCAL),
+        LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            dashboard_address=":0",  # no fixed port for the routes that come without a dashboard too
+            scheduler_kwargs={"dashboard": False},
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+            preload=DEAF,
+        ) as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
+        yield client
