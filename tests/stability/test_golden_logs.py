@@ -1,0 +1,113 @@
+"""Event logs that stay as they are, bit for bit: `cases/golden/digests.json` has a digest of every event column.
+
+A log may be resumed by every program of its trajectory version, so a scene's log keeps every bit until that version
+changes. Once TRAJECTORY has been raised, this makes new digests:
+
+    python tests/stability/test_golden_logs.py
+
+They hold on every machine with IEEE doubles: no velocity at the start takes a sine, and no draw of these seeds lies in
+the tail of the normal distribution, where numpy takes a logarithm. Two functions of the C library are left: the
+logarithm in the times of Monte Carlo, which are therefore rounded to single precision, and the power that bounds the
+fall onto the end of a wall (slopes, everything), whose last bit is that of glibc with fused multiplication. Thermal
+walls have no scene here, as all that they emit goes through the logarithm.
+"""
+
+import hashlib
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from idealgas_cli.main import main
+
+FOLDER = Path(__file__).parents[1] / "cases" / "golden"
+DIGESTS = FOLDER / "digests.json"
+COMMAND = "python tests/stability/test_golden_logs.py"
+SCENES = sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def digest(values: np.ndarray) -> str:
+    """SHA-256 of the bytes of an array, the lowest first."""
+    return hashlib.sha256(values.astype(values.dtype.newbyteorder("<")).tobytes()).hexdigest()
+
+
+def column_digests(path: Path) -> dict[str, str]:
+    """Digest of each event column of a log, by its name; times of a run without positions in single precision."""
+    with h5py.File(path) as file:
+        columns = {name: column[:] for name, column in file["events"].items()}
+    if "position" not in columns:
+        columns["time"] = columns["time"].astype("f4")
+    return {name: digest(values) for name, values in columns.items()}
+
+
+def digests_of(scene: str, folder: Path, *overrides: str) -> dict[str, Any]:
+    """Trajectory version, number of event rows, and digest of each event column of a run."""
+    path = folder / f"{scene}.h5"
+    settings = [argument for override in overrides for argument in ("--set", override)]
+    ran = CliRunner().invoke(main, ["run", str(FOLDER / f"{scene}.toml"), "-o", str(path), *settings])
+    assert ran.exit_code == 0, ran.output
+    with h5py.File(path) as file:
+        version, rows = int(file["versions"].attrs["trajectory"]), len(file["events/time"])
+    return {"trajectory": version, "rows": rows, "columns": column_digests(path)}
+
+
+def complaint(scene: str, found: dict[str, Any], expected: dict[str, Any]) -> str:
+    """What to tell of a log that is not the one on record; empty if it is."""
+    version, recorded = found["trajectory"], expected["trajectory"]
+    if version != recorded:
+        return f"{scene}: trajectory version {version}, digests of version {recorded}: make new ones with {COMMAND}"
+    names = sorted(found["columns"].keys() | expected["columns"].keys())
+    changed = [name for name in names if found["columns"].get(name) != expected["columns"].get(name)]
+    if not changed and found["rows"] == expected["rows"]:
+        return ""
+    rows = f"{found['rows']} rows, {expected['rows']} on record"
+    rule = f"a changed digest needs a new trajectory version, and TRAJECTORY is still {version}"
+    return f"{scene}: {', '.join(changed)}: not the column on record ({rows}); {rule}"
+
+
+def on_record() -> dict[str, Any]:
+    return json.loads(DIGESTS.read_text())
+
+
+def test_every_scene_is_on_record():
+    assert sorted(on_record()) == SCENES
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_every_column_is_the_one_on_record(scene, tmp_path):
+    said = complaint(scene, digests_of(scene, tmp_path), on_record()[scene])
+    assert not said, said
+
+
+def test_brute_force_gives_the_same_log(tmp_path):
+    said = complaint("plain", digests_of("plain", tmp_path, "run.method=brute_force"), on_record()["plain"])
+    assert not said, said
+
+
+def test_a_change_of_one_bit_is_told_by_scene_and_column(tmp_path):
+    found = digests_of("explicit", tmp_path)
+    with h5py.File(tmp_path / "explicit.h5", "r+") as file:
+        velocity = file["events/velocity"]
+        values = velocity[:]
+        values[-1, 1] = np.nextafter(values[-1, 1], np.inf)
+        velocity[:] = values
+    said = complaint("explicit", found | {"columns": column_digests(tmp_path / "explicit.h5")}, on_record()["explicit"])
+    assert said.startswith("explicit: velocity: not the column on record")
+    assert "needs a new trajectory version" in said
+    later = {"trajectory": found["trajectory"] + 1}
+    assert "trajectory version" in complaint("explicit", found | later, on_record()["explicit"])
+
+
+def write_digests() -> None:
+    """Run every scene and put the digests of its columns on record."""
+    with tempfile.TemporaryDirectory() as folder:
+        made = {scene: digests_of(scene, Path(folder)) for scene in SCENES}
+    DIGESTS.write_text(json.dumps(made, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    write_digests()
