@@ -1,118 +1,170 @@
-"""Machine code: its cache, one folder for each state of the sources, and what asks for memory ahead."""
+"""Machine code: its cache, which belongs to the sources that it is made from, and what asks for memory ahead."""
 
+import ast
+import importlib
+import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import FunctionType, ModuleType
 
 import pytest
 from support import ROOT
 
-FOLDER = "from idealgas._jit import cache_folder; print(cache_folder())"
-MODULE = """
+from idealgas._jit import compiled_from
+
+PACKAGE = {
+    "__init__": "",
+    "entry": """
+from typing import TYPE_CHECKING
 from idealgas._jit import njit
+from toy import (  # (a submodule)
+    constants,
+)
+from toy.laws import law
+
+if TYPE_CHECKING:
+    from toy.hints import Hint
 
 @njit
-def twice(x):
+def entry(x):
+    return law(x) + constants.ONE
+
+def late():
+    import toy.later
+    from . import relative
+""",
+    "laws/__init__": "from toy.laws.linear import law",
+    "laws/linear": """
+from idealgas._jit import inline
+
+@inline
+def law(x):
     return 2 * x
-"""
+""",
+    "laws/quadratic": "",
+    "constants": "ONE = 1",
+    "hints": "",
+    "later": "",
+    "relative": "",
+    "apart": "",
+}
+"""A package with an entry point, whose law another module passes on."""
+
+FOLDER = "from idealgas._jit import cache_folder; from toy.entry import entry; print(cache_folder(entry))"
 COMPILED = """
-from module import twice
-assert twice(21) == 42
-print(sum(twice.stats.cache_hits.values()), sum(twice.stats.cache_misses.values()))
+from toy.entry import entry
+print(entry(20), sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """
+INTERPRETED = {"NUMBA_DISABLE_JIT": "1"}
 
-NEAR = """
-from idealgas._jit import fetch_next_line, njit
+MODULES = [
+    path.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
+    for path in sorted((ROOT / "idealgas").rglob("*.py"))
+    if "\n@njit" in path.read_text(encoding="utf-8")
+]
+"""All with entry points."""
 
-@njit
-def near(column, row):
-    fetch_next_line(column, row)
-"""
-NEAR_THE_END = """
-import numpy as np
-from idealgas._jit import fetch_next_line
-from module import near
-for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
-    before = column.copy()
-    assert fetch_next_line(column, 2) is None and near(column, np.uintp(2)) is None
-    assert (column == before).all()
-print(*(code.count("call void @llvm.prefetch") for code in near.inspect_llvm().values()))
-"""
+
+def start(program, folder, **environment):
+    """A fresh Python that finds the modules of a folder first, then this package."""
+    environment = {"NUMBA_DISABLE_JIT": "0", "PATH": "/usr/bin:/bin", "PYTHONPATH": str(ROOT), **environment}
+    command = [sys.executable, "-c", program]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    return subprocess.Popen(command, cwd=folder, env=environment, text=True, **pipes)
 
 
 def python(program, folder, **environment):
-    """What a program prints in a fresh Python that finds the package in a folder first."""
-    environment = {"NUMBA_DISABLE_JIT": "0", "PATH": "/usr/bin:/bin", **environment}
-    done = subprocess.run([sys.executable, "-c", program], cwd=folder, env=environment, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    return done.stdout.strip()
+    """What a program prints in a fresh Python."""
+    process = start(program, folder, **environment)
+    output, errors = process.communicate()
+    assert (process.returncode, errors) == (0, "")
+    return output.strip()
+
+
+def write(folder, name="toy"):
+    for module, source in PACKAGE.items():
+        path = folder / name / f"{module}.py"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(source)
 
 
 @pytest.fixture
-def copy(tmp_path):
-    """A folder with a copy of the package."""
-    shutil.copytree(ROOT / "idealgas", tmp_path / "copy" / "idealgas", ignore=shutil.ignore_patterns("__pycache__"))
-    return tmp_path / "copy"
+def toy(tmp_path):
+    """A folder with the package."""
+    write(tmp_path / "sources")
+    return tmp_path / "sources"
 
 
-def test_every_change_of_a_source_is_another_folder(copy, tmp_path):
-    """A change anywhere in the package, as numba looks at a function's own file only."""
-    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    seen = [python(FOLDER, copy, **cache)]
-    assert Path(seen[0]).parent == tmp_path / "cache"
-    assert python(FOLDER, copy, **cache) == seen[0]
-    for name in ("physics/motion.py", "scene/model.py"):
-        with (copy / "idealgas" / name).open("a") as source:
-            source.write("# changed\n")
-        seen.append(python(FOLDER, copy, **cache))
-    (copy / "idealgas" / "more.py").touch()
-    seen.append(python(FOLDER, copy, **cache))
-    assert len(set(seen)) == 4
+@pytest.fixture
+def cache(tmp_path):
+    """An empty cache."""
+    return {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
 
 
-def test_the_same_sources_elsewhere_share_a_folder(copy, tmp_path):
-    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    assert python(FOLDER, copy, **cache) == python(FOLDER, ROOT, **cache)
+def change(path):
+    with path.open("a") as source:
+        source.write("\n# changed\n")
 
 
-@pytest.mark.parametrize(
-    ("variables", "expected"),
-    [
-        ({"NUMBA_CACHE_DIR": "{}/one", "XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "one"),
-        ({"XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "two/idealgas"),
-        ({"HOME": "{}/three"}, "three/.cache/idealgas"),
-    ],
-)
-def test_where_the_cache_is(variables, expected, tmp_path):
-    variables = {name: value.format(tmp_path) for name, value in variables.items()}
-    folder = Path(python(FOLDER, ROOT, **variables))
-    assert folder.is_dir()
-    assert folder.parent == tmp_path / expected
+@pytest.mark.parametrize("module", sorted(PACKAGE))
+def test_a_folder_belongs_to_a_module_and_what_it_imports(toy, cache, module):
+    """Anywhere in it and from anywhere, but not for type checkers, nor what is beside that."""
+    before = python(FOLDER, toy, **cache, **INTERPRETED)
+    assert python(FOLDER, toy, **cache, **INTERPRETED) == before
+    change(toy / "toy" / f"{module}.py")
+    after = python(FOLDER, toy, **cache, **INTERPRETED)
+    assert Path(before).parent == Path(after).parent == Path(cache["NUMBA_CACHE_DIR"], "toy.entry")
+    assert (after == before) == (module in ("__init__", "apart", "hints", "laws/quadratic"))
 
 
-def test_a_temporary_folder_when_there_can_be_no_cache(copy, tmp_path):
-    """A file is in the way, which stops root as well."""
-    (tmp_path / "file").touch()
-    (tmp_path / "temporary").mkdir()
-    (copy / "module.py").write_text(MODULE)
-    variables = {"NUMBA_CACHE_DIR": str(tmp_path / "file"), "TMPDIR": str(tmp_path / "temporary")}
-    folder = Path(python(FOLDER, copy, **variables))
-    assert folder.parent == tmp_path / "temporary"
-    assert python(COMPILED, copy, **variables) == "0 1"
+def test_a_new_module_in_place_of_a_name_is_another_folder(toy, cache):
+    seen = {python(FOLDER, toy, **cache, **INTERPRETED)}
+    (toy / "toy" / "laws" / "law.py").touch()
+    seen.add(python(FOLDER, toy, **cache, **INTERPRETED))
+    assert len(seen) == 2
 
 
-def test_a_second_process_compiles_nothing(copy, tmp_path):
-    (copy / "module.py").write_text(MODULE)
-    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    assert python(COMPILED, copy, **cache) == "0 1"
-    assert python(COMPILED, copy, **cache) == "1 0"
-    with (copy / "idealgas" / "physics" / "motion.py").open("a") as source:
-        source.write("# changed\n")
-    assert python(COMPILED, copy, **cache) == "0 1"
+def test_only_what_is_compiled_from_another_source_is_compiled_again(toy, cache):
+    """numba itself looks at a function's own file only."""
+    assert python(COMPILED, toy, **cache) == "41 0 1"
+    assert python(COMPILED, toy, **cache) == "41 1 0"
+    change(toy / "toy" / "apart.py")
+    assert python(COMPILED, toy, **cache) == "41 1 0"
+    (toy / "toy" / "constants.py").write_text("ONE = 2")
+    assert python(COMPILED, toy, **cache) == "42 0 1"
 
 
-def test_memory_behind_an_array_is_asked_for_and_left_alone(copy, tmp_path):
-    """Its last row has no line behind it; in Python nothing is asked for."""
-    (copy / "module.py").write_text(NEAR)
-    assert python(NEAR_THE_END, copy, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "1 1 1"
+def test_the_same_sources_elsewhere_share_machine_code(toy, cache, tmp_path):
+    assert python(COMPILED, toy, **cache) == "41 0 1"
+    write(tmp_path / "elsewhere")
+    assert python(COMPILED, tmp_path / "elsewhere", **cache) == "41 1 0"
+
+
+def used(function, seen):
+    """Modules of the package whose functions and classes a function uses, in turn; read off the objects themselves."""
+    function = getattr(function, "py_func", function)
+    if function in seen:
+        return
+    seen.add(function)
+    yield function.__module__
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if isinstance(value, ModuleType):
+            yield value.__name__
+        elif isinstance(getattr(value, "py_func", value), FunctionType):
+            yield from used(value, seen)
+        elif isinstance(value, type):
+            yield value.__module__
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_all_that_an_entry_point_uses_determines_its_machine_code(name):
+    module = importlib.import_module(name)
+    source = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
+    entries = [node.name for node in source.body if isinstance(node, ast.FunctionDef) and node.decorator_list]
+    assert entries
+    for entry in entries:
+        function = getattr(vars(module)[entry], "py_func", vars(module)[entry])
+        assert {each for each in used(function, set()) if each.startswith("idealgas")} <= compiled_from(function).keys()
