@@ -2,8 +2,6 @@
 
 import ast
 import importlib
-import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -70,7 +68,7 @@ MODULES = [
 def start(program, folder, **environment):
     """A fresh Python that finds the modules of a folder first, then this package."""
     environment = {"NUMBA_DISABLE_JIT": "0", "PATH": "/usr/bin:/bin", "PYTHONPATH": str(ROOT), **environment}
-    command = [sys.executable, "-c", program]
+    command = [sys.executable, "-B", "-c", program]  # its own bytecode may be stale when sources change within a second
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     return subprocess.Popen(command, cwd=folder, env=environment, text=True, **pipes)
 
@@ -142,29 +140,235 @@ def test_the_same_sources_elsewhere_share_machine_code(toy, cache, tmp_path):
     assert python(COMPILED, tmp_path / "elsewhere", **cache) == "41 1 0"
 
 
+def functions(name):
+    """A module's own functions, as they are in Python."""
+    values = [getattr(value, "py_func", value) for value in vars(importlib.import_module(name)).values()]
+    return [value for value in values if isinstance(value, FunctionType) and value.__module__ == name]
+
+
 def used(function, seen):
-    """Modules of the package whose functions and classes a function uses, in turn; read off the objects themselves."""
-    function = getattr(function, "py_func", function)
+    """Modules whose functions, classes or names a function uses, in turn; read off the objects themselves."""
     if function in seen:
         return
     seen.add(function)
     yield function.__module__
     for name in function.__code__.co_names:
         value = function.__globals__.get(name)
-        if isinstance(value, ModuleType):
-            yield value.__name__
-        elif isinstance(getattr(value, "py_func", value), FunctionType):
+        value = getattr(value, "py_func", value)
+        if isinstance(value, FunctionType):
             yield from used(value, seen)
         elif isinstance(value, type):
             yield value.__module__
+        elif isinstance(value, ModuleType):
+            yield value.__name__
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_all_that_an_entry_point_uses_determines_its_machine_code(name):
-    module = importlib.import_module(name)
-    source = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
-    entries = [node.name for node in source.body if isinstance(node, ast.FunctionDef) and node.decorator_list]
-    assert entries
-    for entry in entries:
-        function = getattr(vars(module)[entry], "py_func", vars(module)[entry])
+def test_all_that_a_function_uses_determines_its_machine_code(name):
+    assert functions(name)
+    for function in functions(name):
         assert {each for each in used(function, set()) if each.startswith("idealgas")} <= compiled_from(function).keys()
+
+
+def named_in(node):
+    """Imports below a node of a syntax tree, but for those for type checkers: the modules, each with a name or none."""
+    if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+        children = node.orelse
+    else:
+        children = ast.iter_child_nodes(node)
+    if isinstance(node, ast.Import):
+        yield from ((alias.name, "") for alias in node.names)
+    elif isinstance(node, ast.ImportFrom):
+        yield from ((node.module, alias.name) for alias in node.names)
+    for child in children:
+        yield from named_in(child)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_no_import_is_missed(name):
+    """Held against the syntax trees of all sources."""
+    sources = compiled_from(functions(name)[0])
+    assert sources[name] == sys.modules[name].__file__
+    for source in sources.values():
+        for origin, taken in named_in(ast.parse(Path(source).read_text(encoding="utf-8"))):
+            if origin.startswith("idealgas"):
+                places = [ROOT.joinpath(*place.split(".")) for place in (f"{origin}.{taken}", origin)]
+                files = [file for place in places for file in (place / "__init__.py", Path(f"{place}.py"))]
+                assert str(next(file for file in files if file.is_file())) in sources.values()
+
+
+def test_of_each_module_the_three_folders_last_used_stay(toy, cache, tmp_path):
+    """And all that has another name than theirs."""
+    base = tmp_path / "cache"
+    strangers = [base / "0123456789abcdef", base / "toy.entry" / "mine", base / "toy.entry" / "0123456789abcdef.txt"]
+    for stranger in strangers:
+        stranger.mkdir(parents=True)
+    (base / "toy.entry" / "fedcba9876543210").symlink_to(tmp_path)
+    folders = []
+    for version in (0, 1, 2, 0, 3, 4):
+        (toy / "toy" / "constants.py").write_text(f"ONE = {version}")
+        folders.append(Path(python(FOLDER, toy, **cache, **INTERPRETED)))
+    assert [folder.exists() for folder in folders] == [True, False, False, True, True, True]
+    assert all(stranger.is_dir() for stranger in strangers)
+    assert len(list((base / "toy.entry").iterdir())) == 3 + 3
+
+
+@pytest.mark.parametrize(
+    ("variables", "expected"),
+    [
+        ({"NUMBA_CACHE_DIR": "{}/one", "XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "one"),
+        ({"XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "two/idealgas"),
+        ({"HOME": "{}/three"}, "three/.cache/idealgas"),
+    ],
+)
+def test_where_the_cache_is(toy, variables, expected, tmp_path):
+    variables = {name: value.format(tmp_path) for name, value in variables.items()}
+    folder = Path(python(FOLDER, toy, **variables))
+    assert folder.is_dir()
+    assert folder.parent.parent == tmp_path / expected
+
+
+DAMAGE = """
+import os, sys
+from pathlib import Path
+from idealgas._jit import cache_folder, njit
+from toy.entry import entry
+
+def state(argument=20):
+    again = njit(entry.py_func)
+    assert again(argument) == 2 * argument + 1
+    return sum(again.stats.cache_hits.values())
+
+def file(suffix):
+    [path] = cache_folder(entry).glob(f"*{suffix}")
+    return path
+
+assert (state(), state()) == (0, 1)
+code = file(".nbc").read_bytes()
+seen = []
+for suffix in (".nbi", ".nbc"):
+    whole = file(suffix).read_bytes()
+    shorter = [whole[:size] for size in (0, 1, len(whole) // 2, len(whole) - 1)]
+    for damaged in (*shorter, os.urandom(len(whole)), b"N.", b"K\\1K\\2\\x86."):
+        file(suffix).write_bytes(damaged)
+        seen.append((state(), state()))
+for place in (len(code) // 4, len(code) // 2, len(code) * 3 // 4):  # still unpickled, but not what was saved
+    file(".nbc").write_bytes(code[:place] + bytes([code[place] ^ 1]) + code[place + 1 :])
+    seen.append((state(), state()))
+file(".nbc").unlink()
+seen.append((state(), state()))
+file(".nbi").unlink()
+assert (state(0.5), state(0.5)) == (0, 1)
+file(".nbc").write_bytes(code)  # of another type of argument, as another process that saves at once may leave it
+seen.append((state(0.5), state(0.5)))
+print(set(seen), len(seen))
+"""
+
+
+def test_a_damaged_file_is_written_anew(toy, cache):
+    assert python(DAMAGE, toy, **cache) == "{(0, 1)} 19"
+
+
+def test_what_cannot_be_saved_is_compiled_each_time(toy, cache):
+    """A file is in the way, which stops root as well."""
+    folder = Path(python(FOLDER, toy, **cache))
+    folder.rmdir()
+    folder.touch()
+    assert python(COMPILED, toy, **cache) == python(COMPILED, toy, **cache) == "41 0 1"
+
+
+def test_first_runs_at_once(toy, cache):
+    """With the same types of arguments and with others."""
+    programs = [COMPILED, COMPILED.replace("20", "20.0")] * 2
+    processes = [start(program, toy, **cache) for program in programs]
+    done = [(*process.communicate(), process.returncode) for process in processes]
+    assert [(output.split()[0], errors, code) for output, errors, code in done] == [("41", "", 0), ("41.0", "", 0)] * 2
+    for program in programs[:2] * 2:  # one may have lost its place to the other: then it is saved now
+        last = python(program, toy, **cache)
+    assert last == "41.0 1 0"
+
+
+TUPLES = """
+from typing import NamedTuple
+
+class Sides(NamedTuple):
+    {}: float
+    {}: float
+"""
+FIELD = """
+from idealgas._jit import njit
+
+@njit
+def left(sides):
+    return sides.left
+"""
+
+
+def test_the_fields_of_a_named_tuple_are_part_of_the_key(tmp_path, cache):
+    """Its class need not be imported where it is used."""
+    (tmp_path / "field.py").write_text(FIELD)
+    program = "from field import left; from tuples import Sides; print(left(Sides(1.0, 2.0)))"
+    for names, expected in ((("left", "right"), "1.0"), (("right", "left"), "2.0"), (("left", "right"), "1.0")):
+        (tmp_path / "tuples.py").write_text(TUPLES.format(*names))
+        assert python(program, tmp_path, **cache) == expected
+
+
+TEMPORARY = """
+import multiprocessing, os, sys
+from idealgas._jit import cache_folder
+from toy.entry import entry
+
+if __name__ == "__main__":
+    folder = cache_folder(entry)
+    assert entry(20) == 41 and list(folder.glob("*.nbc"))
+    if os.fork() == 0:
+        sys.exit(0)
+    assert os.wait()[1] == 0
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        other = pool.apply(cache_folder, [entry])
+        pool.close()
+        pool.join()
+    assert list(folder.glob("*.nbc")) and other != folder and not other.exists()
+    print(folder)
+"""
+
+
+def test_a_temporary_folder_when_there_can_be_no_cache(toy, tmp_path):
+    """Removed at the end of the process that made it, not of its children."""
+    (tmp_path / "file").touch()
+    (tmp_path / "temporary").mkdir()
+    variables = {"NUMBA_CACHE_DIR": str(tmp_path / "file"), "TMPDIR": str(tmp_path / "temporary")}
+    folder = Path(python(TEMPORARY, toy, **variables))
+    assert folder.is_relative_to(tmp_path / "temporary")
+    assert not list((tmp_path / "temporary").iterdir())
+
+
+def test_what_has_no_source_file_is_compiled_but_not_cached(tmp_path, cache):
+    program = FIELD.replace("sides.left", "sides") + "print(left(3), *left.stats.cache_hits)"
+    assert python(program, tmp_path, **cache) == "3"
+    assert not list(tmp_path.iterdir())
+
+
+NEAR = """
+from idealgas._jit import fetch_next_line, njit
+
+@njit
+def near(column, row):
+    fetch_next_line(column, row)
+"""
+NEAR_THE_END = """
+import numpy as np
+from idealgas._jit import fetch_next_line
+from module import near
+for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
+    before = column.copy()
+    assert fetch_next_line(column, 2) is None and near(column, np.uintp(2)) is None
+    assert (column == before).all()
+print(*(code.count("call void @llvm.prefetch") for code in near.inspect_llvm().values()))
+"""
+
+
+def test_memory_behind_an_array_is_asked_for_and_left_alone(tmp_path, cache):
+    """Its last row has no line behind it; in Python nothing is asked for."""
+    (tmp_path / "module.py").write_text(NEAR)
+    assert python(NEAR_THE_END, tmp_path, **cache) == "1 1 1"
