@@ -48,10 +48,8 @@ _COMPILERS = f"{sys.implementation.cache_tag} {numba.__version__} {llvmlite.__ve
 _FOR_TYPE_CHECKERS = re.compile(
     r"^([ \t]*)if (?:typing\.)?TYPE_CHECKING:.*\n(?:(?:\1[ \t]+\S.*|[ \t]*)\n)*", re.MULTILINE
 )
-_IMPORT = re.compile(
-    r"(?:^|[;:])[ \t]*(?:from[ \t]+([\w.]+)[ \t]*import\b[ \t]*(\((?:#.*|[^)#])*|[^;\n]*)|import[ \t]+([^;\n]*))",
-    re.MULTILINE,
-)
+_IMPORT = re.compile(r"import\b(?=[ \t]*(?:\(((?:#.*|[^)#])*)|([^;\n]*)))")  # with what follows it
+_ORIGIN = re.compile(r"(?:^|[;:])[ \t]*(?:from[ \t]+([\w.]+)[ \t]*)?\Z")  # before it, in its line
 _COMMENT = re.compile(r"#.*")
 
 
@@ -62,12 +60,18 @@ def _read(path: str) -> tuple[bytes, list[tuple[str, str]]]:
     Found by patterns: to parse all sources of an engine takes a tenth of a second. A text that looks like an import
     merely adds to a digest; what is imported for type checkers alone is never compiled.
     """
-    content = Path(path).read_bytes()
+    with open(path, "rb") as file:
+        content = file.read()
     source = content.decode("utf-8", "replace").replace("\r\n", "\n").replace("\\\n", " ")
+    if "TYPE_CHECKING" in source:
+        source = _FOR_TYPE_CHECKERS.sub("", source)
     imports = []
-    for origin, taken, modules in _IMPORT.findall(_FOR_TYPE_CHECKERS.sub("", source)):
-        names = [item.split() for item in _COMMENT.sub("", taken or modules).strip("( \t\n").split(",")]
-        imports += [(origin or name[0], name[0] if origin else "") for name in names if name]
+    for found in _IMPORT.finditer(source):
+        line = source.rfind("\n", 0, found.start()) + 1
+        if before := _ORIGIN.search(source[line : found.start()]):
+            for item in _COMMENT.sub("", found[1] or found[2]).split(","):
+                if words := item.split():
+                    imports.append((before[1], words[0]) if before[1] else (words[0], ""))
     return hashlib.sha256(content).digest(), imports
 
 
