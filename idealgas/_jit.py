@@ -1,23 +1,34 @@
-"""Compilation, in one place: `njit` caches machine code under a digest of the package's sources.
+"""Compilation, in one place: `njit` caches machine code under a digest of the sources it is made from.
 
-numba's own cache looks at one file only and serves stale code when a callee in another file changes; a folder named
-after all sources cannot.
+numba's own cache looks at one file only and serves stale code when a callee in another file changes. Here an entry
+point's folder is named after its module's source, the sources of all that this imports, and the versions of what
+compiles them; the processor numba itself keeps apart. Of each module's folders the last ones used stay.
 """
 
+import atexit
 import hashlib
 import os
+import pickle
+import re
+import shutil
+import sys
 import tempfile
 from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any
 
+import llvmlite
 import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 from numba.core.event import TimingListener, install_listener
+from numba.core.serialize import dumps
+from numba.core.types.containers import BaseTuple
 from numba.extending import lower_builtin, register_jitable, type_callable
 
 if numba.config.DISABLE_JIT:
@@ -30,35 +41,243 @@ compilation's."""
 
 CACHE_LINE = 64  # bytes
 
+_KEPT = 3  # folders of a module
+_FOLDER = re.compile(r"[0-9a-f]{16}")  # the name of such a folder; nothing else is ever removed
+_COMPILERS = f"{sys.implementation.cache_tag} {numba.__version__} {llvmlite.__version__} {np.__version__}"
+
+_FOR_TYPE_CHECKERS = re.compile(
+    r"^([ \t]*)if (?:typing\.)?TYPE_CHECKING:.*\n(?:(?:\1[ \t]+\S.*|[ \t]*)\n)*", re.MULTILINE
+)
+_IMPORT = re.compile(r"import\b(?=[ \t]*(?:\(((?:#.*|[^)#])*)|([^;\n]*)))")  # with what follows it
+_ORIGIN = re.compile(r"(?:^|[;:])[ \t]*(?:from[ \t]+([\w.]+)[ \t]*)?\Z")  # before it, in its line
+_COMMENT = re.compile(r"#.*")
+
 
 @cache
-def cache_folder() -> Path:
-    """Folder of this version's machine code, made on first use; a temporary one where no other can be written."""
-    digest = hashlib.sha256()
-    package = Path(__file__).parent
-    for source in sorted(package.rglob("*.py")):
-        digest.update(source.relative_to(package).as_posix().encode())
-        digest.update(source.read_bytes())
+def _read(path: str) -> tuple[bytes, list[tuple[str, str]]]:
+    """Digest of a source and what it imports anywhere in it: modules, each with the name taken from it or with none.
+
+    Found by patterns: to parse all sources of an engine takes a tenth of a second. A text that looks like an import
+    merely adds to a digest; what is imported for type checkers alone is never compiled.
+    """
+    with open(path, "rb") as file:
+        content = file.read()
+    source = content.decode("utf-8", "replace").replace("\r\n", "\n").replace("\\\n", " ")
+    if "TYPE_CHECKING" in source:
+        source = _FOR_TYPE_CHECKERS.sub("", source)
+    imports = []
+    for found in _IMPORT.finditer(source):
+        line = source.rfind("\n", 0, found.start()) + 1
+        if before := _ORIGIN.search(source[line : found.start()]):
+            for item in _COMMENT.sub("", found[1] or found[2]).split(","):
+                if words := item.split():
+                    imports.append((before[1], words[0]) if before[1] else (words[0], ""))
+    return hashlib.sha256(content).digest(), imports
+
+
+@cache
+def _file_of(module: str) -> str | None:
+    """The source of a module of a package that is imported already; none where there is no such module."""
+    top, *names = module.split(".")
+    for folder in getattr(sys.modules.get(top), "__path__", ()):
+        path = os.path.join(folder, *names)
+        for file in (os.path.join(path, "__init__.py"), f"{path}.py"):
+            if os.path.isfile(file):
+                return file
+    return None
+
+
+@cache
+def _imported(module: str, file: str, packages: frozenset[str]) -> dict[str, str]:
+    """The modules of these packages that a module imports, with their sources.
+
+    A name taken from a package is its submodule of that name, else something from its `__init__`. The `__init__` of
+    other packages is run as well, but gives the importing module nothing to call.
+    """
+    package = module if os.path.basename(file) == "__init__.py" else module.rpartition(".")[0]
+    found = {}
+    for origin, name in _read(file)[1]:
+        with suppress(ImportError):  # relative, where there is no package
+            origin = resolve_name(origin, package)
+        if origin.split(".")[0] in packages:
+            for candidate in (f"{origin}.{name}", origin) if name else (origin,):
+                if source := _file_of(candidate):
+                    found[candidate] = source
+                    break
+    return found
+
+
+@cache
+def _sources(module: str, file: str) -> dict[str, str]:
+    """`compiled_from` of the functions of a module."""
+    packages = frozenset({__name__.split(".")[0], module.split(".")[0]})
+    sources = {__name__: __file__, module: file}
+    new = list(sources)
+    while new:
+        name = new.pop()
+        for imported, source in _imported(name, sources[name], packages).items():
+            if imported not in sources:
+                sources[imported] = source
+                new.append(imported)
+    return sources
+
+
+def compiled_from(function: Callable) -> dict[str, str]:
+    """The modules whose sources determine a function's machine code, and their files.
+
+    They are this one, the function's own and all that these import of this package and the function's own, directly or
+    not: by statements anywhere in them, but not by those for type checkers alone.
+    """
+    return _sources(function.__module__, function.__code__.co_filename)
+
+
+def _digest(module: str, file: str) -> str:
+    """Of all that determines the machine code of a module's functions."""
+    digest = hashlib.sha256(_COMPILERS.encode())
+    if _file_of(module) is None:  # in no package: what it imports from beside it is not looked at
+        digest.update(file.encode())
+    for name, source in sorted(_sources(module, file).items()):
+        digest.update(name.encode() + _read(source)[0])
+    return digest.hexdigest()[:16]
+
+
+@cache
+def _temporary_base() -> Path:
+    """A folder for this process alone, removed at its end."""
+    folder = Path(tempfile.mkdtemp(prefix="idealgas-"))
+    atexit.register(_remove_if_own, folder, os.getpid())
+    return folder
+
+
+def _remove_if_own(folder: Path, process: int) -> None:
+    """Remove a process's temporary folder; its forked children run this too, and leave it."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _make(folder: Path) -> Path:
+    """Mark a folder of machine code as used, before anything else, so that no other process takes it for an old one."""
+    try:
+        os.utime(folder)
+    except FileNotFoundError:
+        folder.mkdir(parents=True, exist_ok=True)
+        _remove_old(folder)
+    return folder
+
+
+def _remove_old(new: Path) -> None:
+    """Remove a module's folders but the new one and those last used; another process may be doing so as well."""
+    with suppress(OSError):
+        others = [
+            entry
+            for entry in os.scandir(new.parent)
+            if _FOLDER.fullmatch(entry.name) and entry.name != new.name and entry.is_dir(follow_symlinks=False)
+        ]
+        others.sort(key=lambda entry: entry.stat().st_mtime_ns, reverse=True)
+        for entry in others[_KEPT - 1 :]:
+            shutil.rmtree(entry.path, ignore_errors=True)
+
+
+@cache
+def _folder(module: str, file: str) -> Path:
+    """`cache_folder` of the functions of a module."""
     base = os.environ.get("NUMBA_CACHE_DIR") or os.path.join(
         os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "idealgas"
     )
-    folder = Path(base) / digest.hexdigest()[:16]
+    place = Path(module, _digest(module, file))
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
+        return _make(base / place)
     except OSError:
-        return Path(tempfile.mkdtemp(prefix="idealgas-"))
+        return _make(_temporary_base() / place)
+
+
+def cache_folder(function: Callable) -> Path:
+    """Folder of a function's machine code, made on first use; a temporary one where no other can be written."""
+    return _folder(function.__module__, function.__code__.co_filename)
+
+
+def _fields(kind: Any) -> tuple:
+    """Names of the fields of all named tuples in a signature, which numba tells apart by class and fields' types."""
+    if not isinstance(kind, tuple | BaseTuple):
+        return ()
+    return getattr(getattr(kind, "instance_class", None), "_fields", ()), *map(_fields, kind)
+
+
+class _Locator(_CacheLocator):
+    """Tells numba where a function's machine code is. Its folder already says which sources it is made from."""
+
+    def __init__(self, function: Callable, file: str) -> None:
+        self._py_file = file
+        self._line = function.__code__.co_firstlineno
+        self._folder = cache_folder(function)
+
+    @classmethod
+    def from_function(cls, function: Callable, file: str) -> "_Locator":
+        return cls(function, file)
+
+    def get_cache_path(self) -> str:
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        return self._folder.name
+
+    def get_disambiguator(self) -> str:
+        return str(self._line)
+
+
+class _Code(CompileResultCacheImpl):
+    _locator_classes = (_Locator,)
+
+
+class _Files(IndexDataCacheFile):
+    """numba's files, where whatever cannot be read counts as absent and is written anew.
+
+    Each piece of machine code has its key and a digest with it, as two processes that save at once may give two pieces
+    the same name, and a damaged one would crash.
+    """
+
+    def load(self, key: Any) -> Any:
+        key = key, _fields(key[0])
+        try:
+            digest, content = super().load(key)
+            saved, data = pickle.loads(content) if hashlib.sha256(content).digest() == digest else (None, None)
+        except Exception:  # absent, or damaged, which shows as almost any error
+            return None
+        return data if saved == key else None
+
+    def save(self, key: Any, data: Any) -> None:
+        key = key, _fields(key[0])
+        content = dumps((key, data))
+        super().save(key, (hashlib.sha256(content).digest(), content))
+
+    def _load_index(self) -> dict:
+        try:
+            return super()._load_index()
+        except Exception:
+            return {}
+
+
+class _Cache(FunctionCache):
+    """numba's cache of a function, with the files above; what cannot be saved is compiled again next time."""
+
+    _impl_class = _Code
+
+    def __init__(self, function: Callable) -> None:
+        super().__init__(function)
+        code = self._impl
+        self._cache_file = _Files(self.cache_path, code.filename_base, code.locator.get_source_stamp())
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        with suppress(OSError):
+            super().save_overload(sig, data)
 
 
 def njit(function: Callable) -> Any:
-    """Compile an entry point: no fastmath, no GIL, cached on disk."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder())
-    try:
-        return numba.njit(function, cache=True, **_OPTIONS)
-    finally:
-        numba.config.CACHE_DIR = before
+    """Compile an entry point: no fastmath, no GIL, cached on disk if its source is a file."""
+    compiled = numba.njit(function, **_OPTIONS)
+    if not numba.config.DISABLE_JIT and os.path.isfile(function.__code__.co_filename):
+        compiled._cache = _Cache(function)
+    return compiled
 
 
 def inline(function: Callable) -> Any:
