@@ -9,7 +9,7 @@ from ._analysis import log_argument
 if TYPE_CHECKING:
     from rich.console import Group
 
-    from idealgas.analysis.status import Glance
+    from idealgas.analysis.status import Status
     from idealgas.log import Log
 
 SECONDS = 1.0  # between two looks
@@ -29,17 +29,17 @@ def follow(path: str, once: bool) -> None:
     from rich.console import Console
     from rich.live import Live
 
-    from idealgas.analysis.status import glance
+    from idealgas.analysis.status import status
     from idealgas.log import open_log
 
     console = Console()
     rate: float | None = None
     with open_log(path) as log, Live(console=console, auto_refresh=False, transient=True) as screen:
-        seen, looked = glance(log), time.monotonic()
+        seen, looked = status(log), time.monotonic()
         while log.live:
             time.sleep(SECONDS)
             log.refresh()
-            before, seen = (seen, looked), glance(log)
+            before, seen = (seen, looked), status(log)
             looked = time.monotonic()
             rate = (seen.events - before[0].events) / (looked - before[1])
             if once:
@@ -49,11 +49,11 @@ def follow(path: str, once: bool) -> None:
     with open_log(path) as log:  # anew, as it may have been closed
         if log.complete:
             rate = log.summary["events"] / log.summary["seconds"]
-        shown = _view(log, glance(log), rate)
+        shown = _view(log, status(log), rate)
     console.print(shown)
 
 
-def _view(log: "Log", seen: "Glance", rate: float | None) -> "Group":
+def _view(log: "Log", seen: "Status", rate: float | None) -> "Group":
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
@@ -74,7 +74,7 @@ def _view(log: "Log", seen: "Glance", rate: float | None) -> "Group":
     return Group(table, Text(_histogram(seen)))
 
 
-def _histogram(seen: "Glance") -> str:
+def _histogram(seen: "Status") -> str:
     """Bars of the speeds' density, and a mark where Maxwell-Boltzmann's would end."""
     if seen.density is None:
         return "nothing moves"

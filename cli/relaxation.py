@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     import numpy as np
 
     from idealgas.analysis.core.statistics import Estimate
-    from idealgas.analysis.relaxation.acceptance import Trials
+    from idealgas.analysis.relaxation.acceptance import Acceptance
     from idealgas.analysis.relaxation.measure import Relaxation
-    from idealgas.analysis.relaxation.speeds import Development
+    from idealgas.analysis.relaxation.speeds import SpeedDistributions
 
 
 @click.command()
@@ -41,17 +41,17 @@ def relaxation(
     The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error comes from groups
     of discs. Several logs lie on one plot.
     """
-    from idealgas.analysis.relaxation.acceptance import trials
+    from idealgas.analysis.relaxation.acceptance import acceptance
     from idealgas.analysis.relaxation.measure import relaxation as measure
-    from idealgas.analysis.relaxation.speeds import development
+    from idealgas.analysis.relaxation.speeds import speed_distributions
 
     results, tables, tried = [], [], []
     with reading("instants") as progress:
         for path in paths:
             with open_log(path) as log:
                 results.append(measure(log, start, end, progress))
-                tables.append(None if every is None else development(log, every, start, end))
-                tried.append(trials(log))
+                tables.append(None if every is None else speed_distributions(log, every, start, end))
+                tried.append(acceptance(log))
     if plot:
         from idealgas.analysis.core.style import save
         from idealgas.analysis.relaxation.figure import relaxation_figure
@@ -63,7 +63,7 @@ def relaxation(
             {
                 "logs": [
                     result.as_dict()
-                    | {"trials": attempts and attempts.as_dict(), "development": table and table.as_dict()}
+                    | {"acceptance": attempts and attempts.as_dict(), "speed_distributions": table and table.as_dict()}
                     for result, table, attempts in rows
                 ]
             }
@@ -105,10 +105,10 @@ def _fitted(found: "Estimate | None") -> str:
 
 
 def _told(result: "Relaxation", series: "np.ndarray") -> str:
-    return "not reached" if result.told_until is None else f"{series[result.told_until]:.3g}"
+    return "not reached" if result.first_indistinguishable is None else f"{series[result.first_indistinguishable]:.3g}"
 
 
-def _print_trials(path: str, tried: "Trials") -> None:
+def _print_trials(path: str, tried: "Acceptance") -> None:
     """Acceptance beside theory and, for the classic run, beside what was published."""
     share = tried.acceptance
     click.echo(
@@ -123,7 +123,7 @@ def _print_trials(path: str, tried: "Trials") -> None:
         click.echo(f"  published {share_published:.4f}, {tried.published:,} collisions: Novak & Bortz (1970)")
 
 
-def _print_development(path: str, found: "Development") -> None:
+def _print_development(path: str, found: "SpeedDistributions") -> None:
     """Counts of discs by speed, one row an instant, Maxwell and Boltzmann's last."""
     from rich import box
     from rich.console import Console

@@ -84,10 +84,10 @@ def _print_plan(plan: "Sweep", workers: int | None) -> None:
     from rich.filesize import decimal
     from rich.table import Table
 
-    from idealgas.study.sweep.cost import outlook
+    from idealgas.study.sweep.cost import estimate_cost
 
     workers = workers or os.cpu_count() or 1
-    costs = outlook(plan)
+    costs = estimate_cost(plan)
     table = Table("point", "replicate", *plan.axes, "N", "φ", "events", "log")
     for point, cost in zip(plan.points, costs, strict=True):
         values = (f"{value:.6g}" if isinstance(value, float) else str(value) for value in point.values.values())

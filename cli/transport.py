@@ -46,7 +46,7 @@ def transport(path: str, start: float | None, end: float | None, plot: str | Non
             for entry in result.diffusion
             for row in (
                 (f"{entry.species}: D by displacement", entry.coefficient),
-                (f"{entry.species}: time that velocities are remembered", entry.memory),
+                (f"{entry.species}: velocity correlation time", entry.velocity_correlation_time),
             )
         ],
     )

@@ -43,7 +43,7 @@ class EventBatch(NamedTuple):
 
 
 def empty_batch(
-    rows: int = BLOCK, rotating: bool = False, periodic: bool = False, homogeneous: bool = False
+    rows: int = BLOCK, rotating: bool = False, periodic: bool = False, without_positions: bool = False
 ) -> EventBatch:
     """A batch for an engine to fill; homogeneous: a gas without positions."""
     return EventBatch(
@@ -51,11 +51,11 @@ def empty_batch(
         disc=np.empty(rows, np.uint32),
         partner=np.empty(rows, np.int32),
         kind=np.empty(rows, np.uint8),
-        position=None if homogeneous else np.empty((rows, 2)),
+        position=None if without_positions else np.empty((rows, 2)),
         velocity=np.empty((rows, 2)),
         angular_velocity=np.empty(rows) if rotating else None,
         image=np.empty((rows, 2), np.int32) if periodic else None,
-        trial=np.empty(rows, np.uint64) if homogeneous else None,
+        trial=np.empty(rows, np.uint64) if without_positions else None,
     )
 
 

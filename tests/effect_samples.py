@@ -67,7 +67,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
         thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
         piston=piston if "piston" in names else None,
-        ledger=np.zeros(4 + len(walls)),
+        wall_energy=np.zeros(4 + len(walls)),
     )
 
 
@@ -86,4 +86,4 @@ def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
     columns = [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
-    return [*columns, effects.ledger]
+    return [*columns, effects.wall_energy]

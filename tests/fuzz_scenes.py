@@ -20,7 +20,7 @@ from idealgas.gas.state import Gas
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.scene.tables.box import SIDES
 
-EFFECTS = ("joined x", "joined y", "walls", "gravity", "rotation", "restitution", "thermal", "piston")
+EFFECTS = ("periodic x", "periodic y", "walls", "gravity", "rotation", "restitution", "thermal", "piston")
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
 MASSES = (1.0, 1e-8, 1e8)
@@ -35,7 +35,7 @@ def room_of(size, piston) -> tuple[float, float, float, float]:
     return (*low, *high)
 
 
-def place(random, size, joined, room, walls, number, share, gridded, factors):
+def place(random, size, periodic, room, walls, number, share, gridded, factors):
     """Positions (M, 2) and radii (M,) of discs on a lattice, moved a little unless gridded.
 
     Those in walls are left out. share: of the pitch that the largest discs take up.
@@ -49,10 +49,10 @@ def place(random, size, joined, room, walls, number, share, gridded, factors):
     position = low + (site + 0.5) * pitch
     if not gridded:
         position += 0.99 * random.uniform(-1, 1, (number, 2)) * (pitch / 2 - radius[:, None])
-        shift = random.uniform(0, 1, 2) * joined * size
-        position = np.where(joined, (position + shift) % size, position)
+        shift = random.uniform(0, 1, 2) * periodic * size
+        position = np.where(periodic, (position + shift) % size, position)
     if len(walls):
-        shifts = [(x, y) for x in ((-1, 0, 1) if joined[0] else (0,)) for y in ((-1, 0, 1) if joined[1] else (0,))]
+        shifts = [(x, y) for x in ((-1, 0, 1) if periodic[0] else (0,)) for y in ((-1, 0, 1) if periodic[1] else (0,))]
         images = np.concatenate([walls + np.array(s) * size for s in shifts])
         clear = distances(position, images).min(axis=1) >= radius
         position, radius = position[clear], radius[clear]
@@ -125,11 +125,11 @@ def tables_of(draw) -> dict[str, Any]:
     called = {name for name in EFFECTS if draw(st.booleans())}
     random = np.random.default_rng(draw(st.integers(0, 2**32)))
     size = pick(draw, (6.0, 5.0), (6.0, 6.0), (6.0, 1.5), (1.0, 6.0))
-    joined = np.array(["joined x" in called, "joined y" in called])
+    periodic = np.array(["periodic x" in called, "periodic y" in called])
     masses = pick(draw, [1.0], [1.0, 3.0], [1.0, 1e8], [1e-8, 1.0, 1e4])
     piston = draw_piston(draw, size, masses[0]) if "piston" in called else None
     if piston:
-        joined[SIDES.index(piston["side"]) // 2] = False
+        periodic[SIDES.index(piston["side"]) // 2] = False
     walls = draw(walls_in(size)) if "walls" in called else np.empty((0, 2, 2))
     if piston:
         keep_clear_of_piston(walls, size, piston)
@@ -138,7 +138,7 @@ def tables_of(draw) -> dict[str, Any]:
     factors = pick(draw, [1.0], [1.0, 0.5], [1.0, 0.1, 1e-3])
     gridded = draw(st.booleans())
     position, radius = place(
-        random, np.array(size), joined, room_of(size, piston), walls, number, share, gridded, factors
+        random, np.array(size), periodic, room_of(size, piston), walls, number, share, gridded, factors
     )
     n = len(position)
     velocity = move(random, pick(draw, "normal", "few directions", "one hot", "one moves", "all speeds"), n)
@@ -153,7 +153,7 @@ def tables_of(draw) -> dict[str, Any]:
     tables["run"]["events"] = pick(draw, 10, 30, 30, 100)
     for axis in range(2):
         for side in SIDES[2 * axis : 2 * axis + 2]:
-            if joined[axis]:
+            if periodic[axis]:
                 tables["box"][side] = "periodic"
             elif "thermal" in called and draw(st.booleans()) and not (piston and piston["side"] == side):
                 tables["box"][side] = {"thermal": masses[-1] * pick(draw, 1.0, 1e-4, 100.0)}
@@ -164,9 +164,9 @@ def tables_of(draw) -> dict[str, Any]:
             {"from": a, "to": b} | (draw_gate(draw) if gates else {}) | (hot if k == 0 else {})
             for k, (a, b) in enumerate(walls.tolist())
         ]
-    if "gravity" in called and not joined.all():
+    if "gravity" in called and not periodic.all():
         pull = pick(draw, 1.0, 0.01, 1e-6, 100.0)
-        direction = np.where(joined, 0.0, pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0)))
+        direction = np.where(periodic, 0.0, pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0)))
         tables["gravity"] = {"acceleration": (pull * direction).tolist()}
     if spins:
         tables["rotation"] = {"inertia": pick(draw, 0.5, 1.0, 1e-6), "roughness": pick(draw, 1.0, 0.0, -0.5, 0.99)}

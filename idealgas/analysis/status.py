@@ -16,7 +16,7 @@ BINS, HIGHEST = 20, 4.0
 
 
 @dataclass(frozen=True)
-class Glance:
+class Status:
     """The latest state of a log.
 
     time: of the last event. rows: of events; None where none are kept. events: so far, to the accuracy of their share
@@ -37,7 +37,7 @@ class Glance:
     expected: np.ndarray
 
 
-def glance(log: Log) -> Glance:
+def status(log: Log) -> Status:
     """Look at the last state and events, of which no more are read than a bounded number."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
@@ -46,7 +46,7 @@ def glance(log: Log) -> Glance:
     edges = np.linspace(0, HIGHEST, BINS + 1)
     speeds = np.sort(np.sqrt(squares / temperature)) if temperature > 0 else None
     p, z = _pressure(log, seen)
-    return Glance(
+    return Status(
         time=log.end_time,
         rows=len(log) if log.has_events else None,
         events=_events(log),

@@ -6,7 +6,7 @@ Key = tuple[str | int, ...]
 """Path of a key in the document: ("species", 0, "radius")."""
 
 
-class Fault(NamedTuple):
+class Issue(NamedTuple):
     """Something wrong: the key to show first, then the others that have a part in it."""
 
     keys: tuple[Key, ...]

@@ -9,7 +9,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from idealgas.document.dump import toml_value
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.errors import UserError
 
 _WORDS = {
@@ -36,29 +36,29 @@ class SceneError(UserError, ValueError):
         self.errors = list(errors)
 
 
-def as_faults(findings: Iterable[ErrorDetails], model: type[BaseModel]) -> list[Fault]:
+def as_issues(findings: Iterable[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
     """Pydantic's findings about a document of a model in the project's words."""
-    return [_fault(finding, model) for finding in findings]
+    return [_issue(finding, model) for finding in findings]
 
 
-def _fault(finding: ErrorDetails, model: type[BaseModel]) -> Fault:
+def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # tags of unions
     kind, got = finding["type"], finding["input"]
     if kind == "extra_forbidden":
         known = list(_keys(table_at(key[:-1], model)))
         close = get_close_matches(str(key[-1]), known, n=1)
         wrong = f"unknown {'key' if key[1:] else 'table'}" + (f', did you mean "{close[0]}"?' if close else "")
-        return Fault((key,), wrong, str(key[-1]), ", ".join(known))
+        return Issue((key,), wrong, str(key[-1]), ", ".join(known))
     if kind == "missing" and isinstance(key[-1], int):
-        return Fault((key[:-1],), "too short", _shown(got), _described(key, model))
+        return Issue((key[:-1],), "too short", _shown(got), _described(key, model))
     if kind == "missing":
-        return Fault((key,), "missing", "nothing", _described(key, model))
+        return Issue((key,), "missing", "nothing", _described(key, model))
     if kind in ("tuple_type", "too_long"):
-        return Fault((key,), "too long" if kind == "too_long" else "wrong type", _shown(got), _described(key, model))
+        return Issue((key,), "too long" if kind == "too_long" else "wrong type", _shown(got), _described(key, model))
     if key != finding["loc"] and kind == "literal_error":
-        return Fault((key,), "unknown value", _shown(got), _described(key, model))
+        return Issue((key,), "unknown value", _shown(got), _described(key, model))
     wrong, allowed = _WORDS.get(kind, ("wrong value", finding["msg"]))
-    return Fault((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
+    return Issue((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
 
 
 def _shown(value: Any, longest: int = 60) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.document.lines import key_lines
 
 
@@ -20,14 +20,14 @@ class Origin:
     overridden: Mapping[Key, str] = field(default_factory=dict, compare=False)
     above: Key = field(default=(), compare=False)
 
-    def report(self, faults: Sequence[Fault]) -> list[str]:
+    def report(self, issues: Sequence[Issue]) -> list[str]:
         """One line a fault, in order of the file's lines, those of overrides last."""
         lines = []
-        for fault in faults:
-            blamed = next((o for key in fault.keys if (o := self._override(key)) is not None), None)
-            line = self.line(fault.keys[0])
+        for issue in issues:
+            blamed = next((o for key in issue.keys if (o := self._override(key)) is not None), None)
+            line = self.line(issue.keys[0])
             place = f"{blamed}: " if blamed is not None else f"{self.name}:{line}: " if self.name else ""
-            lines.append((blamed is not None, line, f"{place}{fault}"))
+            lines.append((blamed is not None, line, f"{place}{issue}"))
         return [text for *_, text in sorted(lines, key=lambda item: item[:2])]
 
     def _override(self, key: Key) -> str | None:

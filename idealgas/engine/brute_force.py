@@ -16,12 +16,12 @@ from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.effects import Effects
-from idealgas.physics.periodic import images_between, images_to_wall, turns_along
+from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact
 
 U = np.uintp
-PAIR, SIDE, SEGMENT, PISTON, STOP, TURN = range(6)
+PAIR, SIDE, SEGMENT, PISTON, STOP, BOUNDARY_CROSSING = range(6)
 
 
 @inline
@@ -34,7 +34,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
             time = piston_hit(disc, effects.piston, effects.gravity)
             if time < best[0]:
                 best = (time, PISTON, i, side, 0, 0)
-        elif not turns_along(effects.periodic, i, along_y)[1]:
+        elif not boundary_crossings_along(effects.periodic, i, along_y)[1]:
             time = side_contact(disc, side, length_y if along_y else length_x, effects.gravity)
             if time < best[0]:
                 best = (time, SIDE, i, side, 0, 0)
@@ -89,19 +89,19 @@ def image_range(periodic, along_y):
 
 
 @inline
-def turn_event(record, i, effects, periodic, best):
+def boundary_crossing_event(record, i, effects, periodic, best):
     """The earlier of `best` and disc i's way through joined sides: no record changes, but the images to look at do."""
     if periodic is not None:
         disc = record[U(i)]
         for axis in range(2):
-            turns, joined = turns_along(periodic, i, axis == 1)
-            if joined:
+            boundary_crossings, is_periodic = boundary_crossings_along(periodic, i, axis == 1)
+            if is_periodic:
                 length = periodic.Ly if axis == 1 else periodic.Lx
                 position, velocity = (disc.y, disc.vy) if axis == 1 else (disc.x, disc.vx)
                 forward = velocity > 0.0
-                time = disc.t + arrival_delay(position, velocity, (turns + (1 if forward else 0)) * length)
+                time = disc.t + arrival_delay(position, velocity, (boundary_crossings + (1 if forward else 0)) * length)
                 if time < best[0]:
-                    best = (time, TURN, i, axis, 1 if forward else -1, 0)
+                    best = (time, BOUNDARY_CROSSING, i, axis, 1 if forward else -1, 0)
     return best
 
 
@@ -126,15 +126,15 @@ def next_event(record, box, effects):
         best = wall_event(record, i, effects, box[0], box[1], best)
         for j in range(i + 1, record.shape[0]):
             best = pair_event(record, i, j, effects, best)
-        best = turn_event(record, i, effects, effects.periodic, best)
+        best = boundary_crossing_event(record, i, effects, effects.periodic, best)
     return stop_event(effects.piston, best)
 
 
 @inline
-def turn(periodic, i, axis, forward):
+def cross_boundary(periodic, i, axis, forward):
     """Count a way through joined sides."""
     if periodic is not None:
-        periodic.turns[U(i), axis] += np.int32(forward)
+        periodic.boundary_crossings[U(i), axis] += np.int32(forward)
 
 
 @njit
@@ -144,7 +144,7 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
     events = 0
     collisions = 0
     now = counters[0].time
-    still = counters[0].still
+    events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
@@ -152,8 +152,8 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
         if time > until:
             reached = True
             break
-        if what == TURN:
-            turn(effects.periodic, i, partner, image_x)
+        if what == BOUNDARY_CROSSING:
+            cross_boundary(effects.periodic, i, partner, image_x)
             continue
         if what == STOP:
             resolve_stop(time, effects.piston)
@@ -176,16 +176,16 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
             resolve_piston(disc, i, time, effects.piston, effects)
             rows += write_piston_hit(batch, rows, clock, i, effects.piston, disc, effects)
         events += 1
-        still = check_clock(time, now, still, record.shape[0])
+        events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, 0, 0, now, still)
+    add_to_counters(counters[0], events, collisions, 0, 0, now, events_at_this_time)
     return rows, reached
 
 
 class BruteForce:
     """The method as an object: what an epoch needs between its start and its end."""
 
-    homogeneous = False
+    without_positions = False
     single_epoch = False
 
     def start(self, gas: Gas, effects: Effects) -> None:

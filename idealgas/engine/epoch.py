@@ -14,10 +14,10 @@ LONGEST_WAY = 6144  # of the fastest disc, in diameters: contacts are missed by 
 FEWEST_PER_DISC = 4  # events, however long the way: an epoch costs about as much as one event a disc
 
 
-def encounters_per_length(gas: Gas, joined: Sequence[bool] = (False, False)) -> float:
+def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -> float:
     """Encounters of all discs with discs and sides per length that each moves: a kinetic-theory estimate, 1/length.
 
-    joined: along which axes sides are. Sides that leave a disc less than its diameter: see `narrow_encounters`.
+    periodic: along which axes sides are. Sides that leave a disc less than its diameter: see `narrow_encounters`.
     """
     n = len(gas)
     largest_radius = float(gas.radius.max())
@@ -28,16 +28,16 @@ def encounters_per_length(gas: Gas, joined: Sequence[bool] = (False, False)) -> 
     room = [length - 2.0 * largest_radius for length in gas.box]
     far = [
         way if way > 2.0 * largest_radius else length * on
-        for way, length, on in zip(room, gas.box, joined, strict=True)
+        for way, length, on in zip(room, gas.box, periodic, strict=True)
     ]
     sides = sum(2.0 / (math.pi * way) for way in far if way > 0.0)
     return n * (pairs + sides)
 
 
-def narrow_encounters(gas: Gas, joined: Sequence[bool]) -> float:
+def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:
     """Hits of sides that leave the largest disc less than its diameter, 1/time: the direction of motion decides."""
     rate = 0.0
-    for axis, (length, on) in enumerate(zip(gas.box, joined, strict=True)):
+    for axis, (length, on) in enumerate(zip(gas.box, periodic, strict=True)):
         room = length - 2.0 * gas.radius
         if not on and 0.0 < room.min() <= 2.0 * gas.radius.max():
             rate += math.fsum((np.abs(gas.velocity[:, axis]) / room).tolist())
@@ -45,7 +45,7 @@ def narrow_encounters(gas: Gas, joined: Sequence[bool]) -> float:
 
 
 def epoch_length(
-    gas: Gas, encounters: float, extra_speed: float = 0.0, joined: Sequence[bool] = (False, False)
+    gas: Gas, encounters: float, extra_speed: float = 0.0, periodic: Sequence[bool] = (False, False)
 ) -> float:
     """A power of two of time in which 32 to 64 events a disc happen, fewer in a thin gas; infinite if nothing moves.
 
@@ -54,7 +54,7 @@ def epoch_length(
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
-    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, joined)
+    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, periodic)
     if rate == 0.0:
         return math.inf
     way = 2.0 * LONGEST_WAY * float(gas.radius.min()) / (float(speeds.max()) + extra_speed)

@@ -21,7 +21,7 @@ from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 from idealgas.physics.random_pair import mean_trial_time, touch_at_random
-from idealgas.physics.restitution import note_collision
+from idealgas.physics.restitution import record_collision
 
 U = np.uintp
 DRAWS = np.uint64(5)  # random numbers a trial may need
@@ -50,8 +50,8 @@ def collide_at_random(record, ids, i, j, time, offset, effects):
     a.t = time
     b.t = time
     collide(a, b, ids[U(i)], ids[U(j)], effects.restitution, effects.rotation, None, NO_IMAGES)
-    note_collision(effects.restitution, ids[U(i)], time)
-    note_collision(effects.restitution, ids[U(j)], time)
+    record_collision(effects.restitution, ids[U(i)], time)
+    record_collision(effects.restitution, ids[U(j)], time)
 
 
 @njit
@@ -107,7 +107,7 @@ def advance_trials(
 class MonteCarlo:
     """The method as an object: what an epoch needs between its start and its end."""
 
-    homogeneous = True
+    without_positions = True
     single_epoch = False
 
     def __init__(self, seed: int, v_ref: float, one_sided: bool = False) -> None:

@@ -242,7 +242,7 @@ def advance_precisely(
     events = 0
     collisions = 0
     now = counters[0].time
-    still = counters[0].still
+    events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
@@ -268,9 +268,9 @@ def advance_precisely(
             rows += write_side_hit(batch, rows, epoch_start + clock, i, -1 - j, record[i], effects)
         find_again(c, coming, i, j)
         events += 1
-        still = check_clock(clock, now, still, record.shape[0])
+        events_at_this_time = check_clock(clock, now, events_at_this_time, record.shape[0])
         now = clock
-    add_to_counters(counters[0], events, collisions, 0, 0, now, still)
+    add_to_counters(counters[0], events, collisions, 0, 0, now, events_at_this_time)
     return rows, reached
 
 
@@ -289,7 +289,7 @@ def turn_back(c, time):
 class PreciseBruteForce:
     """The method as an object. columns: the discs as they are, with all their digits."""
 
-    homogeneous = False
+    without_positions = False
     single_epoch = True
 
     def __init__(self, precision: str, start: Columns | None = None) -> None:

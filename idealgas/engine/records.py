@@ -27,13 +27,13 @@ COUNTERS = np.dtype(
     [
         ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),
         ("crossings", "i8"), ("stale", "i8"), ("time", "f8"),  # local time of the last event
-        ("still", "i8"),  # events since the clock last moved
+        ("events_at_this_time", "i8"),  # events since the clock last moved
         ("trials", "i8"), ("trial_time", "f8"),  # of Monte Carlo: since time 0; local time of the last one
     ]
 )  # fmt: skip
 
 
-class StandingClock(Exception):
+class EventCascadeError(Exception):
     """A disc collides without end at one instant."""
 
 
@@ -66,7 +66,7 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 
 @inline
-def check_clock(time, now, still, n):
+def check_clock(time, now, events_at_this_time, n):
     """How many events in a row have happened at one instant.
 
     Raises StandingClock if it is to be without end, ValueError if time runs backwards.
@@ -75,13 +75,13 @@ def check_clock(time, now, still, n):
         raise ValueError("time ran backwards")
     if time > now:
         return 0
-    if still > MOST_AT_ONCE * n:
-        raise StandingClock("the clock stands still: a disc collides without end at one instant")
-    return still + 1
+    if events_at_this_time > MOST_AT_ONCE * n:
+        raise EventCascadeError("the clock stands still: a disc collides without end at one instant")
+    return events_at_this_time + 1
 
 
 @inline
-def add_to_counters(counter, events, disc_collisions, crossings, stale, now, still):
+def add_to_counters(counter, events, disc_collisions, crossings, stale, now, events_at_this_time):
     """Count what happened in one call of a kernel; still: events since the clock last moved."""
     counter.events += events
     counter.disc_collisions += disc_collisions
@@ -89,7 +89,7 @@ def add_to_counters(counter, events, disc_collisions, crossings, stale, now, sti
     counter.crossings += crossings
     counter.stale += stale
     counter.time = now
-    counter.still = still
+    counter.events_at_this_time = events_at_this_time
 
 
 @njit

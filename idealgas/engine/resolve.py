@@ -8,7 +8,7 @@ from idealgas.physics.disc_disc import collide
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.piston import advance_piston, collide_with_piston
-from idealgas.physics.restitution import note_collision
+from idealgas.physics.restitution import record_collision
 from idealgas.physics.wall import segment_normal
 from idealgas.physics.wall_collision import collide_with_wall
 
@@ -26,17 +26,17 @@ def energy_of(disc, own, rotation):
 
 
 @inline
-def enter_in_ledger(ledger, wall, energy):
+def record_wall_energy(wall_energy, wall, energy):
     """Add to the energy that a wall gave."""
-    if ledger is not None:
-        ledger[U(wall)] += energy
+    if wall_energy is not None:
+        wall_energy[U(wall)] += energy
 
 
 @inline
 def finish(disc, own, time, effects):
     """What follows every change of a record."""
     wrap(disc, own, effects.periodic)
-    note_collision(effects.restitution, own, time)
+    record_collision(effects.restitution, own, time)
     disc.count += np.uint32(1)
 
 
@@ -55,7 +55,7 @@ def bounce(disc, own, nx, ny, wall, time, effects):
     """A disc that stands at the contact meets a wall at rest with unit normal (nx, ny)."""
     before = energy_of(disc, own, effects.rotation)
     collide_with_wall(disc, own, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
-    enter_in_ledger(effects.ledger, wall, energy_of(disc, own, effects.rotation) - before)
+    record_wall_energy(effects.wall_energy, wall, energy_of(disc, own, effects.rotation) - before)
     finish(disc, own, time, effects)
 
 
@@ -87,7 +87,7 @@ def resolve_piston(disc, own, time, piston, effects):
         advance_piston(p, time)
         before = energy_of(disc, own, effects.rotation)
         collide_with_piston(disc, own, p, effects.restitution)
-        enter_in_ledger(effects.ledger, p.side, energy_of(disc, own, effects.rotation) - before)
+        record_wall_energy(effects.wall_energy, p.side, energy_of(disc, own, effects.rotation) - before)
         finish(disc, own, time, effects)
 
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from idealgas.engine.audit import Audit, audit
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond
-from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, Limits, StandingClock, synchronise
+from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, synchronise
 from idealgas.errors import UserError
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects, begin_epoch, copy_of, end_epoch, time_of_next_gate
-from idealgas.physics.periodic import Periodic, joined_axes
+from idealgas.physics.periodic import Periodic, periodic_axes
 
 TRAJECTORY = 3
 """Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
@@ -27,7 +27,7 @@ class Method(Protocol):
     """
 
     discs: Discs
-    homogeneous: bool
+    without_positions: bool
     single_epoch: bool
 
     def start(self, gas: Gas, effects: Effects) -> None: ...
@@ -74,7 +74,7 @@ class Simulation:
     totals: Totals = field(default_factory=Totals)
 
     def __post_init__(self) -> None:
-        self._encounters = encounters_per_length(self.gas, joined_axes(self.effects.periodic))
+        self._encounters = encounters_per_length(self.gas, periodic_axes(self.effects.periodic))
         self._begin()
 
     def _begin(self) -> None:
@@ -82,8 +82,8 @@ class Simulation:
         until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
         self.length = until_gate
         if not self.method.single_epoch:
-            joined, extra_speed = joined_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
-            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, joined), until_gate)
+            periodic, extra_speed = periodic_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
+            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic), until_gate)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
@@ -97,7 +97,7 @@ class Simulation:
         events: a further limit for this call. pause: time at which to return with `paused` set, unless it is later
         than the end of the epoch or the stop; it changes no event. UserError if the clock stands still.
         """
-        done = self.so_far
+        done = self.counters
         end = min(self.length, stop.time - self.time, LATEST)
         until_pause = min(pause - self.time, self.length) if pause <= self.time + self.length else LATEST
         limits = Limits(
@@ -108,7 +108,7 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-        except StandingClock as error:  # of a kernel, which cannot say when
+        except EventCascadeError as error:  # of a kernel, which cannot say when
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0]["time"])
@@ -116,13 +116,13 @@ class Simulation:
 
     def finished(self, stop: Stop) -> bool:
         """Whether the stop is reached."""
-        done = self.so_far
+        done = self.counters
         if done.events >= stop.events or done.disc_collisions >= stop.disc_collisions or done.trials >= stop.trials:
             return True
         return self.epoch_over and self.length >= stop.time - self.time
 
     @property
-    def so_far(self) -> Totals:
+    def counters(self) -> Totals:
         """What happened since time 0, up to now."""
         counter = self._counters[0]
         return Totals(
@@ -137,12 +137,12 @@ class Simulation:
         """Time of the last event, or the epoch's start if there was none in it."""
         return self.time + float(self._counters[0]["time"])
 
-    def gas_now(self) -> Gas:
-        """The gas where the last call of `advance` left it: at its time limit, or at the last event before."""
-        return self.state_now()[0]
+    def state(self) -> tuple[Gas, Effects]:
+        """The gas and the effects where the last call of `advance` left them: at its time limit, or at the last
+        event before.
 
-    def state_now(self) -> tuple[Gas, Effects]:
-        """The same with the effects there; the gas and its images are copies."""
+        The gas and its images are copies.
+        """
         periodic = copy_of(self.effects.periodic)
         return self._synchronised(self._local_now, periodic), self.effects._replace(periodic=periodic)
 
@@ -154,13 +154,13 @@ class Simulation:
         position, velocity = np.empty((2, len(record), 2))
         position[ids] = np.column_stack((record.x, record.y))
         velocity[ids] = np.column_stack((record.vx, record.vy))
-        if self.method.homogeneous:
+        if self.method.without_positions:
             position = self.gas.position
         return replace(self.gas, position=position, velocity=velocity)
 
     def next_epoch(self) -> None:
         """Bring all discs to the end of the epoch and begin the next one there."""
-        self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.so_far
+        self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.counters
         end_epoch(self.effects, self.length)
         self.time += self.length
         self.epoch += 1
@@ -171,7 +171,7 @@ class Simulation:
         return audit(self.gas, self.overlap)
 
     def audit_of(self, gas: Gas) -> Audit:
-        """What must hold, of a gas that `gas_now` or `state_now` gave."""
+        """What must hold, of a gas that `state` gave."""
         method = copy.copy(self.method)
         method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
         return audit(gas, method.deepest_overlap())

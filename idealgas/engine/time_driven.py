@@ -52,15 +52,15 @@ class Nearby(NamedTuple):
     skin: float
 
 
-def make_nearby(gas: Gas, joined: tuple[bool, bool]) -> Nearby:
+def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
     """Nothing listed yet."""
     n, widest = len(gas), 2.0 * float(gas.radius.max())
     skin = max(math.sqrt(NEAR * gas.area / (math.pi * n)) - widest, LEAST_SKIN * widest)
     size = max(widest + skin, math.sqrt(gas.area / (CELLS_A_DISC * n)))
     columns, rows = (max(int(length / size), 1) for length in gas.box)
-    if joined[0] and columns < 3:  # two would be neighbours on both sides
+    if periodic[0] and columns < 3:  # two would be neighbours on both sides
         columns = 1
-    if joined[1] and rows < 3:
+    if periodic[1] and rows < 3:
         rows = 1
     cell, order = np.empty((2, n), np.int32)
     pairs, first = np.empty((4 * n, 2), np.int32), np.empty(columns * rows + 1, np.int32)
@@ -78,7 +78,7 @@ def nearest(x, y, periodic):
 
 
 @inline
-def is_joined(periodic, along_y):
+def is_periodic(periodic, along_y):
     """Whether the sides across an axis are."""
     if periodic is not None:
         return periodic.y if along_y else periodic.x
@@ -109,9 +109,9 @@ def neighbour_cell(near, column, row, k, periodic):
     """One of a cell's four neighbours to the right and above; -1 if there is none."""
     column += 1 if k == 0 else k - 2
     row += 0 if k == 0 else 1
-    if is_joined(periodic, False) and near.columns > 1:
+    if is_periodic(periodic, False) and near.columns > 1:
         column = (column + near.columns) % near.columns
-    if is_joined(periodic, True) and near.rows > 1:
+    if is_periodic(periodic, True) and near.rows > 1:
         row %= near.rows
     inside = (column >= 0) & (column < near.columns) & (row < near.rows)
     return row * near.columns + column if inside else -1
@@ -144,12 +144,12 @@ def list_pairs(record, ids, box, near, periodic):
 @inline
 def side_beyond(disc, box, periodic):
     """The side of the box that a disc reaches through on its way out; -1 if there is none."""
-    if not is_joined(periodic, False):
+    if not is_periodic(periodic, False):
         if disc.x < disc.r and disc.vx < 0.0:
             return 0
         if disc.x > box[0] - disc.r and disc.vx > 0.0:
             return 1
-    if not is_joined(periodic, True):
+    if not is_periodic(periodic, True):
         if disc.y < disc.r and disc.vy < 0.0:
             return 2
         if disc.y > box[1] - disc.r and disc.vy > 0.0:
@@ -268,7 +268,7 @@ def advance_steps(
 class TimeDriven:
     """The method as an object: what an epoch needs between its start and its end; steps end at multiples of dt."""
 
-    homogeneous = False
+    without_positions = False
     single_epoch = False
 
     def __init__(self, dt: float) -> None:
@@ -277,8 +277,8 @@ class TimeDriven:
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch, which may cut a step in two: discs fly on as they did."""
-        joined = (effects.periodic.x, effects.periodic.y) if effects.periodic else (False, False)
-        self._near = make_nearby(gas, joined)
+        periodic = (effects.periodic.x, effects.periodic.y) if effects.periodic else (False, False)
+        self._near = make_nearby(gas, periodic)
         self.discs = make_discs(gas, np.arange(len(gas)))
         list_pairs(*self.discs, self._near, effects.periodic)
         self.discs = make_discs(gas, self._near.order.copy())

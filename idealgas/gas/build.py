@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idealgas.document.error import Fault
-from idealgas.gas.contacts import resting_faults
+from idealgas.document.error import Issue
+from idealgas.gas.contacts import static_contact_issues
 from idealgas.gas.state import Gas
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.geometry import room
@@ -39,8 +39,8 @@ def make_gas(scene: Scene) -> Gas:
         ),
         species_names=(*names, *(s.name for s in scene.species)),
     )
-    if faults := list(resting_faults(scene, gas)):
-        raise SceneError(scene.report(faults))
+    if issues := list(static_contact_issues(scene, gas)):
+        raise SceneError(scene.report(issues))
     return gas
 
 
@@ -72,7 +72,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
     space = room(box, scene.piston)
     walls = np.array([(*w.start, *w.end) for w in scene.wall if w.there_at_start]).reshape(-1, 4)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    grid = placement.make_grid(box.size, radius, box.joined, walls)
+    grid = placement.make_grid(box.size, radius, box.periodic, walls)
     random = stream(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
     if scene.disc:
@@ -87,7 +87,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
             lattices.setdefault(region, []).append(k)
         else:
             at_random.append(k)
-            for axis in (a for a in range(2) if box.joined[a] and s.region is None):
+            for axis in (a for a in range(2) if box.periodic[a] and s.region is None):
                 bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
     for members in lattices.values():
         chosen = np.concatenate([ids[k + 1] for k in members])
@@ -111,4 +111,4 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 def _no_room(scene: Scene, species: int, how: str, got: str, allowed: str) -> SceneError:
     keys = (*(("species", species, key) for key in ("count", "radius", "region")), ("box", "size"))
-    return SceneError(scene.report([Fault(keys, f"no room for all discs {how}", got, allowed)]))
+    return SceneError(scene.report([Issue(keys, f"no room for all discs {how}", got, allowed)]))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.scene import Scene
 from idealgas.scene.tables.box import SIDES
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from idealgas.gas.state import Gas
 
 
-def resting_faults(scene: Scene, gas: Gas) -> Iterator[Fault]:
+def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
     """A fault for each explicit disc, and each species, of which something rests on a side, a wall or the piston."""
     blamed = set()
     for name, resting in _supports(scene, gas):
@@ -27,7 +27,7 @@ def resting_faults(scene: Scene, gas: Gas) -> Iterator[Fault]:
             if key not in blamed:
                 blamed.add(key)
                 got = f"disc {i} in contact, without a velocity along the normal"
-                yield Fault((key,), f"at rest on {name}, to which it is pressed", got, "a gap or a velocity")
+                yield Issue((key,), f"at rest on {name}, to which it is pressed", got, "a gap or a velocity")
 
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:

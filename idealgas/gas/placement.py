@@ -39,14 +39,14 @@ class Grid(NamedTuple):
 def make_grid(
     box: tuple[float, float],
     radius: np.ndarray,
-    joined: tuple[bool, bool] = (False, False),
+    periodic: tuple[bool, bool] = (False, False),
     walls: np.ndarray | None = None,
 ) -> Grid:
-    """An empty grid with about one disc a cell. joined: along which axes. walls: (W, 4), both ends of each."""
+    """An empty grid with about one disc a cell. periodic: along which axes. walls: (W, 4), both ends of each."""
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
     shape = [max(int(length / side), 1) for length in box]
-    size, period = np.array(box) / shape, np.where(joined, box, 0.0)
+    size, period = np.array(box) / shape, np.where(periodic, box, 0.0)
     images = _images(np.empty((0, 4)) if walls is None else walls, period)
     near = [_cells_near(wall, shape, size, largest) for wall in images]
     cell = np.concatenate([*near, np.empty(0, np.int64)])

@@ -64,7 +64,7 @@ class Log:
     """A log open for reading; a context manager.
 
     path: the file. unclosed: its writer died or still lives. complete: the run came to its end. has_events: events were
-    kept. box: (Lx, Ly). gravity: length/time². joined: which axes are periodic. start_time. len() is the number of
+    kept. box: (Lx, Ly). gravity: length/time². periodic: which axes are periodic. start_time. len() is the number of
     event rows that hold, at a whole event.
     """
 
@@ -76,7 +76,7 @@ class Log:
         self.unclosed = source.unclosed
         self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
         self.gravity: tuple[float, float] = tuple(source.fixed("gravity").tolist())
-        self.joined = tuple(word == b"periodic" for word in source.attribute("box", "boundary").tolist())
+        self.periodic = tuple(word == b"periodic" for word in source.attribute("box", "boundary").tolist())
         self._update()
 
     @property
@@ -285,7 +285,7 @@ class Log:
 
     def _replay(self, checkpoint: int) -> Replay:
         start = self.checkpoints[checkpoint] if checkpoint >= 0 else self._start
-        return Replay(start, self.columns, self.box, self.joined, self.gravity)
+        return Replay(start, self.columns, self.box, self.periodic, self.gravity)
 
     @property
     def _start(self) -> Checkpoint:

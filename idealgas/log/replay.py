@@ -88,7 +88,7 @@ class Replay:
         start: Checkpoint,
         columns: Sequence[str],
         box: tuple[float, float],
-        joined: Sequence[bool],
+        periodic: Sequence[bool],
         gravity: tuple[float, float],
     ) -> None:
         self.row = start.row
@@ -96,7 +96,7 @@ class Replay:
         self._record.setdefault("position", np.full_like(start.velocity, np.nan))
         self.state = tuple(name for name in self._record if name in columns)
         self._time = np.full(len(start.velocity), start.time)
-        self._box, self._joined, self._gravity = box, joined, gravity
+        self._box, self._periodic, self._gravity = box, periodic, gravity
 
     def follow(self, block: Any) -> None:
         """Take the next event rows; of several rows of a disc the last one stays."""
@@ -115,7 +115,7 @@ class Replay:
             if any(self._gravity):
                 position[:, axis] += 0.5 * pull * dt * dt
                 velocity[:, axis] += pull * dt
-            if self._joined[axis]:
+            if self._periodic[axis]:
                 boxes = np.floor(position[:, axis] / self._box[axis])
                 position[:, axis] -= boxes * self._box[axis]
                 now["image"][:, axis] += boxes.astype(np.int32)

@@ -2,7 +2,7 @@
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.fall import landing_delay
+from idealgas.physics.fall import time_to_plane
 from idealgas.physics.motion import acceleration_along
 
 
@@ -35,9 +35,9 @@ def side_contact(disc, side, length, gravity):
     if gravity is not None:
         pull = acceleration_along(gravity, side >= 2)
         if upper:
-            delay = landing_delay(high - position, -velocity, -pull)
+            delay = time_to_plane(high - position, -velocity, -pull)
         else:
-            delay = landing_delay(position - low, velocity, pull)
+            delay = time_to_plane(position - low, velocity, pull)
     elif upper:
         delay = arrival_delay(position, velocity, high) if velocity > 0.0 else NEVER
     else:

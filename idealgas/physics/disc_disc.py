@@ -7,9 +7,9 @@ import math
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.periodic import through_sides
+from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.restitution import rebound
-from idealgas.physics.rotation import roll_off
+from idealgas.physics.rotation import tangential_impulse
 
 
 @inline
@@ -31,7 +31,7 @@ def relative_motion(a, b, gravity, periodic, images):
         y += gravity.y * ahead
         vx += gravity.x * (a_dt - b_dt)
         vy += gravity.y * (a_dt - b_dt)
-    x, y = through_sides(x, y, periodic, images)
+    x, y = shift_by_images(x, y, periodic, images)
     return time, x, y, vx, vy
 
 
@@ -90,9 +90,9 @@ def normal_impulse(x, y, vx, vy, total_mass, factor):
 @inline
 def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
     """Exchange the momentum of two discs whose records stand at the contact."""
-    x, y = through_sides(a.x - b.x, a.y - b.y, periodic, images)
+    x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
-        roll_off(a, b, a_id, b_id, x, y, rotation)
+        tangential_impulse(a, b, a_id, b_id, x, y, rotation)
     k = normal_impulse(x, y, a.vx - b.vx, a.vy - b.vy, a.m + b.m, rebound(restitution, a_id, b_id, a.t))
     a.vx -= k * b.m * x
     a.vy -= k * b.m * y

@@ -30,14 +30,14 @@ class Effects(NamedTuple):
     restitution: Restitution | None = None
     thermal: Thermal | None = None
     piston: np.ndarray | None = None
-    ledger: np.ndarray | None = None
+    wall_energy: np.ndarray | None = None
 
 
 def copy_of(periodic: Periodic | None) -> Periodic | None:
     """One whose counts can change without changing the original's."""
     if periodic is None:
         return None
-    return periodic._replace(turns=periodic.turns.copy(), image=periodic.image.copy())
+    return periodic._replace(boundary_crossings=periodic.boundary_crossings.copy(), image=periodic.image.copy())
 
 
 def time_of_next_gate(segments: np.recarray | None, time: float) -> float:
@@ -54,7 +54,7 @@ def begin_epoch(effects: Effects, time: float) -> None:
         open_now = (effects.segments.opens <= time) & (time < effects.segments.closes)
         effects.segments.active[:] = ~open_now
     if effects.periodic is not None:
-        effects.periodic.turns[:] = 0
+        effects.periodic.boundary_crossings[:] = 0
 
 
 def end_epoch(effects: Effects, length: float) -> None:

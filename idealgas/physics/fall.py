@@ -7,7 +7,7 @@ from idealgas.physics.constants import NEVER
 
 
 @inline
-def landing_delay(height, velocity, acceleration):
+def time_to_plane(height, velocity, acceleration):
     """Delay until height + velocity t + ½ acceleration t² is at or below zero and falling; NEVER if it is not to be.
 
     A body that is at or below zero and falling lands now. One that rounding put below zero and that rises lands when it

@@ -22,11 +22,11 @@ class Periodic(NamedTuple):
     y: bool
     Lx: float
     Ly: float
-    turns: np.ndarray
+    boundary_crossings: np.ndarray
     image: np.ndarray
 
 
-def joined_axes(periodic: Periodic | None) -> tuple[bool, bool]:
+def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
     """Along which axes sides are joined."""
     return (periodic.x, periodic.y) if periodic else (False, False)
 
@@ -36,8 +36,8 @@ def images_between(periodic, a_id, b_id, image):
     """Box lengths between the records of a and b, which stand `image` box lengths apart now."""
     if periodic is not None:
         return (
-            np.int64(periodic.turns[U(a_id), 0] - periodic.turns[U(b_id), 0] + image[0]),
-            np.int64(periodic.turns[U(a_id), 1] - periodic.turns[U(b_id), 1] + image[1]),
+            np.int64(periodic.boundary_crossings[U(a_id), 0] - periodic.boundary_crossings[U(b_id), 0] + image[0]),
+            np.int64(periodic.boundary_crossings[U(a_id), 1] - periodic.boundary_crossings[U(b_id), 1] + image[1]),
         )
     return NO_IMAGES
 
@@ -46,12 +46,14 @@ def images_between(periodic, a_id, b_id, image):
 def images_to_wall(periodic, own, image):
     """Box lengths between a disc's record and a wall that stands `image` box lengths away from its place now."""
     if periodic is not None:
-        return np.int64(periodic.turns[U(own), 0] + image[0]), np.int64(periodic.turns[U(own), 1] + image[1])
+        return np.int64(periodic.boundary_crossings[U(own), 0] + image[0]), np.int64(
+            periodic.boundary_crossings[U(own), 1] + image[1]
+        )
     return NO_IMAGES
 
 
 @inline
-def through_sides(x, y, periodic, images):
+def shift_by_images(x, y, periodic, images):
     """A relative position across so many box lengths."""
     if periodic is not None:
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
@@ -59,9 +61,9 @@ def through_sides(x, y, periodic, images):
 
 
 @inline
-def nearest_image(distance, length, joined):
+def nearest_image(distance, length, is_periodic):
     """A coordinate difference, through joined sides if that is shorter."""
-    return distance - length * round(distance / length) if joined else distance
+    return distance - length * round(distance / length) if is_periodic else distance
 
 
 @inline
@@ -83,17 +85,21 @@ def wrap(disc, own, periodic):
             boxes = math.floor(disc.x / periodic.Lx)
             disc.x -= boxes * periodic.Lx
             periodic.image[U(own), 0] += np.int32(boxes)
-            periodic.turns[U(own), 0] -= np.int32(boxes)
+            periodic.boundary_crossings[U(own), 0] -= np.int32(boxes)
         if periodic.y:
             boxes = math.floor(disc.y / periodic.Ly)
             disc.y -= boxes * periodic.Ly
             periodic.image[U(own), 1] += np.int32(boxes)
-            periodic.turns[U(own), 1] -= np.int32(boxes)
+            periodic.boundary_crossings[U(own), 1] -= np.int32(boxes)
 
 
 @inline
-def turns_along(periodic, own, along_y):
+def boundary_crossings_along(periodic, own, along_y):
     """How often a disc went through joined sides along an axis since its record, and whether they are joined."""
     if periodic is not None:
-        return (periodic.turns[U(own), 1], periodic.y) if along_y else (periodic.turns[U(own), 0], periodic.x)
+        return (
+            (periodic.boundary_crossings[U(own), 1], periodic.y)
+            if along_y
+            else (periodic.boundary_crossings[U(own), 0], periodic.x)
+        )
     return np.int32(0), False

@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.fall import landing_delay
+from idealgas.physics.fall import time_to_plane
 from idealgas.physics.motion import acceleration_along
 from idealgas.physics.restitution import wall_rebound
 
@@ -44,7 +44,7 @@ def piston_contact(disc, piston, gravity):
     d_velocity = velocity + pull * d_dt
     p_velocity = piston.v + piston.a * p_dt
     height = sign * (p_place - d_place) - disc.r
-    delay = landing_delay(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
+    delay = time_to_plane(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
     return time + delay if delay < NEVER else NEVER
 
 
@@ -52,7 +52,7 @@ def piston_contact(disc, piston, gravity):
 def stop_contact(piston):
     """Time at which the piston meets its end stop."""
     sign = outward(piston)
-    delay = landing_delay(sign * (piston.stop - piston.x), -sign * piston.v, -sign * piston.a)
+    delay = time_to_plane(sign * (piston.stop - piston.x), -sign * piston.v, -sign * piston.a)
     return piston.t + delay if delay < NEVER else NEVER
 
 

@@ -42,7 +42,7 @@ def wall_rebound(restitution, own, time):
 
 
 @inline
-def note_collision(restitution, own, time):
+def record_collision(restitution, own, time):
     """Remember when a disc collided."""
     if restitution is not None:
         restitution.last[np.uintp(own)] = time

@@ -24,8 +24,13 @@ class Rotation(NamedTuple):
     wall_roughness: float
 
 
+def moment_of_inertia(inertia, mass, radius):
+    """Moment of inertia I = κ m R² of a disc; inertia: κ, ½ for a uniform disc. Numbers or arrays of one shape."""
+    return inertia * mass * radius**2
+
+
 @inline
-def roll_off(a, b, a_id, b_id, x, y, rotation):
+def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
     """The tangential impulse of two touching discs; (x, y): position of a relative to b."""
     u = np.uintp(a_id)
     w = np.uintp(b_id)
@@ -45,7 +50,7 @@ def roll_off(a, b, a_id, b_id, x, y, rotation):
 
 
 @inline
-def roll_off_wall(disc, own, nx, ny, rotation):
+def tangential_impulse_at_wall(disc, own, nx, ny, rotation):
     """The tangential impulse at a wall with unit normal (nx, ny) towards the disc that does not slide along itself."""
     u = np.uintp(own)
     tx = ny  # the wall is the second disc: n from the disc to the wall is -(nx, ny)

@@ -7,7 +7,7 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import touch
-from idealgas.physics.periodic import through_sides
+from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.polynomial import first_descent
 from idealgas.physics.restitution import wall_rebound
 
@@ -116,7 +116,7 @@ def segment_normal(disc, segment, periodic, images):
     """Unit normal towards a disc that touches a segment, and whether it touches an end."""
     tx = segment.tx
     ty = segment.ty
-    x, y = through_sides(disc.x - segment.x, disc.y - segment.y, periodic, images)
+    x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     s = tx * x + ty * y
     if foot_inside(s, segment.length):
         return (-ty, tx, False) if tx * y - ty * x > 0.0 else (ty, -tx, False)
@@ -145,7 +145,7 @@ def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
     tx = segment.tx
     ty = segment.ty
     length = segment.length
-    x, y = through_sides(disc.x - segment.x, disc.y - segment.y, periodic, images)
+    x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     d = tx * y - ty * x
     s = tx * x + ty * y
     vn = tx * disc.vy - ty * disc.vx

@@ -2,7 +2,7 @@
 
 from idealgas._jit import inline
 from idealgas.physics.restitution import wall_rebound
-from idealgas.physics.rotation import roll_off_wall
+from idealgas.physics.rotation import tangential_impulse_at_wall
 from idealgas.physics.thermal import emit, is_thermal
 
 
@@ -13,7 +13,7 @@ def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
         emit(disc, own, nx, ny, wall, thermal, rotation)
         return
     if rotation is not None:
-        roll_off_wall(disc, own, nx, ny, rotation)
+        tangential_impulse_at_wall(disc, own, nx, ny, rotation)
     speed = disc.vx * nx + disc.vy * ny
     k = (
         wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)

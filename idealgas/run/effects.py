@@ -28,7 +28,7 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     lossy = (restitution is not None and restitution.wall < 1) or (
         rotation is not None and abs(rotation.wall_roughness) < 1
     )
-    ledger = thermal or lossy or scene.piston is not None
+    wall_energy = thermal or lossy or scene.piston is not None
     return Effects(
         gravity=Gravity(*scene.gravity.acceleration) if scene.gravity else None,
         periodic=_periodic(scene, len(gas)),
@@ -37,7 +37,7 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
         restitution=restitution,
         thermal=Thermal(temperature, np.uint64(scene.scene.seed), np.zeros(len(gas), np.uint64)) if thermal else None,
         piston=_piston(scene),
-        ledger=np.zeros(4 + len(scene.wall)) if ledger else None,
+        wall_energy=np.zeros(4 + len(scene.wall)) if wall_energy else None,
     )
 
 
@@ -61,9 +61,9 @@ def make_segments(
 
 
 def _periodic(scene: Scene, n: int) -> Periodic | None:
-    if not any(scene.box.joined):
+    if not any(scene.box.periodic):
         return None
-    return Periodic(*scene.box.joined, *scene.box.size, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32))
+    return Periodic(*scene.box.periodic, *scene.box.size, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32))
 
 
 def _segments(scene: Scene) -> np.recarray | None:

@@ -38,16 +38,16 @@ class Energy(NamedTuple):
 def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
     """Energy of a gas; local_time: of the gas, from the start of the epoch."""
     rotational = potential = piston = 0.0
-    given = 0.0 if effects.ledger is None else float(effects.ledger.sum())
+    given = 0.0 if effects.wall_energy is None else float(effects.wall_energy.sum())
     if effects.rotation is not None:
         rotational = float((0.5 * effects.rotation.inertia * effects.rotation.omega**2).sum())
     if effects.gravity is not None:
         potential = -float((gas.mass * (gas.position @ np.array(effects.gravity))).sum())
-    if effects.piston is not None and effects.ledger is not None and effects.piston[0].m > 0:
+    if effects.piston is not None and effects.wall_energy is not None and effects.piston[0].m > 0:
         record = effects.piston[0]
         place, velocity = piston_motion(effects.piston, local_time)
         piston = float(record.m * (0.5 * velocity**2 - record.a * place))
-        given -= float(effects.ledger[record.side])
+        given -= float(effects.wall_energy[record.side])
     return Energy(gas.kinetic_energy, rotational, potential, piston, given)
 
 

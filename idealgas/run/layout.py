@@ -26,7 +26,7 @@ def walls_of(scene: Scene) -> list[Wall]:
 
 def boundary_of(scene: Scene) -> tuple[str, str]:
     """What ends the box along each axis, in the words of H5MD."""
-    x, y = ("periodic" if joined else "none" for joined in scene.box.joined)
+    x, y = ("periodic" if periodic else "none" for periodic in scene.box.periodic)
     return x, y
 
 
@@ -38,19 +38,19 @@ def disc_constants(effects: Effects) -> dict[Column, np.ndarray]:
     return {SPIN: effects.rotation.omega.copy(), inertia: effects.rotation.inertia}
 
 
-def event_columns(effects: Effects, homogeneous: bool) -> tuple[Column, ...]:
+def event_columns(effects: Effects, without_positions: bool) -> tuple[Column, ...]:
     """Of an event's row; homogeneous: the discs have no positions."""
     spin = (SPIN,) if effects.rotation is not None else ()
     image = (IMAGE,) if effects.periodic is not None else ()
-    if homogeneous:
+    if without_positions:
         return (*(column for column in EVENT_COLUMNS if column.name != "position"), *spin, TRIAL)
     return (*EVENT_COLUMNS, *spin, *image)
 
 
-def disc_state(gas: Gas, effects: Effects, homogeneous: bool) -> dict[Column, np.ndarray]:
+def disc_state(gas: Gas, effects: Effects, without_positions: bool) -> dict[Column, np.ndarray]:
     """What a checkpoint keeps of each disc; times count from the checkpoint."""
     position, velocity = CHECKPOINT_ARRAYS
-    state = {velocity: gas.velocity} if homogeneous else {position: gas.position, velocity: gas.velocity}
+    state = {velocity: gas.velocity} if without_positions else {position: gas.position, velocity: gas.velocity}
     if effects.periodic is not None:
         state[IMAGE] = effects.periodic.image
     if effects.rotation is not None:
@@ -62,24 +62,24 @@ def disc_state(gas: Gas, effects: Effects, homogeneous: bool) -> dict[Column, np
     return state
 
 
-def snapshot_state(gas: Gas, effects: Effects, homogeneous: bool) -> dict[Column, np.ndarray]:
+def snapshot_state(gas: Gas, effects: Effects, without_positions: bool) -> dict[Column, np.ndarray]:
     """What a snapshot keeps of each disc."""
     shown = (*CHECKPOINT_ARRAYS, IMAGE, SPIN)
-    return {column: values for column, values in disc_state(gas, effects, homogeneous).items() if column in shown}
+    return {column: values for column, values in disc_state(gas, effects, without_positions).items() if column in shown}
 
 
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
     """The gas at a checkpoint; the effects get the state that they had there. gas: any of the same discs."""
     arrays = checkpoint.arrays
-    for name, values in by_name(disc_state(gas, effects, homogeneous=True)).items():
+    for name, values in by_name(disc_state(gas, effects, without_positions=True)).items():
         if name != "velocity":
             values[:] = arrays[name]
     if effects.piston is not None:
         record = effects.piston[0]
         record.x, record.v = checkpoint.values["piston_position"], checkpoint.values["piston_velocity"]
         record.t = 0.0
-    if effects.ledger is not None:
-        effects.ledger[:] = arrays["wall_energy"]
+    if effects.wall_energy is not None:
+        effects.wall_energy[:] = arrays["wall_energy"]
     return replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
 
 
@@ -90,8 +90,8 @@ def whole_state(effects: Effects, local_time: float = 0.0) -> dict[Column, Any]:
         position, velocity = piston_motion(effects.piston, local_time)
         state[Column("piston_position", "f8", (), "length")] = position
         state[Column("piston_velocity", "f8", (), "length/time")] = velocity
-    if effects.ledger is not None:
-        state[Column("wall_energy", "f8", (len(effects.ledger),), "energy")] = effects.ledger.copy()
+    if effects.wall_energy is not None:
+        state[Column("wall_energy", "f8", (len(effects.wall_energy),), "energy")] = effects.wall_energy.copy()
     return state
 
 

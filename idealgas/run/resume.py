@@ -10,7 +10,7 @@ from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
 from idealgas.run.layout import restore
-from idealgas.run.simulate import TOTALS, LoggedRun, Past, Progress, Summary, batch_maker, method_of, stop_of
+from idealgas.run.simulate import TOTALS, LoggedRun, Progress, RunHistory, Summary, batch_maker, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
 
 TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
@@ -45,7 +45,7 @@ def resume(
             _check_end(log, last, stop_of(scene, len(log.discs)))
             _check_laws(log, last, _simulation_at(log, last, scene))
             simulation = _simulation_at(log, last, scene)
-            past = _past_of(log, last, scene)
+            past = _history_of(log, last, scene)
         with LogWriter.resume(
             path,
             None if last is None else -1,
@@ -54,7 +54,7 @@ def resume(
             scene_text=dump_document(scene),
             command=command,
         ) as writer:
-            return LoggedRun(scene, simulation, writer, past, compilation).to_the_end(on_progress, interrupted)
+            return LoggedRun(scene, simulation, writer, past, compilation).run(on_progress, interrupted)
 
 
 def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
@@ -79,8 +79,8 @@ def _check_end(log: Log, last: Checkpoint | None, stop: Stop) -> None:
     counts = log.summary if log.complete else last.values
     events, collisions, trials = (int(counts[name]) for name in ("events", "disc_collisions", "trials"))
     if end_time > stop.time or events >= stop.events or collisions >= stop.disc_collisions or trials >= stop.trials:
-        so_far = f"t = {end_time:g}, {events} events"
-        raise LogError(f"{log.path}: goes on to {so_far} already, not before the end that is asked for")
+        counters = f"t = {end_time:g}, {events} events"
+        raise LogError(f"{log.path}: goes on to {counters} already, not before the end that is asked for")
 
 
 def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Simulation:
@@ -111,9 +111,9 @@ def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> No
         first += len(stored.time)
 
 
-def _past_of(log: Log, last: Checkpoint | None, scene: Scene) -> Past:
+def _history_of(log: Log, last: Checkpoint | None, scene: Scene) -> RunHistory:
     if last is None:
-        return Past(energy_of(log.discs, make_effects(scene, log.discs)))
+        return RunHistory(energy_of(log.discs, make_effects(scene, log.discs)))
     effects = make_effects(scene, log.discs)
     gas = restore(log.discs, effects, log.checkpoints[0])
     deepest = {
@@ -122,4 +122,4 @@ def _past_of(log: Log, last: Checkpoint | None, scene: Scene) -> Past:
         if name in ("overlap", "outside")
     }
     snapshots = int(log.snapshot_times.searchsorted(last.time, "right"))
-    return Past(energy_of(gas, effects), **deepest, snapshots=snapshots, begun=True)
+    return RunHistory(energy_of(gas, effects), **deepest, snapshots=snapshots, begun=True)

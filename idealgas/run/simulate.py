@@ -148,16 +148,20 @@ def simulate(
             fsync=scene.log.fsync,
             force=force,
             disc_columns=disc_constants(effects),
-            event_columns=event_columns(effects, method.homogeneous),
+            event_columns=event_columns(effects, method.without_positions),
             make_batch=batch_maker(effects, method),
-            checkpoint_arrays=tuple(disc_state(gas, effects, method.homogeneous)),
+            checkpoint_arrays=tuple(disc_state(gas, effects, method.without_positions)),
             checkpoint_values=(*TOTALS, *whole_state(effects)),
             observables=(*OBSERVABLES, *observed(gas, effects)),
-            snapshot_arrays=tuple(snapshot_state(gas, effects, method.homogeneous)) if scene.log.snapshot_every else (),
+            snapshot_arrays=tuple(snapshot_state(gas, effects, method.without_positions))
+            if scene.log.snapshot_every
+            else (),
             most_rows=2 * (scene.run.events or BLOCK),
         ) as log:
-            run = LoggedRun(scene, Simulation(gas, method, effects), log, Past(energy_of(gas, effects)), compilation)
-            return run.to_the_end(on_progress, interrupted)
+            run = LoggedRun(
+                scene, Simulation(gas, method, effects), log, RunHistory(energy_of(gas, effects)), compilation
+            )
+            return run.run(on_progress, interrupted)
 
 
 def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
@@ -166,11 +170,11 @@ def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
         empty_batch,
         rotating=effects.rotation is not None,
         periodic=effects.periodic is not None,
-        homogeneous=method.homogeneous,
+        without_positions=method.without_positions,
     )
 
 
-class Past(NamedTuple):
+class RunHistory(NamedTuple):
     """What a run has behind it: energy at time 0, largest overlap and reach outside, snapshots, whether it began."""
 
     start_energy: Energy
@@ -184,7 +188,7 @@ class LoggedRun:
     """A simulation and its log on the way to a stop."""
 
     def __init__(
-        self, scene: Scene, simulation: Simulation, log: LogWriter, past: Past, compilation: TimingListener
+        self, scene: Scene, simulation: Simulation, log: LogWriter, past: RunHistory, compilation: TimingListener
     ) -> None:
         self._scene = scene
         self._simulation = simulation
@@ -193,7 +197,7 @@ class LoggedRun:
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
 
-    def to_the_end(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
+    def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
         simulation, stop = self._simulation, self._stop
         if not self._begun:
             if self._scene.log.snapshot_every:
@@ -239,8 +243,8 @@ class LoggedRun:
     def _snapshot(self) -> None:
         """Store a copy of the discs as they are now, and a sample, unless the epoch that begins here gives one."""
         simulation, time = self._simulation, self._next_snapshot
-        gas, effects = simulation.state_now()
-        state = by_name(snapshot_state(gas, effects, simulation.method.homogeneous))
+        gas, effects = simulation.state()
+        state = by_name(snapshot_state(gas, effects, simulation.method.without_positions))
         if time > simulation.time and not simulation.epoch_over:
             self._observe(time, gas, simulation.audit_of(gas))
         self._log.snapshot(time, self._snapshots, state)
@@ -251,7 +255,7 @@ class LoggedRun:
         simulation = self._simulation
         self._observe(simulation.time, simulation.gas, simulation.audit())
         if simulation.epoch % self._scene.log.checkpoint_every == 0:
-            state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.homogeneous))
+            state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.without_positions))
             values = asdict(simulation.totals) | by_name(whole_state(simulation.effects))
             self._log.checkpoint(simulation.time, simulation.epoch, state, values)
 
@@ -260,18 +264,18 @@ class LoggedRun:
         self._outside = max(self._outside, audit.outside)
         simulation = self._simulation
         sample = by_name(observed(gas, simulation.effects, time - simulation.time))
-        self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.so_far) | sample)
+        self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.counters) | sample)
 
     def _finish(self, seconds: float) -> Summary:
         """Audit the state at the end; the run may be continued from its last checkpoint as if it had not ended."""
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.last_event_time
-        gas = simulation.gas_now()
+        gas = simulation.state()[0]
         self._observe(end_time, gas, simulation.audit_of(gas))
         start, end = self._start_energy, energy_of(gas, simulation.effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
-        totals = simulation.so_far
+        totals = simulation.counters
         return Summary(
             completed=simulation.finished(stop),
             end_time=end_time,
@@ -287,7 +291,7 @@ class LoggedRun:
         )
 
     def _progress(self) -> Progress:
-        done, stop = self._simulation.so_far, self._stop
+        done, stop = self._simulation.counters, self._stop
         now = self._simulation.last_event_time
         counted = (done.events / stop.events, done.disc_collisions / stop.disc_collisions, done.trials / stop.trials)
         return Progress(max(now / stop.time, *counted), now, done.events)

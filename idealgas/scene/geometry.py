@@ -29,7 +29,7 @@ def images(centre: Point, radius: float, box: Box | None) -> Iterator[Point]:
     shifts = []
     for axis in range(2):
         here = [0.0]
-        if box is not None and box.joined[axis]:
+        if box is not None and box.periodic[axis]:
             if centre[axis] < radius:
                 here.append(box.size[axis])
             if centre[axis] > box.size[axis] - radius:

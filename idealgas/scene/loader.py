@@ -6,12 +6,12 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from idealgas.document.error import Fault, Key
-from idealgas.document.messages import SceneError, as_faults, table_at
+from idealgas.document.error import Issue, Key
+from idealgas.document.messages import SceneError, as_issues, table_at
 from idealgas.document.origin import Origin
 from idealgas.document.overrides import OverrideError, apply
 from idealgas.document.text import parse_document, read_text
-from idealgas.scene.checks.issues import faults
+from idealgas.scene.checks.issues import issues
 from idealgas.scene.model import Scene
 
 
@@ -39,46 +39,46 @@ def make_scene(document: dict[str, Any], origin: Origin, errors: Sequence[str] =
     try:
         scene = Scene.model_validate(document).resolved().from_origin(origin)
     except ValidationError as error:
-        errors = [*errors, *origin.report(_all_faults(error, document))]
+        errors = [*errors, *origin.report(_all_issues(error, document))]
     if errors:
         raise SceneError(errors)
     return scene
 
 
-def _all_faults(error: ValidationError, document: dict[str, Any]) -> list[Fault]:
+def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]:
     """Faults inside tables and, over those tables that have none, between tables."""
     findings = error.errors(include_url=False)
-    if findings[0]["type"] == "faults":
-        return findings[0]["ctx"]["faults"]
-    parts, unsound = _sound_parts(document)
-    return [*as_faults(findings, Scene), *faults(parts, unsound)]
+    if findings[0]["type"] == "issues":
+        return findings[0]["ctx"]["issues"]
+    parts, invalid = _valid_parts(document)
+    return [*as_issues(findings, Scene), *issues(parts, invalid)]
 
 
-def _sound_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
+def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
     """What tables of a document are sound, None in the place of the others, and the names of these."""
     parts: dict[str, Any] = {}
-    unsound = set()
+    invalid = set()
     for name, field in Scene.model_fields.items():
         table, value = table_at((name,), Scene), document.get(name)
         if value is not None and field.default == ():
-            parts[name] = _sound_items(table, value)
-            sound = None not in parts[name]
+            parts[name] = _valid_items(table, value)
+            valid = None not in parts[name]
         elif value is not None or field.is_required():
-            parts[name] = _sound(table, value)
-            sound = parts[name] is not None
+            parts[name] = _valid(table, value)
+            valid = parts[name] is not None
         else:
-            sound = True
-        if not sound:
-            unsound.add(name)
-    return Scene.model_construct(**parts), unsound
+            valid = True
+        if not valid:
+            invalid.add(name)
+    return Scene.model_construct(**parts), invalid
 
 
-def _sound(table: type, value: Any) -> Any:
+def _valid(table: type, value: Any) -> Any:
     try:
         return TypeAdapter(table).validate_python(value)
     except ValidationError:
         return None
 
 
-def _sound_items(table: type, value: Any) -> list[Any]:
-    return [_sound(table, item) for item in value] if isinstance(value, list) else [None]
+def _valid_items(table: type, value: Any) -> list[Any]:
+    return [_valid(table, item) for item in value] if isinstance(value, list) else [None]

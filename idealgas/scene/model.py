@@ -6,10 +6,10 @@ from typing import Self
 from pydantic import PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
-from idealgas.document.error import Fault
+from idealgas.document.error import Issue
 from idealgas.document.origin import Origin
 from idealgas.document.table import Table
-from idealgas.scene.checks.issues import faults
+from idealgas.scene.checks.issues import issues
 from idealgas.scene.defaults import contact_duration
 from idealgas.scene.tables.document import Document
 
@@ -21,8 +21,8 @@ class Scene(Document):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if found := list(faults(self)):
-            raise PydanticCustomError("faults", "{summary}", {"summary": str(found[0]), "faults": found})
+        if found := list(issues(self)):
+            raise PydanticCustomError("issues", "{summary}", {"summary": str(found[0]), "issues": found})
         return self
 
     def resolved(self) -> Self:
@@ -40,6 +40,6 @@ class Scene(Document):
         self._origin = origin
         return self
 
-    def report(self, faults: Sequence[Fault]) -> list[str]:
+    def report(self, issues: Sequence[Issue]) -> list[str]:
         """Lines for people about faults that show only later, with the place of the key each names."""
-        return self._origin.report(faults)
+        return self._origin.report(issues)

@@ -52,10 +52,10 @@ def test_numbers_for_machines(logs):
     assert shown.exit_code == 0
     exact, random = json.loads(shown.stdout)["logs"]
     assert (exact["path"], random["path"]) == (str(logs["exact"]), str(logs["random"]))
-    assert exact["trials"] is None
-    assert random["trials"]["collisions"] == 1500
-    assert exact["development"]["trials"] is None
-    assert random["development"]["trials"][:3] == [0, 300, 600]
+    assert exact["acceptance"] is None
+    assert random["acceptance"]["collisions"] == 1500
+    assert exact["speed_distributions"]["trials"] is None
+    assert random["speed_distributions"]["trials"][:3] == [0, 300, 600]
     for found in (exact, random):
         assert found["relaxation_time"]["standard_error"] > 0
         assert len(found["time"]) == len(found["kurtosis"]) == len(found["distance"]) == len(found["entropy"])

@@ -111,7 +111,7 @@ def assert_positions(browser, log, time, accuracy=2e-5):
     shown, exact = np.array(browser.execute_script("return player.positions()")), log.state_at(time).position
     assert ((shown >= 0) & (shown <= log.box)).all()
     difference = shown - exact
-    for axis in np.flatnonzero(log.joined):
+    for axis in np.flatnonzero(log.periodic):
         difference[:, axis] -= np.round(difference[:, axis] / log.box[axis]) * log.box[axis]
     assert np.abs(difference).max() < accuracy
 

@@ -34,7 +34,7 @@ def rate(method, width=12.0):
         while not simulation.paused:
             simulation.next_epoch()
             simulation.advance(Stop(), None, pause=k * width)
-        counts.append(simulation.so_far.disc_collisions)
+        counts.append(simulation.counters.disc_collisions)
     rates = np.diff(counts[1:]) / width
     return rates.mean(), rates.std(ddof=1) / math.sqrt(len(rates))
 

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from fuzz_scenes import scene_and_gas, scene_texts
 from hypothesis import HealthCheck, given, settings
-from witness import Witness, Worst
+from invariants import InvariantChecker, MaxErrors
 
 from idealgas._jit import aligned
 from idealgas.engine.brute_force import BruteForce
@@ -74,7 +74,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
         thermal=Thermal(np.full(4 + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
         piston=beyond,
-        ledger=np.zeros(4 + walls),
+        wall_energy=np.zeros(4 + walls),
     )
     return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
 
@@ -90,13 +90,13 @@ def columns_of(scene: Scene, gas: Gas, stop: Stop) -> list[np.ndarray]:
     return [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
 
 
-def run_scene(text: str, worst: Worst) -> None:
+def run_scene(text: str, max_errors: MaxErrors) -> None:
     """Run a scene event by event before a witness, to exactly where it should end, then by brute force."""
     scene, gas = scene_and_gas(text)
     stop = stop_of(scene, len(gas))
     effects = fresh_effects(scene, gas)
     simulation = Simulation(gas, EventDriven(), effects)
-    witness = Witness(scene, gas, effects, worst)
+    invariants = InvariantChecker(scene, gas, effects, max_errors)
     seen: list[EventBatch] = []
     longest, way = LONGEST_WAY * gas.radius.min(), 0.0  # an epoch's, at least, unless there is much to do
     while not simulation.finished(stop):
@@ -104,16 +104,16 @@ def run_scene(text: str, worst: Worst) -> None:
         rows = batch.rows(0, simulation.advance(stop, batch, events=1))
         if len(rows.time):
             seen.append(rows)
-            witness.see(rows, simulation)
+            invariants.see(rows, simulation)
         if simulation.epoch_over and not simulation.finished(stop):
-            way += np.hypot(*simulation.gas_now().velocity.T).max() * simulation.length
+            way += np.hypot(*simulation.state()[0].velocity.T).max() * simulation.length
             simulation.next_epoch()
             assert simulation.epoch < MOST_EPOCHS + way / longest, "the clock hardly runs"
-    by_time = simulation.so_far.events < stop.events
-    assert simulation.so_far.events == len(seen) <= stop.events
+    by_time = simulation.counters.events < stop.events
+    assert simulation.counters.events == len(seen) <= stop.events
     assert simulation.last_event_time <= stop.time
     if by_time:
-        witness.finish(stop.time, simulation)
+        invariants.finish(stop.time, simulation)
     oracle = columns_of(scene, gas, stop)
     if seen:
         columns = [np.concatenate(column) for column in zip(*seen, strict=True) if column[0] is not None]
@@ -130,28 +130,28 @@ quick = settings(max_examples=300, deadline=None, derandomize=True, suppress_hea
 @scenes
 def test_scenes_with_any_effects(text):
     with watchdog(text):
-        run_scene(text, Worst())
+        run_scene(text, MaxErrors())
 
 
 @pytest.mark.long
 def test_many_scenes_with_any_effects():
     """Prints what the bounds were compared with at worst."""
-    worst, count = Worst(), 0
+    max_errors, count = MaxErrors(), 0
 
     @settings(quick, max_examples=20_000)
     @scenes
     def run(text):
         nonlocal count
         with watchdog(text):
-            run_scene(text, worst)
+            run_scene(text, max_errors)
         count += 1
 
     run()
-    print(f"{count} scenes, {worst}")
+    print(f"{count} scenes, {max_errors}")
 
 
 def test_what_once_broke(once_broke):
     """Scenes whose first line says what went wrong."""
     text = once_broke.read_text()
     with watchdog(text):
-        run_scene(text, Worst())
+        run_scene(text, MaxErrors())

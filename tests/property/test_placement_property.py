@@ -38,9 +38,9 @@ walls = st.lists(st.tuples(ends, ends).filter(lambda pair: math.dist(*pair) > 0.
 
 
 @given(scenes(), st.integers(0, 100), walls, st.tuples(st.booleans(), st.booleans()))
-def test_discs_are_clear_of_walls_and_of_all_images_of_each_other(text, seed, walls, joined):
+def test_discs_are_clear_of_walls_and_of_all_images_of_each_other(text, seed, walls, periodic):
     """Distances are recomputed here from dense points along the walls, and over all nine images."""
-    sides = [f"box.{side}=periodic" for side, on in zip(SIDES, np.repeat(joined, 2), strict=True) if on]
+    sides = [f"box.{side}=periodic" for side, on in zip(SIDES, np.repeat(periodic, 2), strict=True) if on]
     tables = [{"from": list(start), "to": list(end)} for start, end in walls]
     gas, refused = None, []
     try:
@@ -52,12 +52,12 @@ def test_discs_are_clear_of_walls_and_of_all_images_of_each_other(text, seed, wa
         return
     radius = gas.radius[:, None]
     for axis in range(2):
-        margin = 0.0 if joined[axis] else gas.radius
+        margin = 0.0 if periodic[axis] else gas.radius
         assert (gas.position[:, axis] >= margin).all()
         assert (gas.position[:, axis] <= SIDE - margin).all()
     first, second = np.triu_indices(len(gas), 1)
     for shift in ((x * SIDE, y * SIDE) for x in (-1, 0, 1) for y in (-1, 0, 1)):
-        if all(on or not step for on, step in zip(joined, shift, strict=True)):
+        if all(on or not step for on, step in zip(periodic, shift, strict=True)):
             gap = np.hypot(*(gas.position[first] - gas.position[second] + shift).T)
             assert (gap >= (gas.radius[first] + gas.radius[second]) * (1 - 1e-12)).all()
             for start, end in walls:

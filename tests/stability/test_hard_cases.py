@@ -25,7 +25,7 @@ def end_of(gas, method, time):
     """The gas at a time, and the rows on the way there."""
     simulation = Simulation(gas, method())
     rows = record(simulation, Stop(time=time))
-    return simulation.gas_now(), rows
+    return simulation.state()[0], rows
 
 
 def conserved(gas):

@@ -43,7 +43,7 @@ def assert_sound(gas, events):
         contact = max(contact, np.abs(distance - reach).max(initial=0) / known)
         beyond = np.abs(rows.position - np.array(gas.box) / 2) + gas.radius[rows.disc][:, None] - np.array(gas.box) / 2
         outside = max(outside, beyond.max() / known)
-        energy = max(energy, abs(simulation.gas_now().kinetic_energy / gas.kinetic_energy - 1))
+        energy = max(energy, abs(simulation.state()[0].kinetic_energy / gas.kinetic_energy - 1))
     within("extreme gases: contact distance, in resolutions", contact, 4)
     within("extreme gases: outside the box, in resolutions", outside, 4)
     within("extreme gases: energy, relative", energy, 1e-12)
@@ -124,8 +124,8 @@ def test_digits_of_pi(digits, events):
         simulation.advance(stop, None)
         if not simulation.finished(stop):
             simulation.next_epoch()
-    assert simulation.so_far.events == events
-    end = simulation.gas_now()
+    assert simulation.counters.events == events
+    end = simulation.state()[0]
     assert end.velocity[1, 0] > 0.9
     within(
         "digits of π: energy, in u times hits",
@@ -161,8 +161,8 @@ def test_a_crystal(collisions):
         first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
         distance = np.hypot(*(rows.position[first] - rows.position[first + 1]).T)
         contact = max(contact, np.abs(distance / (2 * gas.radius[0]) - 1).max())
-        deepest = max(deepest, simulation.audit_of(simulation.gas_now()).overlap)
+        deepest = max(deepest, simulation.audit_of(simulation.state()[0]).overlap)
     case = f"crystal, {collisions:.0e} collisions"
     within(f"{case}: contact distance, in diameters", contact, 1e-12)
     within(f"{case}: overlap, in diameters", deepest, 1e-12)
-    within(f"{case}: energy, relative", abs(simulation.gas_now().kinetic_energy / gas.kinetic_energy - 1), 1e-12)
+    within(f"{case}: energy, relative", abs(simulation.state()[0].kinetic_energy / gas.kinetic_energy - 1), 1e-12)

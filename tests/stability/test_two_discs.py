@@ -53,7 +53,7 @@ def meeting(gas, method):
 def test_grazing_pairs(exponent, side, method):
     """Impact parameters σ(1 ± 10^-exponent) from all directions, with radii of all ratios between 1/100 and 100."""
     draw = np.random.default_rng(exponent)
-    undecided, worst = 0, 0.0
+    undecided, max_errors = 0, 0.0
     for _ in range(16):
         angle, radius = draw.uniform(0, 2 * np.pi), 10.0 ** draw.uniform(-2, 0, 2)
         along = np.array([math.cos(angle), math.sin(angle)])
@@ -71,8 +71,8 @@ def test_grazing_pairs(exponent, side, method):
         else:
             undecided += 1
         if time is not None and found is not None:
-            worst = max(worst, float(abs(found - time) / (U * (largest * condition + time))))
-    within("grazing pairs: contact time, in u times condition", worst, FEW)
+            max_errors = max(max_errors, float(abs(found - time) / (U * (largest * condition + time))))
+    within("grazing pairs: contact time, in u times condition", max_errors, FEW)
     assert undecided == 0 or exponent >= 12
 
 
@@ -80,7 +80,7 @@ def test_grazing_pairs(exponent, side, method):
 @pytest.mark.parametrize("exponent", range(1, 16))
 def test_nearly_equal_velocities(exponent, method):
     """One disc follows another and is faster by 10^-exponent; both move so slowly that no wall comes first."""
-    draw, worst = np.random.default_rng(exponent), 0.0
+    draw, max_errors = np.random.default_rng(exponent), 0.0
     for _ in range(8):
         angle = draw.uniform(0, 2 * np.pi)
         along = np.array([math.cos(angle), math.sin(angle)])
@@ -93,8 +93,8 @@ def test_nearly_equal_velocities(exponent, method):
         found = meeting(gas, method)
         assert (found is None) == (time is None)
         if time is not None:
-            worst = max(worst, float(abs(found - time) / (U * (largest * condition + time))))
-    within("nearly equal velocities: contact time, in u times condition", worst, FEW)
+            max_errors = max(max_errors, float(abs(found - time) / (U * (largest * condition + time))))
+    within("nearly equal velocities: contact time, in u times condition", max_errors, FEW)
 
 
 @methods
@@ -107,20 +107,20 @@ def test_every_contact_of_a_gas(method):
     simulation = Simulation(gas, method())
     batch = empty_batch(4096)
     rows = simulation.advance(Stop(events=800), batch)
-    assert simulation.so_far.events == 800, "records are of one epoch"
+    assert simulation.counters.events == 800, "records are of one epoch"
     last = [(*gas.position[k], *gas.velocity[k], 0.0, radius[k]) for k in range(100)]
-    worst = 0.0
+    max_errors = 0.0
     for row in range(rows):
         i, j = int(batch.disc[row]), int(batch.partner[row])
         if j > i:
             _, time, condition, largest = exact_contact(last[i], last[j])
             error = float(abs(time - batch.time[row]))
-            worst = max(worst, error / (U * (largest * condition + float(time))))
+            max_errors = max(max_errors, error / (U * (largest * condition + float(time))))
             after = [(*batch.position[r], *batch.velocity[r], batch.time[r], 0.0) for r in (row, row + 1)]
             last[i], last[j] = ((*values[:5], radius[k]) for k, values in zip((i, j), after, strict=True))
         elif j < 0:
             last[i] = (*batch.position[row], *batch.velocity[row], batch.time[row], radius[i])
-    within("every contact of a gas: time, in u times condition", worst, FEW)
+    within("every contact of a gas: time, in u times condition", max_errors, FEW)
 
 
 @methods
@@ -131,7 +131,7 @@ def test_collisions_of_unequal_masses(exponent, method):
     A disc's velocity changes by at most twice that sum, a product of factors rounded 14 times in all, and is rounded
     once more itself.
     """
-    draw, worst = np.random.default_rng(exponent + 100), 0.0
+    draw, max_errors = np.random.default_rng(exponent + 100), 0.0
     for _ in range(20):
         velocity = draw.normal(size=(2, 2))
         closing = velocity[0] - velocity[1]
@@ -147,5 +147,5 @@ def test_collisions_of_unequal_masses(exponent, method):
             k = 2 * (r.T * (v[0] - v[1]))[0] / ((r.T * r)[0] * (m[0] + m[1]))
             expected = [v[0] - k * m[1] * r, v[1] + k * m[0] * r]
             error = max(float(abs(rows.velocity[d, c] - expected[d][c])) for d in (0, 1) for c in (0, 1))
-        worst = max(worst, error / (U * np.hypot(*velocity.T).sum()))
-    within("collisions of unequal masses: velocities, in u times speeds", worst, 30)
+        max_errors = max(max_errors, error / (U * np.hypot(*velocity.T).sum()))
+    within("collisions of unequal masses: velocities, in u times speeds", max_errors, 30)

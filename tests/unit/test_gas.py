@@ -134,8 +134,8 @@ def test_random_discs_avoid_lattices_and_explicit_discs_of_any_size():
 
 def test_discs_of_a_periodic_box_stand_anywhere_in_it():
     """Centres nearer to the sides than a radius, on all four, and none beyond."""
-    joined = [f"box.{side}=periodic" for side in ("left", "right", "bottom", "top")]
-    position = gas_of(species("a", count=200, radius=0.3, speed=1), overrides=joined).position
+    periodic = [f"box.{side}=periodic" for side in ("left", "right", "bottom", "top")]
+    position = gas_of(species("a", count=200, radius=0.3, speed=1), overrides=periodic).position
     assert ((position >= 0) & (position < 10)).all()
     for axis in range(2):
         assert position[:, axis].min() < 0.3

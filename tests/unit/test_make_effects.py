@@ -112,7 +112,7 @@ def test_thermal_walls():
     assert effects.thermal.seed == np.uint64(7)
     assert effects.thermal.seed.dtype == np.uint64
     assert effects.thermal.emissions.dtype == np.uint64
-    assert effects.ledger.tolist() == [0.0] * 8
+    assert effects.wall_energy.tolist() == [0.0] * 8
 
 
 def test_a_piston_of_given_velocity():
@@ -145,4 +145,4 @@ def test_a_piston_with_a_mass_under_pressure_and_gravity():
 )
 def test_an_account_is_kept_only_where_walls_can_give_or_take_energy(override, kept):
     piston = ["piston.position=15"] if "piston" in override else []
-    assert (effects_of(override, *piston)[1].ledger is not None) == kept
+    assert (effects_of(override, *piston)[1].wall_energy is not None) == kept

@@ -46,20 +46,20 @@ def expected_rates(
     discs: Composition,
     box: tuple[float, float],
     equilibrium: Ensemble,
-    joined: tuple[bool, bool] = (False, False),
+    periodic: tuple[bool, bool] = (False, False),
     has_positions: bool = True,
 ) -> np.ndarray:
     """Γ_ij (S, S) by theory for all discs of a box, or of a gas without one; not a number where the fluid freezes.
 
-    joined: which axes of the box are periodic.
+    periodic: which axes of the box are periodic.
 
-    The contacts that the pressure comes from (`hard_discs.box_compressibility`), met at relative speeds that a fixed total
-    energy makes a little larger than Maxwell and Boltzmann's.
+    The contacts that the pressure comes from (`hard_discs.box_compressibility`), met at relative speeds that a fixed
+    total energy makes a little larger than Maxwell and Boltzmann's.
     """
     if has_positions:
-        contacts = hard_discs.box_contacts(discs.radius, discs.number, box, joined)
+        contacts = hard_discs.box_contacts(discs.radius, discs.number, box, periodic)
     else:
-        contacts = hard_discs.homogeneous_contacts(discs.radius, discs.number, box)
+        contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, box)
     reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
     speed = np.sqrt(np.pi * equilibrium.temperature / (2 * reduced)) * hard_discs.finite_speed_factor(equilibrium.dof)
     return contacts * speed

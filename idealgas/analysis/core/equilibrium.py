@@ -37,7 +37,7 @@ def kept_momentum(log: Log) -> np.ndarray:
         return np.array([True, True])
     scene = log.scene
     grip = bool(wall_temperatures(scene)) or (scene.rotation is not None and scene.rotation.wall_roughness > -1)
-    return np.array(log.joined) & (not scene.wall) & (all(log.joined) or not grip)
+    return np.array(log.periodic) & (not scene.wall) & (all(log.periodic) or not grip)
 
 
 def drift(log: Log) -> np.ndarray:
@@ -94,7 +94,7 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
     None where other effects leave it unknown, and for a single disc, with which nobody shares.
     """
     scene, gas = log.scene, log.discs
-    if scene.piston or "restitution" in scene.effects or log.joined[1 - axis] or len(gas) == 1:
+    if scene.piston or "restitution" in scene.effects or log.periodic[1 - axis] or len(gas) == 1:
         return None
     if walls := wall_temperatures(scene):
         return walls.pop() if len(walls) == 1 else None

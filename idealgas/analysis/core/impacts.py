@@ -22,9 +22,9 @@ class Impacts:
 
     columns = ("time", "disc", "partner", "position", "velocity")
 
-    def __init__(self, walls: int = len(BOX_SIDES), joined: tuple[bool, bool] = (False, False)) -> None:
-        """walls: W, the sides of the box first. joined: which axes are periodic."""
-        self.walls, self.joined = walls, joined
+    def __init__(self, walls: int = len(BOX_SIDES), periodic: tuple[bool, bool] = (False, False)) -> None:
+        """walls: W, the sides of the box first. periodic: which axes are periodic."""
+        self.walls, self.periodic = walls, periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         blocks, species = len(edges) - 1, len(gas.species_names)
@@ -35,7 +35,7 @@ class Impacts:
         self.impulse = np.zeros((blocks, self.walls, 2))
         self.hits = np.zeros((blocks, self.walls), np.int64)
         self._middle = np.array(gas.box) / 2
-        self._turn = np.where(self.joined, gas.box, np.inf)  # a separation of half of it is the nearest image's
+        self._turn = np.where(self.periodic, gas.box, np.inf)  # a separation of half of it is the nearest image's
         self._species, self._mass = gas.species, gas.mass
         self._tracks = np.column_stack((gas.position, gas.velocity))
         self._block = 0

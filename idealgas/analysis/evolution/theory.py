@@ -54,7 +54,7 @@ def haff_time(log: Log) -> float:
     e = 1.0 if table is None else table.normal
     n, share = len(gas), 1 - kept_momentum(log).mean() / len(gas)
     t = _kinetic(log) / (n * share)
-    contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.joined)[0, 0]
+    contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(t, gas.mass[0])
     a2 = 16 * (1 - e) * (1 - 2 * e**2) / (57 - 25 * e + 30 * e**2 * (1 - e))
     return 4 * share / ((1 - e**2) * rate * (1 + 3 * a2 / 16))
@@ -87,7 +87,7 @@ def push(log: Log, length: float) -> float:
     gas, table = log.discs, log.scene.piston
     size = list(gas.box)
     size[0 if table is None else table.axis] = length
-    z = hard_discs.box_compressibility(gas.radius[:1], [len(gas)], (size[0], size[1]), log.joined)
+    z = hard_discs.box_compressibility(gas.radius[:1], [len(gas)], (size[0], size[1]), log.periodic)
     return z / (length - 2 * float(gas.radius[0]))
 
 

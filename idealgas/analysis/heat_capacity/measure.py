@@ -154,8 +154,8 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     scene, gas = log.scene, log.discs
     per_disc = 1.5 if scene.rotation else 1.0
     pull = np.array(log.gravity)
-    mixed = len(gas.species_names) > 1
-    if pull.any() and (scene.piston or scene.wall or pull.all() or mixed):
+    equilibrated = len(gas.species_names) > 1
+    if pull.any() and (scene.piston or scene.wall or pull.all() or equilibrated):
         return None, None
     if pull.any():
         axis = int(np.flatnonzero(pull)[0])
@@ -164,7 +164,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
         per_disc += 1 - x * x * math.exp(-x) / math.expm1(-x) ** 2
     if series.position is None or scene.piston is None:
         return per_disc, None
-    if mixed:
+    if equilibrated:
         return None, None
     across = gas.box[1 - scene.piston.axis]
     room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))

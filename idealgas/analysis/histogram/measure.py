@@ -192,7 +192,7 @@ def _some_discs(gas: Gas, species: int) -> np.ndarray:
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
     gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
     temperature = equilibrium.temperature
-    rates = expected_rates(discs, gas.box, equilibrium, log.joined, log.has_positions)
+    rates = expected_rates(discs, gas.box, equilibrium, log.periodic, log.has_positions)
     rate = rates.sum(axis=1)
     if not (rate > 0).all():
         raise UserError(f"{log.path}: no law of free flights for this gas")

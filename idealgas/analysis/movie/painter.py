@@ -94,7 +94,7 @@ class Painter:
         by_species: what the colour of a disc says, its species or its speed.
         """
         self._scene, self._gas, self._piston, self._by_species = scene, gas, piston, by_species
-        self._joined = np.array(scene.box.joined)
+        self._periodic = np.array(scene.box.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
         self._edges = np.linspace(0, FASTEST * rms_speed or 1.0, BINS + 1)
         self._shades = colormaps[COLOUR_MAP](np.linspace(0, PALEST, SHADES))
@@ -179,7 +179,7 @@ class Painter:
             colours = self._shades[shade]
         radius, box = self._gas.radius, np.array(self._gas.box)
         which = np.arange(len(radius))
-        for axis in np.flatnonzero(self._joined):
+        for axis in np.flatnonzero(self._periodic):
             for side in (-1, 1):
                 reach = (
                     position[:, axis] < radius[which] if side == 1 else position[:, axis] > box[axis] - radius[which]

@@ -97,18 +97,18 @@ def pressure(
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    moments, impacts = Moments(), Impacts(len(log.walls), log.joined)
+    moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
     window = measure(log, [moments, impacts], start, end, progress, allowed=EFFECTS)
     gas, discs = log.discs, composition(log.discs)
-    expected = expected_rates(discs, gas.box, equilibrium, log.joined)
-    theories = hard_disc_theories(discs, gas, log.joined)
+    expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
+    theories = hard_disc_theories(discs, gas, log.periodic)
     return Pressure(
         window=window,
         number=len(gas),
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(discs, gas, equilibrium.temperature, log.joined, theories.get(IN_BOX), window, impacts),
+        routes=_routes(discs, gas, equilibrium.temperature, log.periodic, theories.get(IN_BOX), window, impacts),
         theories=theories,
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
@@ -118,12 +118,12 @@ def pressure(
 IN_BOX = "hard discs, this box and N"
 
 
-def hard_disc_theories(discs: Composition, gas: Gas, joined: tuple[bool, bool] = (False, False)) -> dict[str, float]:
+def hard_disc_theories(discs: Composition, gas: Gas, periodic: tuple[bool, bool] = (False, False)) -> dict[str, float]:
     """Z at the gas's packing fraction: of an ideal gas, and where they apply of hard discs."""
     phi = gas.packing_fraction
     if phi > hard_discs.FREEZING:
         return {"ideal gas": 1.0}
-    in_box = hard_discs.box_compressibility(discs.radius, discs.number, gas.box, joined)
+    in_box = hard_discs.box_compressibility(discs.radius, discs.number, gas.box, periodic)
     if len(discs.name) > 1:
         mixture = hard_discs.mixture_compressibility(discs.radius, discs.number, gas.area)
         return {"ideal gas": 1.0, IN_BOX: in_box, "hard discs, Jenkins & Mancini 1987": mixture}
@@ -140,13 +140,13 @@ def _routes(
     discs: Composition,
     gas: Gas,
     temperature: float,
-    joined: tuple[bool, bool],
+    periodic: tuple[bool, bool],
     in_box: float | None,
     window: Window,
     impacts: Impacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
-    sides = [k for k in range(len(BOX_SIDES)) if not joined[k // 2]]
+    sides = [k for k in range(len(BOX_SIDES)) if not periodic[k // 2]]
     push = (window.of(impacts.impulse[:, : len(BOX_SIDES)]) * OUTWARD).sum(axis=2).T
     length = [gas.box[1 - k // 2] for k in range(len(BOX_SIDES))]
     at_wall: dict[int, float] = {}

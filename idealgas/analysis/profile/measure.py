@@ -85,7 +85,7 @@ def profile(
     if not log.has_positions:
         raise UserError(f"{log.path}: discs of this method have no positions")
     axis = natural_axis(log) if along is None else "xy".index(along)
-    reach = 0.0 if log.joined[axis] else log.discs.radius.min()
+    reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
     times, edges = block_edges(log, start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
     sums, course = _collect(log, axis, times, edges, progress)
     first = 0 if start is not None else equilibration(*course)

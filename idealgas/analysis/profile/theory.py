@@ -36,7 +36,7 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     scene, discs = log.scene, composition(log.discs)
     if not _is_empty(scene, start) or scene.piston or log.gravity[1 - axis]:
         return None
-    reach = np.zeros_like(discs.radius) if log.joined[axis] else discs.radius  # of centres, from the sides
+    reach = np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius  # of centres, from the sides
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
     size = np.diff(inside)
     places = inside[:, :-1, None] + size[:, :, None] * (np.arange(POINTS) + 0.5) / POINTS

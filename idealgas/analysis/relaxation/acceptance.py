@@ -22,7 +22,7 @@ MANY = 2000  # discs beyond which the mean over their pairs is taken over some o
 
 
 @dataclass(frozen=True)
-class Trials:
+class Acceptance:
     """acceptance: its theory is that of these discs in equilibrium. at_start: of the pairs as they were then.
 
     expected: in equilibrium, by name of the ensemble. published: collisions.
@@ -49,7 +49,7 @@ class Trials:
         }
 
 
-def trials(log: Log) -> Trials | None:
+def acceptance(log: Log) -> Acceptance | None:
     """Of a whole log; None if its method makes no trials."""
     if "trial" not in log.columns:
         return None
@@ -65,7 +65,7 @@ def trials(log: Log) -> Trials | None:
     }
     acceptance = Estimate(share, error, float(number), theory=fixed)
     published = PUBLISHED if is_published(log.scene) else None
-    return Trials(number, collisions, 2 * collisions / n, acceptance, start_acceptance(log), expected, published)
+    return Acceptance(number, collisions, 2 * collisions / n, acceptance, start_acceptance(log), expected, published)
 
 
 def last_trial(log: Log) -> int:

@@ -46,7 +46,8 @@ class Relaxation:
 
     kurtosis, distance, entropy: (K,), entropy being H - H_eq per disc. equilibrium_kurtosis: of N discs.
     critical_distance: what one in twenty gases of N discs in equilibrium exceeds. in_time, in_collisions: the fitted
-    relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium. told_until: index of the
+    relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium.
+    first_indistinguishable: index of the
     first instant at which the distance is below the critical one; None if it never is.
     """
 
@@ -61,11 +62,11 @@ class Relaxation:
     critical_distance: float
     in_time: Estimate | None
     in_collisions: Estimate | None
-    told_until: int | None
+    first_indistinguishable: int | None
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
-        k = self.told_until
+        k = self.first_indistinguishable
         return {
             "path": self.path,
             "number": self.number,
@@ -126,7 +127,7 @@ def relaxation(
         critical_distance=critical,
         in_time=_fit(time - first, sums, members, target),
         in_collisions=_fit(collisions, sums, members, target),
-        told_until=int(told[0]) if len(told) else None,
+        first_indistinguishable=int(told[0]) if len(told) else None,
     )
 
 

@@ -22,7 +22,7 @@ MOST_INSTANTS = 10_000
 
 
 @dataclass(frozen=True)
-class Development:
+class SpeedDistributions:
     """Discs by speed, relative to the centre of mass where that moves on for ever, at the instants `time` (K,).
 
     rms: root mean square of the speeds, length/time. edges: (C,) lower ends of the classes, length/time.
@@ -53,7 +53,9 @@ class Development:
         }
 
 
-def development(log: Log, every: float, start: float | None = None, end: float | None = None) -> Development:
+def speed_distributions(
+    log: Log, every: float, start: float | None = None, end: float | None = None
+) -> SpeedDistributions:
     """Count speeds at the start and every so often: trials of a Monte Carlo run, else time. UserError if too often."""
     check_steady(log)
     first, last = span(log, start, end)
@@ -77,7 +79,7 @@ def development(log: Log, every: float, start: float | None = None, end: float |
         members = gas.species == s
         law = SpeedLaw(float(temperature), float(gas.mass[members][0]))
         expected += members.sum() * np.diff(law.cdf(edges), append=1.0)
-    return Development(
+    return SpeedDistributions(
         time, trials, collisions_per_disc(log, time), np.array(distance), rms, edges, np.array(counts), expected
     )
 

@@ -59,7 +59,7 @@ class Gas {
       this.row = mark * this.step;
     }
     this.follow(row);
-    const [gx, gy] = this.head.gravity, [width, height] = this.head.box, [joinedX, joinedY] = this.head.joined;
+    const [gx, gy] = this.head.gravity, [width, height] = this.head.box, [periodicX, periodicY] = this.head.periodic;
     for (let i = 0; i < this.number; i++) {
       const event = this.last[i], from = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
       const dt = this.time - (event < 0 ? this.head.start : this.timeOf(this.tick[event]));
@@ -68,8 +68,8 @@ class Gas {
       this.vy[i] = vy + gy * dt;
       this.x[i] = from.position[k] + vx * dt + gx * dt * dt / 2;
       this.y[i] = from.position[k + 1] + vy * dt + gy * dt * dt / 2;
-      if (joinedX) this.x[i] -= Math.floor(this.x[i] / width) * width;
-      if (joinedY) this.y[i] -= Math.floor(this.y[i] / height) * height;
+      if (periodicX) this.x[i] -= Math.floor(this.x[i] / width) * width;
+      if (periodicY) this.y[i] -= Math.floor(this.y[i] / height) * height;
     }
   }
 
@@ -186,11 +186,11 @@ class DiscView {
   }
 
   outline(pen, i, inset, height, scale, boxX, boxY) {
-    const { gas } = this, [joinedX, joinedY] = gas.head.joined;
+    const { gas } = this, [periodicX, periodicY] = gas.head.periodic;
     const x = gas.x[i], y = gas.y[i], r = Math.max(gas.radius[i], SMALLEST / scale);
     this.disc(pen, inset + x * scale, height - y * scale, r * scale);
-    const imageX = joinedX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
-    const imageY = joinedY ? (y < r ? boxY : y > boxY - r ? -boxY : 0) : 0;
+    const imageX = periodicX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
+    const imageY = periodicY ? (y < r ? boxY : y > boxY - r ? -boxY : 0) : 0;
     if (imageX) this.disc(pen, inset + (x + imageX) * scale, height - y * scale, r * scale);
     if (imageY) this.disc(pen, inset + x * scale, height - (y + imageY) * scale, r * scale);
     if (imageX && imageY) this.disc(pen, inset + (x + imageX) * scale, height - (y + imageY) * scale, r * scale);

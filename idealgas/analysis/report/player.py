@@ -54,7 +54,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
     shades = colormaps[COLOUR_MAP]
     head = {
         "box": gas.box,
-        "joined": log.joined,
+        "periodic": log.periodic,
         "gravity": log.gravity,
         "positions": log.has_positions,
         "start": first,

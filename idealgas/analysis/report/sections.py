@@ -14,7 +14,7 @@ from idealgas.analysis.histogram.figure import histogram_figure
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.relaxation.acceptance import trials
+from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.figure import relaxation_figure
 from idealgas.analysis.relaxation.measure import LINEAR, SETTLED, relaxation
 from idealgas.analysis.temperature.figure import temperature_figure
@@ -69,7 +69,7 @@ def _relaxation(log: Log) -> Section:
     ]
     if found.in_time is not None:
         notes.append(f"Settled to 5 % after {SETTLED * found.in_time.value:.4g} units of time.")
-    if (k := found.told_until) is not None:
+    if (k := found.first_indistinguishable) is not None:
         notes.append(
             f"After {found.collisions[k]:.3g} collisions per disc the speeds of these {found.number:,} discs cannot be "
             "told from Maxwell and Boltzmann's (Kolmogorov-Smirnov test at 5 %)."
@@ -119,7 +119,7 @@ def _transport(log: Log) -> Section:
         for entry in found.diffusion
         for row in (
             (f"{entry.species}: D by displacement, length²/time", entry.coefficient),
-            (f"{entry.species}: memory of the velocity, time", entry.memory),
+            (f"{entry.species}: velocity correlation time, time", entry.velocity_correlation_time),
         )
     ]
     tables = [
@@ -171,7 +171,7 @@ def _histogram(title: str, quantity: str) -> tuple[str, Callable[[Log], Section]
 
 
 def _trials(log: Log) -> Section:
-    found = trials(log)
+    found = acceptance(log)
     if found is None:
         raise UserError(f"{log.scene.run.method} makes no trials")
     expected = [(f"in equilibrium, {name}", f"{share:.5f}") for name, share in found.expected.items()]
@@ -203,6 +203,6 @@ SECTIONS: tuple[tuple[str, Callable[[Log], Section]], ...] = (
     _histogram("Waits between events", "wait"),
     ("Heat capacity", _heat_capacity),
     ("Effusion", _effusion),
-    ("Trials", _trials),
+    ("Acceptance", _trials),
 )
 """Title and analysis of every part of a report, in order."""

@@ -127,19 +127,19 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     _, first = np.unique(gas.species, return_index=True)
     radius, mass = gas.radius[first], gas.mass[first]
     if scene.run.method == "monte_carlo":
-        return _homogeneous_rates(scene, gas, temperature, radius, mass, number)
+        return _rates_without_positions(scene, gas, temperature, radius, mass, number)
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # no disc meets itself
-    hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.box.joined)
+    hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.box.periodic)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits)
 
 
-def _homogeneous_rates(
+def _rates_without_positions(
     scene: Scene, gas: Gas, temperature: float, radius: np.ndarray, mass: np.ndarray, number: np.ndarray
 ) -> _Rates:
     """Of a gas without positions, whose pairs are tried at the rate of the fastest there may be."""
     reduced = mass[:, None] * mass / (mass[:, None] + mass)
-    contacts = hard_discs.homogeneous_contacts(radius, number, gas.box)
+    contacts = hard_discs.contacts_without_positions(radius, number, gas.box)
     per_disc = (contacts * np.sqrt(np.pi * temperature / (2 * reduced))).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     largest = np.sort(gas.radius)[-2:].sum() * v_ref * float(hard_discs.contact_value(gas.packing_fraction))
@@ -167,18 +167,18 @@ def _wall_hit_rate(
     mass: np.ndarray,
     number: np.ndarray,
     temperature: float,
-    joined: tuple[bool, bool],
+    periodic: tuple[bool, bool],
 ) -> float:
     """Flux onto the lines that the centres reach; hard discs stand Z times as dense there as in the gas."""
     crowding = hard_discs.mixture_compressibility(radius, number, gas.area)
     rate = 0.0
     for r, m, n in zip(radius, mass, number, strict=True):
         width, height = (
-            length if periodic else length - 2 * r for length, periodic in zip(gas.box, joined, strict=True)
+            length if is_periodic else length - 2 * r for length, is_periodic in zip(gas.box, periodic, strict=True)
         )
         if width > 0 and height > 0:
             flux = hard_discs.effusion_flux(crowding * n / (width * height), temperature, m)
-            rate += 2 * (height * (not joined[0]) + width * (not joined[1])) * flux
+            rate += 2 * (height * (not periodic[0]) + width * (not periodic[1])) * flux
     return float(rate)
 
 

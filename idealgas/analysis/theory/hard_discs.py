@@ -79,7 +79,9 @@ def mixture_compressibility(radius: ArrayLike, number: ArrayLike, area: float) -
 # a closed box with reflecting walls
 
 
-def confinement(radius: ArrayLike, box: tuple[float, float], joined: tuple[bool, bool] = (False, False)) -> np.ndarray:
+def confinement(
+    radius: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
+) -> np.ndarray:
     """How much oftener discs i and j touch in a box than in a part of the plane of its size, (S, S).
 
     Walls hold the centres within (Lx - 2R)(Ly - 2R), which crowds them, and take partners away, which does the
@@ -91,8 +93,8 @@ def confinement(radius: ArrayLike, box: tuple[float, float], joined: tuple[bool,
     own, other = radius[:, None, None], radius[:, None]
     angle = (np.arange(4096) + 0.5) / 4096 * 2 * math.pi
     share = np.ones(())
-    for side, periodic, component in zip(box, joined, (np.cos(angle), np.sin(angle)), strict=True):
-        if periodic:
+    for side, is_periodic, component in zip(box, periodic, (np.cos(angle), np.sin(angle)), strict=True):
+        if is_periodic:
             continue
         a, b = side - 2 * own, side - 2 * other  # lengths that the centres reach
         inside = np.clip((a + b) / 2 - (own + other) * np.abs(component), 0.0, np.minimum(a, b))
@@ -101,7 +103,7 @@ def confinement(radius: ArrayLike, box: tuple[float, float], joined: tuple[bool,
 
 
 def box_contacts(
-    radius: ArrayLike, number: ArrayLike, box: tuple[float, float], joined: tuple[bool, bool] = (False, False)
+    radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> np.ndarray:
     """2 σ_ij n_j χ_ij of discs in a closed box, (S, S): their collision rate per relative speed.
 
@@ -116,12 +118,12 @@ def box_contacts(
     sigma = radius[:, None] + radius
     if len(radius) == 1:
         chi = (compressibility(phi, number[0]) - 1) / (2 * phi)
-        return 2 * sigma * number / area * chi * confinement(radius, box, joined)
+        return 2 * sigma * number / area * chi * confinement(radius, box, periodic)
     contacts = 2 * sigma * number / area * mixture_contact_value(radius, number, area)
-    return (contacts - np.diag(np.diag(contacts) / number)) * confinement(radius, box, joined)
+    return (contacts - np.diag(np.diag(contacts) / number)) * confinement(radius, box, periodic)
 
 
-def homogeneous_contacts(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:
+def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:
     """2 σ_ij n_j χ of discs without positions, (S, S): no disc meets itself, and χ is Henderson's for all."""
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     area = box[0] * box[1]
@@ -130,11 +132,11 @@ def homogeneous_contacts(radius: ArrayLike, number: ArrayLike, box: tuple[float,
 
 
 def box_compressibility(
-    radius: ArrayLike, number: ArrayLike, box: tuple[float, float], joined: tuple[bool, bool] = (False, False)
+    radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
     """Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij of discs in a closed box: what both virials tend to."""
     radius, number = np.asarray(radius, float), np.asarray(number, float)
-    contacts = box_contacts(radius, number, box, joined)
+    contacts = box_contacts(radius, number, box, periodic)
     return float(1 + math.pi / 4 * (number[:, None] * (radius[:, None] + radius) * contacts).sum() / number.sum())
 
 

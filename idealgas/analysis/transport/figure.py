@@ -9,20 +9,20 @@ from idealgas.analysis.transport.measure import Transport
 
 def transport_figure(result: Transport) -> Figure:
     """Memory of velocities, mean square displacement, and pair distribution."""
-    figure, (memory, displacement, pairs) = panels(3)
+    figure, (correlation, displacement, pairs) = panels(3)
     for entry, colour in zip(result.diffusion, COLOURS * len(result.diffusion), strict=False):
-        memory.errorbar(entry.lag, entry.correlation, entry.correlation_error, color=colour, label=entry.species)
+        correlation.errorbar(entry.lag, entry.correlation, entry.correlation_error, color=colour, label=entry.species)
         if entry.coefficient.theory is not None and entry.tail is not None:
             rate = result.free_paths[0].time.value ** -1
-            memory.plot(entry.lag, np.exp(-rate * entry.lag), "--", color=GREY, label="Enskog: exp(-Γt)")
+            correlation.plot(entry.lag, np.exp(-rate * entry.lag), "--", color=GREY, label="Enskog: exp(-Γt)")
             late = rate * entry.lag > 5
-            memory.plot(entry.lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
+            correlation.plot(entry.lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
         displacement.errorbar(
             entry.lag, entry.displacement, entry.displacement_error, color=colour, label=f"{entry.species}, measured"
         )
         d = entry.coefficient.value
         displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
-    memory.set_yscale("symlog", linthresh=1e-3)
+    correlation.set_yscale("symlog", linthresh=1e-3)
     for found, colour in zip(result.pair_distributions, COLOURS * len(result.pair_distributions), strict=False):
         middle = (found.edges[1:] + found.edges[:-1]) / 2
         label = f"{found.species} and {found.other}"
@@ -32,7 +32,7 @@ def transport_figure(result: Transport) -> Figure:
                 pairs.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
     pairs.axhline(1.0, color=GREY, linewidth=0.8)
     for ax, x, y in (
-        (memory, "t (time)", "⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)"),
+        (correlation, "t (time)", "⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)"),
         (displacement, "t (time)", "mean square displacement (length²)"),
         (pairs, "r (length)", "g(r) (no unit)"),
     ):

@@ -36,7 +36,8 @@ class Diffusion:
     """One species. lag: (L,), time. correlation: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩; displacement: (L,), mean square, length².
 
     Errors beside both. tail: (L,), what becomes of the correlation by theory, for one species alone. coefficient: D, a
-    quarter of the slope of the displacement at late lags; theory: Enskog's. memory: ∫ correlation dt to the last lag.
+    quarter of the slope of the displacement at late lags; theory: Enskog's.
+    velocity_correlation_time: ∫ correlation dt to the last lag.
     """
 
     species: str
@@ -47,7 +48,7 @@ class Diffusion:
     displacement_error: np.ndarray
     tail: np.ndarray | None
     coefficient: Estimate
-    memory: Estimate
+    velocity_correlation_time: Estimate
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -55,7 +56,7 @@ class Diffusion:
         return {
             "species": self.species,
             "coefficient": self.coefficient.as_dict(),
-            "memory": self.memory.as_dict(),
+            "velocity_correlation_time": self.velocity_correlation_time.as_dict(),
             **{name: getattr(self, name).tolist() for name in series},
             "tail": None if self.tail is None else [None, *self.tail[1:].tolist()],
         }
@@ -105,14 +106,14 @@ def transport(
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    moments, impacts = Moments(), Impacts(len(log.walls), log.joined)
+    moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
     window = measure(log, [moments, impacts], start, end, progress, allowed=("periodic sides",))
     gas, discs = log.discs, composition(log.discs)
-    expected = expected_rates(discs, gas.box, equilibrium, log.joined)
+    expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
     rates = collision_rates(discs, expected, window, impacts)
     return Transport(
         window=window,
-        walled=not all(log.joined),
+        walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
         contacts=_contacts(discs, gas.area, expected, equilibrium, rates),
@@ -192,7 +193,7 @@ def _of_species(
     displacement = _mean_square_displacement(places)
     late = slice(int(FITTED_FROM * LAGS), None)
     slope = np.polyfit(lag[late], displacement[:, late].T, 1)[0] / 4
-    memory = np.trapezoid(correlation, lag, axis=1) / square
+    correlation_time = np.trapezoid(correlation, lag, axis=1) / square
     count = math.sqrt(len(places))
     return Diffusion(
         name,
@@ -203,7 +204,7 @@ def _of_species(
         displacement.std(axis=0, ddof=1) / count,
         tail=None if enskog is None else hard_discs.long_time_tail(np.maximum(lag, 1e-300), *enskog),
         coefficient=mean(slope, theory=enskog[1] if enskog else None),
-        memory=mean(memory),
+        velocity_correlation_time=mean(correlation_time),
     )
 
 

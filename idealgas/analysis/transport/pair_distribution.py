@@ -43,9 +43,9 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
     members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
     box = np.array(log.box)
-    turn = np.where(log.joined, box, 0.0)  # 0: no images along this axis
+    turn = np.where(log.periodic, box, 0.0)  # 0: no images along this axis
     for state in log.frames(np.linspace(start, end, FRAMES)):
-        inside = np.where(log.joined, np.clip(state.position, 0.0, np.nextafter(box, 0.0)), state.position)
+        inside = np.where(log.periodic, np.clip(state.position, 0.0, np.nextafter(box, 0.0)), state.position)
         trees = [cKDTree(inside[ids], boxsize=turn) for ids in members]
         for i, j in pairs:
             found = trees[i].count_neighbors(trees[j], edges[i, j], cumulative=True)
@@ -58,24 +58,24 @@ def _normalised(
 ) -> PairDistribution:
     """counts: (frames, bins), each pair of like discs twice."""
     reach = [
-        (side, side) if joined else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
-        for side, joined in zip(log.box, log.joined, strict=True)
+        (side, side) if periodic else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
+        for side, periodic in zip(log.box, log.periodic, strict=True)
     ]
-    expected = discs.number[i] * (discs.number[j] - (i == j)) * np.diff(_chance(edges, reach, log.joined))
+    expected = discs.number[i] * (discs.number[j] - (i == j)) * np.diff(_chance(edges, reach, log.periodic))
     g = counts / expected
     return PairDistribution(
         discs.name[i], discs.name[j], edges, g.mean(axis=0), g.std(axis=0, ddof=1) / math.sqrt(len(g))
     )
 
 
-def _chance(r: np.ndarray, reach: list[tuple[float, float]], joined: tuple[bool, bool]) -> np.ndarray:
+def _chance(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
     """Probability that two points at random, in rectangles of sides `reach` about one centre, are closer than r."""
     angle = (np.arange(720) + 0.5) / 720 * math.pi / 2
     steps = np.linspace(0.0, 1.0, 65)
     rho = (r[:, None] * steps)[:, :, None]
     density = np.ones((len(r), len(steps), len(angle)))
-    for (a, b), periodic, component in zip(reach, joined, (np.cos(angle), np.sin(angle)), strict=True):
-        if periodic:
+    for (a, b), is_periodic, component in zip(reach, periodic, (np.cos(angle), np.sin(angle)), strict=True):
+        if is_periodic:
             density /= a
         else:
             density *= np.clip((a + b) / 2 - rho * component, 0.0, min(a, b)) / (a * b)

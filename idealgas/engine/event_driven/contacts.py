@@ -5,7 +5,7 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.scheduler import NO_CONTACT, images_of, partner_rank, segment_partner
-from idealgas.engine.event_driven.state import copy_image, image_of, note_image
+from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
 from idealgas.physics.disc_disc import contact_time, first_touch
@@ -16,9 +16,9 @@ U = np.uintp
 
 
 @inline
-def place(index, count, joined):
+def place(index, count, is_periodic):
     """A column or row, and the image it is met in, for an index that may lie beyond joined sides."""
-    if joined:
+    if is_periodic:
         if index < 1:
             return index + count - 2, -1
         if index > count - 2:
@@ -27,9 +27,9 @@ def place(index, count, joined):
 
 
 @inline
-def gather_line(agenda, count, column, row, along_y, periodic):
+def gather_line(state, count, column, row, along_y, periodic):
     """Put the first discs of three cells in a row or column, from (column, row) on, behind `count` candidates."""
-    cells = agenda.cells
+    cells = state.cells
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
     for step in range(3):
@@ -37,29 +37,29 @@ def gather_line(agenda, count, column, row, along_y, periodic):
             c, image_x = place(column + (0 if along_y else step), cells.columns, periodic.x)
             r, image_y = place(row + (step if along_y else 0), cells.rows, periodic.y)
             cell = r * cells.columns + c
-            note_image(agenda.images, count, image_x, image_y)
+            record_image(state.images, count, image_x, image_y)
         j = cells.head[U(cell)]
-        agenda.candidates[U(count)] = j
+        state.candidates[U(count)] = j
         count += 1 if j >= 0 else 0
         cell += stride
     return count
 
 
 @inline
-def gather_block(agenda, disc, periodic):
+def gather_block(state, disc, periodic):
     """Make the first discs of a disc's own and the eight cells around it the candidates; return how many."""
     column = np.int64(disc.column) - 1
     row = np.int64(disc.row) - 1
-    count = gather_line(agenda, 0, column, row, False, periodic)
-    count = gather_line(agenda, count, column, row + 1, False, periodic)
-    return gather_line(agenda, count, column, row + 2, False, periodic)
+    count = gather_line(state, 0, column, row, False, periodic)
+    count = gather_line(state, count, column, row + 1, False, periodic)
+    return gather_line(state, count, column, row + 2, False, periodic)
 
 
 @inline
-def images_to(agenda, k, ids, i, j, periodic):
+def images_to(state, k, ids, i, j, periodic):
     """Box lengths between the records of disc i and candidate k, disc j."""
     if periodic is not None:
-        return images_between(periodic, ids[U(i)], ids[U(j)], image_of(agenda.images, k))
+        return images_between(periodic, ids[U(i)], ids[U(j)], image_of(state.images, k))
     return NO_IMAGES
 
 
@@ -72,35 +72,35 @@ def store_images(prediction, images, periodic):
 
 
 @inline
-def store_contact(agenda, record, ids, i, j, k, time, periodic):
+def store_contact(state, record, ids, i, j, k, time, periodic):
     """Make disc j, candidate k, the partner of disc i's contact."""
-    prediction = agenda.prediction[U(i)]
+    prediction = state.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
-    store_images(prediction, images_to(agenda, k, ids, i, j, periodic), periodic)
+    store_images(prediction, images_to(state, k, ids, i, j, periodic), periodic)
 
 
 @inline
-def test_candidates(record, ids, agenda, count, i, now, effects):
+def test_candidates(record, ids, state, count, i, now, effects):
     """Keep disc i's earliest contact among the candidates; the chains behind them are appended on the way.
 
     The quick loop has no branches; ties and contacts at this very instant are rare and settled by `test_carefully`.
     """
-    candidates = agenda.candidates
+    candidates = state.candidates
     disc = record[U(i)]
-    best = agenda.prediction[U(i)].contact
+    best = state.prediction[U(i)].contact
     partner = -1
     chosen = -1
     tied = False
     k = 0
     while k < count:
         j = candidates[U(k)]
-        behind = agenda.cells.link[U(j)].next
+        behind = state.cells.link[U(j)].next
         candidates[U(count)] = behind
-        copy_image(agenda.images, count, k)
+        copy_image(state.images, count, k)
         count += 1 if behind >= 0 else 0
-        images = images_to(agenda, k, ids, i, j, effects.periodic)
+        images = images_to(state, k, ids, i, j, effects.periodic)
         time = first_touch(disc, record[U(j)], effects.gravity, effects.periodic, images)
         tied |= time == best
         hit = time < best
@@ -109,20 +109,20 @@ def test_candidates(record, ids, agenda, count, i, now, effects):
         chosen = k if hit else chosen
         k += 1
     if tied | (best <= now):
-        test_carefully(record, ids, agenda, count, i, effects)
+        resolve_ties(record, ids, state, count, i, effects)
     elif partner >= 0:
-        store_contact(agenda, record, ids, i, partner, chosen, best, effects.periodic)
+        store_contact(state, record, ids, i, partner, chosen, best, effects.periodic)
 
 
 @njit
-def test_carefully(record, ids, agenda, count, i, effects):
+def resolve_ties(record, ids, state, count, i, effects):
     """What `test_candidates` is for, with the rules for ties and for collisions that are done."""
-    prediction = agenda.prediction[U(i)]
+    prediction = state.prediction[U(i)]
     own = np.int64(ids[U(i)])
     for k in range(count):
-        j = agenda.candidates[U(k)]
+        j = state.candidates[U(k)]
         other = np.int64(ids[U(j)])
-        images = images_to(agenda, k, ids, i, j, effects.periodic)
+        images = images_to(state, k, ids, i, j, effects.periodic)
         time = contact_time(
             record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
         )
@@ -132,19 +132,19 @@ def test_carefully(record, ids, agenda, count, i, effects):
             if prediction.partner == j:
                 earlier = image_precedes(own, other, images, images_of(prediction))
         if earlier:
-            store_contact(agenda, record, ids, i, j, k, time, effects.periodic)
+            store_contact(state, record, ids, i, j, k, time, effects.periodic)
 
 
 @inline
-def test_segments(record, ids, agenda, i, segments, effects):
+def test_segments(record, ids, state, i, segments, effects):
     """Keep disc i's earliest contact among the wall segments of its cell."""
     if segments is not None:
-        cell = U(cell_index(agenda.cells, record[U(i)]))
-        prediction = agenda.prediction[U(i)]
+        cell = U(cell_index(state.cells, record[U(i)]))
+        prediction = state.prediction[U(i)]
         own = np.int64(ids[U(i)])
-        for entry in range(agenda.walls.start[cell], agenda.walls.start[cell + U(1)]):
-            k = agenda.walls.item[U(entry)]
-            images = images_to_item(agenda.walls, U(entry), ids[U(i)], effects.periodic)
+        for entry in range(state.walls.start[cell], state.walls.start[cell + U(1)]):
+            k = state.walls.item[U(entry)]
+            images = images_to_item(state.walls, U(entry), ids[U(i)], effects.periodic)
             time = segment_contact(
                 record[U(i)], own, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
             )
@@ -161,25 +161,25 @@ def test_segments(record, ids, agenda, i, segments, effects):
 
 
 @inline
-def predict_contact(record, ids, agenda, i, now, effects):
+def predict_contact(record, ids, state, i, now, effects):
     """Disc i's earliest contact with any disc of its own and the eight cells around, or a segment of its own."""
-    prediction = agenda.prediction[U(i)]
+    prediction = state.prediction[U(i)]
     prediction.contact = NO_CONTACT
     prediction.partner = -1
     disc = record[U(i)]
-    count = gather_block(agenda, disc, effects.periodic)
-    test_candidates(record, ids, agenda, count, i, now, effects)
-    test_segments(record, ids, agenda, i, effects.segments, effects)
+    count = gather_block(state, disc, effects.periodic)
+    test_candidates(record, ids, state, count, i, now, effects)
+    test_segments(record, ids, state, i, effects.segments, effects)
 
 
 @inline
-def extend_contact(record, ids, agenda, i, exit_code, now, effects):
+def extend_contact(record, ids, state, i, crossing_code, now, effects):
     """After a step into the next cell: test the three cells that came within reach; the contact so far stays valid."""
     disc = record[U(i)]
-    forward = 1 if exit_code & 1 else -1
-    along_y = exit_code >= 2
+    forward = 1 if crossing_code & 1 else -1
+    along_y = crossing_code >= 2
     column = np.int64(disc.column) + (-1 if along_y else forward)
     row = np.int64(disc.row) + (forward if along_y else -1)
-    count = gather_line(agenda, 0, column, row, not along_y, effects.periodic)
-    test_candidates(record, ids, agenda, count, i, now, effects)
-    test_segments(record, ids, agenda, i, effects.segments, effects)
+    count = gather_line(state, 0, column, row, not along_y, effects.periodic)
+    test_candidates(record, ids, state, count, i, now, effects)
+    test_segments(record, ids, state, i, effects.segments, effects)

@@ -9,7 +9,7 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.cells import Cells, cell_index, cell_of, discs_per_cell, enter, make_cells
 from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
-from idealgas.engine.event_driven.crossings import change_cell, predict_exit
+from idealgas.engine.event_driven.crossings import cross_cell, predict_crossing
 from idealgas.engine.event_driven.overlap import deepest_overlap
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.scheduler import (
@@ -21,7 +21,7 @@ from idealgas.engine.event_driven.scheduler import (
     schedule,
     segment_of,
 )
-from idealgas.engine.event_driven.state import make_agenda
+from idealgas.engine.event_driven.state import make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
 from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
@@ -34,44 +34,44 @@ U = np.uintp
 
 
 @inline
-def predict(record, ids, agenda, i, now, effects):
+def predict(record, ids, state, i, now, effects):
     """Everything disc i meets next, entered in the schedule."""
-    predict_contact(record, ids, agenda, i, now, effects)
-    predict_exit(record, ids, agenda, i, now, effects)
-    schedule(agenda.tree, agenda.prediction, ids, i)
-    offer_to_piston(record, ids, agenda, i, effects.piston, effects.gravity)
+    predict_contact(record, ids, state, i, now, effects)
+    predict_crossing(record, ids, state, i, now, effects)
+    schedule(state.tree, state.prediction, ids, i)
+    offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
 
 
 @inline
-def predict_contact_again(record, ids, agenda, i, now, effects):
+def predict_contact_again(record, ids, state, i, now, effects):
     """The partner has moved on: another contact is disc i's, entered in the schedule."""
-    predict_contact(record, ids, agenda, i, now, effects)
-    schedule(agenda.tree, agenda.prediction, ids, i)
+    predict_contact(record, ids, state, i, now, effects)
+    schedule(state.tree, state.prediction, ids, i)
 
 
 @inline
-def step_into_next_cell(record, ids, agenda, i, exit_code, now, effects):
+def enter_next_cell(record, ids, state, i, crossing_code, now, effects):
     """Membership changes, the record does not; the contact found so far stays valid."""
-    change_cell(record, ids, agenda, i, exit_code, effects.periodic)
-    extend_contact(record, ids, agenda, i, exit_code, now, effects)
-    predict_exit(record, ids, agenda, i, now, effects)
-    schedule(agenda.tree, agenda.prediction, ids, i)
+    cross_cell(record, ids, state, i, crossing_code, effects.periodic)
+    extend_contact(record, ids, state, i, crossing_code, now, effects)
+    predict_crossing(record, ids, state, i, now, effects)
+    schedule(state.tree, state.prediction, ids, i)
 
 
 @njit
-def rebuild(record, ids, agenda, effects):
+def rebuild(record, ids, state, effects):
     """Fill cells, predictions and schedule from records whose column and row are set."""
-    agenda.cells.head[:] = -1
+    state.cells.head[:] = -1
     for i in range(record.shape[0]):
-        enter(agenda.cells, i, cell_index(agenda.cells, record[U(i)]))
-    clear(agenda.tree.key)
-    predict_piston(record, ids, agenda, effects.piston, effects.gravity)
+        enter(state.cells, i, cell_index(state.cells, record[U(i)]))
+    clear(state.tree.key)
+    predict_piston(record, ids, state, effects.piston, effects.gravity)
     for i in range(record.shape[0]):
-        predict(record, ids, agenda, i, 0.0, effects)
+        predict(record, ids, state, i, 0.0, effects)
 
 
 @njit
-def advance_events(record, ids, agenda, effects, until, most_events, most_collisions, epoch_start, batch, counters):
+def advance_events(record, ids, state, effects, until, most_events, most_collisions, epoch_start, batch, counters):
     """Process events up to local time `until`, or to a limit, or until the batch is full.
 
     Return the number of rows written and whether everything up to `until` has happened.
@@ -84,14 +84,14 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
     stale = 0
     rows = 0
     now = counters[0].time
-    still = counters[0].still
+    events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
     while events < most_events and collisions < most_collisions and rows < capacity:
-        i = next_disc(agenda.tree)
-        prediction = agenda.prediction[U(i)]
+        i = next_disc(state.tree)
+        prediction = state.prediction[U(i)]
         at_contact = contact_is_next(prediction, ids, i)
-        time = prediction.contact if at_contact else prediction.exit
+        time = prediction.contact if at_contact else prediction.crossing
         if time > until:
             reached = True
             break
@@ -102,16 +102,16 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
                 resolve_stop(time, effects.piston)
             if not at_contact or record[U(i)].count != prediction.partner_count:
                 stale += at_contact
-                predict_piston(record, ids, agenda, effects.piston, effects.gravity)
+                predict_piston(record, ids, state, effects.piston, effects.gravity)
                 continue
             resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
-            predict_piston(record, ids, agenda, effects.piston, effects.gravity)
+            predict_piston(record, ids, state, effects.piston, effects.gravity)
             rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
         elif at_contact and prediction.partner >= 0:
             other = np.int64(prediction.partner)
             if record[U(other)].count != prediction.partner_count:
                 stale += 1
-                predict_contact_again(record, ids, agenda, i, time, effects)
+                predict_contact_again(record, ids, state, i, time, effects)
                 continue
             images = images_of(prediction)
             resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
@@ -123,28 +123,28 @@ def advance_events(record, ids, agenda, effects, until, most_events, most_collis
                 record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
             )
             rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
-        elif prediction.exit_code < SIDE_OF_BOX:
+        elif prediction.crossing_code < SIDE_OF_BOX:
             crossings += 1
-            step_into_next_cell(record, ids, agenda, i, prediction.exit_code, time, effects)
+            enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects)
             continue
         else:
-            side = prediction.exit_code - SIDE_OF_BOX
+            side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
         while i >= 0:  # both discs at one place: a second would double the machine code
-            predict(record, ids, agenda, i, time, effects)
+            predict(record, ids, state, i, time, effects)
             i, other = other, np.int64(-1)
         events += 1
-        still = check_clock(time, now, still, record.shape[0])
+        events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, crossings, stale, now, still)
+    add_to_counters(counters[0], events, collisions, crossings, stale, now, events_at_this_time)
     return rows, reached
 
 
 class EventDriven:
     """The method as an object: what an epoch needs between its start and its end."""
 
-    homogeneous = False
+    without_positions = False
     single_epoch = False
 
     def __init__(self, filling: float | None = None) -> None:
@@ -162,8 +162,8 @@ class EventDriven:
         self.discs = make_discs(gas, order)
         self.discs.record.column, self.discs.record.row = column[order], row[order]
         self._effects = effects
-        self._agenda = make_agenda(len(gas), cells, effects, self._wall_cells(effects, cells, largest_radius))
-        rebuild(self.discs.record, self.discs.id, self._agenda, effects)
+        self._state = make_state(len(gas), cells, effects, self._wall_cells(effects, cells, largest_radius))
+        rebuild(self.discs.record, self.discs.id, self._state, effects)
 
     def _wall_cells(self, effects: Effects, cells: Cells, largest_radius: float) -> WallCells | None:
         """Those of the epoch before, unless a gate has opened or closed since: the cells stay as they are."""
@@ -179,8 +179,8 @@ class EventDriven:
     ) -> tuple[int, bool]:
         """See `advance_events`."""
         record, ids, _ = self.discs
-        return advance_events(record, ids, self._agenda, self._effects, *limits[:3], epoch_start, batch, counters)
+        return advance_events(record, ids, self._state, self._effects, *limits[:3], epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""
-        return deepest_overlap(self.discs.record, self._agenda, self._effects.periodic)
+        return deepest_overlap(self.discs.record, self._state, self._effects.periodic)

@@ -6,24 +6,24 @@ from idealgas.engine.event_driven.contacts import gather_block
 
 
 @inline
-def deepest_around(record, agenda, i, periodic):
+def deepest_around(record, state, i, periodic):
     """Deepest overlap of disc i with those before it in memory; 0 if there is none."""
     deepest = 0.0
     disc = record[U(i)]
-    count = gather_block(agenda, disc, periodic)
+    count = gather_block(state, disc, periodic)
     for k in range(count):
-        j = agenda.candidates[U(k)]
+        j = state.candidates[U(k)]
         while j >= 0:
             if j < i:
                 deepest = max(deepest, overlap_of(disc, record[U(j)], periodic))
-            j = agenda.cells.link[U(j)].next
+            j = state.cells.link[U(j)].next
     return deepest
 
 
 @njit
-def deepest_overlap(record, agenda, periodic):
+def deepest_overlap(record, state, periodic):
     """Deepest overlap among records at one time that stand in their cells."""
     deepest = 0.0
     for i in range(record.shape[0]):
-        deepest = max(deepest, deepest_around(record, agenda, i, periodic))
+        deepest = max(deepest, deepest_around(record, state, i, periodic))
     return deepest

@@ -33,27 +33,27 @@ def keep_if_earlier(record, ids, prediction, j, time, side):
 
 
 @inline
-def predict_piston(record, ids, agenda, piston, gravity):
+def predict_piston(record, ids, state, piston, gravity):
     """What the piston meets next, entered in the schedule."""
     if piston is not None:
         leaf = ids.shape[0]
         p = piston[0]
-        prediction = agenda.prediction[U(leaf)]
+        prediction = state.prediction[U(leaf)]
         prediction.contact = NO_CONTACT
         prediction.partner = -1
         for j in range(leaf):
             keep_if_earlier(record, ids, prediction, j, piston_contact(record[U(j)], p, gravity), p.side)
-        prediction.exit = stop_contact(p)
-        prediction.exit_code = SIDE_OF_BOX + p.side
-        schedule(agenda.tree, agenda.prediction, ids, leaf)
+        prediction.crossing = stop_contact(p)
+        prediction.crossing_code = SIDE_OF_BOX + p.side
+        schedule(state.tree, state.prediction, ids, leaf)
 
 
 @inline
-def offer_to_piston(record, ids, agenda, i, piston, gravity):
+def offer_to_piston(record, ids, state, i, piston, gravity):
     """After disc i's record changed: it may now be the piston's next."""
     if piston is not None:
         leaf = ids.shape[0]
         p = piston[0]
-        prediction = agenda.prediction[U(leaf)]
+        prediction = state.prediction[U(leaf)]
         if keep_if_earlier(record, ids, prediction, i, piston_contact(record[U(i)], p, gravity), p.side):
-            schedule(agenda.tree, agenda.prediction, ids, leaf)
+            schedule(state.tree, state.prediction, ids, leaf)

@@ -15,7 +15,7 @@ from idealgas.physics.constants import NEVER
 PREDICTION = np.dtype(
     [
         ("contact", "f8"),  # time of the best contact with another disc
-        ("exit", "f8"),  # time at which the disc leaves its cell or meets a side of the box
+        ("crossing", "f8"),  # time at which the disc leaves its cell or meets a side of the box
         ("partner", "i4"),  # place of the other disc, -1 for none, -2 - k for wall segment k
         (
             "partner_count",
@@ -23,7 +23,7 @@ PREDICTION = np.dtype(
         ),  # the partner's count then: once it has moved on, the contact is stale
         ("image_x", "i2"),  # box lengths to the other's record or the segment, where sides are periodic
         ("image_y", "i2"),
-        ("exit_code", "i4"),  # 0-3: into the cell on the left, right, below, above; 4-7: meets that side of the box
+        ("crossing_code", "i4"),  # 0-3: into the cell on the left, right, below, above; 4-7: meets that side of the box
     ],
     align=True,
 )
@@ -100,12 +100,12 @@ def partner_rank(ids, partner):
 @inline
 def contact_is_next(prediction, ids, i):
     """Whether a disc's next event is its contact, not its exit; an exit into a cell precedes all events of its time."""
-    if prediction.contact != prediction.exit:
-        return prediction.contact < prediction.exit
-    if prediction.exit_code < SIDE_OF_BOX or prediction.partner == -1 or i == ids.shape[0]:
+    if prediction.contact != prediction.crossing:
+        return prediction.contact < prediction.crossing
+    if prediction.crossing_code < SIDE_OF_BOX or prediction.partner == -1 or i == ids.shape[0]:
         return False
     own = np.int64(ids[U(i)])
-    return precedes(own, partner_rank(ids, prediction.partner), own, wall_rank(prediction.exit_code - SIDE_OF_BOX))
+    return precedes(own, partner_rank(ids, prediction.partner), own, wall_rank(prediction.crossing_code - SIDE_OF_BOX))
 
 
 @inline
@@ -115,13 +115,13 @@ def event_ids(prediction, ids, i):
     The last leaf, beyond the discs, is the piston's: its contact is a hit of its side, its exit the end stop.
     """
     contact = contact_is_next(prediction, ids, i)
-    side = np.int64(wall_rank(prediction.exit_code - SIDE_OF_BOX))
+    side = np.int64(wall_rank(prediction.crossing_code - SIDE_OF_BOX))
     if i == ids.shape[0]:
         return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), np.int64(-1))
     own = np.int64(ids[U(i)])
     if contact:
         return own, partner_rank(ids, prediction.partner)
-    if prediction.exit_code < SIDE_OF_BOX:
+    if prediction.crossing_code < SIDE_OF_BOX:
         return np.int64(-1), own
     return own, side
 
@@ -185,7 +185,7 @@ def schedule(tree, predictions, ids, i):
     """
     _, key, winner, start = tree
     prediction = predictions[U(i)]
-    tree.time[U(i)] = min(prediction.contact, prediction.exit)
+    tree.time[U(i)] = min(prediction.contact, prediction.crossing)
     earliest = key[U(i)]
     first = np.int64(i)
     node = np.int64(i)

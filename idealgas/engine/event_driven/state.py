@@ -12,7 +12,7 @@ from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 
 
-class Agenda(NamedTuple):
+class EventDrivenState(NamedTuple):
     """cells, tree: see there. prediction: (N,) PREDICTION, and one more for the piston.
 
     candidates: scratch for places of discs; images: scratch beside it, (…, 2) i4, where sides are periodic.
@@ -27,11 +27,11 @@ class Agenda(NamedTuple):
     walls: WallCells | None
 
 
-def make_agenda(n: int, cells: Cells, effects: Effects, walls: WallCells | None) -> Agenda:
+def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) -> EventDrivenState:
     """An agenda with nothing predicted."""
     leaves = n if effects.piston is None else n + 1
     room = 9 * n + 16  # in a box of one cell each disc is a candidate in nine images
-    return Agenda(
+    return EventDrivenState(
         cells,
         make_tree(leaves),
         aligned(leaves, PREDICTION),
@@ -42,7 +42,7 @@ def make_agenda(n: int, cells: Cells, effects: Effects, walls: WallCells | None)
 
 
 @inline
-def note_image(images, k, x, y):
+def record_image(images, k, x, y):
     """Remember in which image candidate k is met."""
     if images is not None:
         images[np.uintp(k), 0] = x

@@ -6,7 +6,7 @@ import numpy as np
 
 from idealgas._jit import inline
 from idealgas.engine.event_driven.cells import Cells
-from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, joined_axes
+from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, periodic_axes
 
 
 class WallCells(NamedTuple):
@@ -22,7 +22,7 @@ class WallCells(NamedTuple):
 def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
     """Every active segment, in every cell of which some point is within the largest radius of it or nearly so."""
     reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
-    across, along = (range(-1, 2) if joined else (0,) for joined in joined_axes(periodic))
+    across, along = (range(-1, 2) if is_periodic else (0,) for is_periodic in periodic_axes(periodic))
     cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
     for k in np.flatnonzero(segments.active):
         for image in ((x, y) for x in across for y in along):

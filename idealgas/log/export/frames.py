@@ -41,7 +41,7 @@ def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
 def write_extxyz(log: Log, times: Sequence[float], path: Path) -> int:
     """Extended XYZ: 17 digits, so every float64 comes back. The box's depth is the largest diameter."""
     discs, (width, height) = log.discs, log.box
-    pbc = " ".join("T" if joined else "F" for joined in (*log.joined, False))
+    pbc = " ".join("T" if periodic else "F" for periodic in (*log.periodic, False))
     lattice = f"{width!r} 0 0 0 {height!r} 0 0 0 {float(2 * discs.radius.max())!r}"
     properties = "id:I:1:type:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1"
     names = np.array(discs.species_names)[discs.species]
@@ -70,15 +70,15 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
         h5md.create_group("creator").attrs.update({"name": np.bytes_("idealgas"), "version": np.bytes_(__version__)})
         group = file.create_group("particles/trajectory")
         group["position/step"], group["position/time"] = np.arange(frames), np.asarray(times, "f8")
-        names = ("position", "velocity", "image") if any(log.joined) else ("position", "velocity")
+        names = ("position", "velocity", "image") if any(log.periodic) else ("position", "velocity")
         for name in names:
             dtype = "i4" if name == "image" else "f8"
             group.create_dataset(f"{name}/value", (frames, discs, 3), dtype, chunks=(1, discs, 3), compression="gzip")
             _share_times(group, name)
         box = group.create_group("box")
-        boundary = ["periodic" if joined else "none" for joined in (*log.joined, False)]
+        boundary = ["periodic" if periodic else "none" for periodic in (*log.periodic, False)]
         box.attrs.update({"dimension": 3, "boundary": np.array(boundary, "S")})
-        if any(log.joined):
+        if any(log.periodic):
             box["edges/value"] = np.tile((*log.box, 2 * log.discs.radius.max()), (frames, 1))
             _share_times(group, "box/edges")
         group["id"], group["species"] = np.arange(discs), log.discs.species

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.document.table import Rectangle
 from idealgas.scene.checks.piston import CLOSE_PACKING
 from idealgas.scene.geometry import images
@@ -23,26 +23,26 @@ RESOLUTION = 1e-9
 """Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""
 
 
-def species_faults(kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
+def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
     first: dict[str, int] = {}
     for i, s in kinds:
         if s.name == "disc":
-            yield Fault((("species", i, "name"),), "name taken by the [[disc]] tables", '"disc"', "any other word")
+            yield Issue((("species", i, "name"),), "name taken by the [[disc]] tables", '"disc"', "any other word")
         elif first.setdefault(s.name, i) != i:
-            yield Fault((("species", i, "name"),), "second species of this name", f'"{s.name}"', "a name of its own")
+            yield Issue((("species", i, "name"),), "second species of this name", f'"{s.name}"', "a name of its own")
         given = [key for key in ("temperature", "speed", "velocities") if getattr(s, key) is not None]
         if len(given) != 1:
             keys = (("species", i), *(("species", i, key) for key in given))
             what = "more than one motion" if given else "no motion"
-            yield Fault(
+            yield Issue(
                 keys, what, " and ".join(given) or "nothing", "exactly one of temperature, speed and velocities"
             )
         if s.velocities is not None and len(s.velocities) != s.count:
             keys = (("species", i, "velocities"), ("species", i, "count"))
-            yield Fault(keys, "not one velocity for each disc", str(len(s.velocities)), f"{s.count}, as count says")
+            yield Issue(keys, "not one velocity for each disc", str(len(s.velocities)), f"{s.count}, as count says")
 
 
-def overlap_faults(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Fault]:
+def overlap_issues(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Issue]:
     """Explicit discs that overlap an earlier one, found by a sweep along x over the discs and their images."""
     seen: set[tuple[int, int]] = set()
     active: list[tuple[int, Disc, float, float]] = []
@@ -56,17 +56,17 @@ def overlap_faults(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[F
                 seen.add((low, high))
                 keys: tuple[Key, ...] = tuple(("disc", n, key) for key in ("position", "radius") for n in (high, low))
                 distance = f"a distance of {math.hypot(dx, dy)} between centres"
-                yield Fault(keys, f"overlaps disc {low}", distance, f">= {contact}, the sum of the radii")
+                yield Issue(keys, f"overlaps disc {low}", distance, f">= {contact}, the sum of the radii")
         active.append((i, d, x, y))
 
 
-def room_faults(
+def room_issues(
     box: Box,
     space: Rectangle,
     kinds: list[tuple[int, Species]],
     discs: list[tuple[int, Disc]],
-    unsound: AbstractSet[str],
-) -> Iterator[Fault]:
+    invalid: AbstractSet[str],
+) -> Iterator[Issue]:
     """Discs that are outside the space the gas has, too large or too small for it, or too many."""
     outside = [*_regions_outside(box, space, kinds), *_discs_outside(box, space, discs)]
     yield from outside
@@ -75,12 +75,12 @@ def room_faults(
         for i, item in items:
             if item.radius < smallest:
                 keys = ((table, i, "radius"), ("box", "size"))
-                yield Fault(keys, "too small for the box in double precision", f"{item.radius}", f">= {smallest}")
-    if not outside and not {"species", "disc"} & unsound:
+                yield Issue(keys, "too small for the box in double precision", f"{item.radius}", f">= {smallest}")
+    if not outside and not {"species", "disc"} & invalid:
         yield from _crowding(space, _name_of(box, space), kinds, discs)
 
 
-def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Fault]:
+def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
     left, bottom, right, top = space
     place = _name_of(box, space)
     others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
@@ -89,20 +89,20 @@ def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]
         x0, y0, x1, y1 = s.region or space
         if not (left <= x0 < x1 <= right and bottom <= y0 < y1 <= top):
             allowed = f"[x0, y0, x1, y1] with {left:.17g} <= x0 < x1 <= {right} and {bottom:.17g} <= y0 < y1 <= {top}"
-            yield Fault((key, *others), f"region not in the {place}", str(list(s.region or space)), allowed)
+            yield Issue((key, *others), f"region not in the {place}", str(list(s.region or space)), allowed)
         elif 2 * s.radius > min(x1 - x0, y1 - y0):
             keys = (("species", i, "radius"), key, *others)
             where = "region" if s.region else place
-            yield Fault(keys, f"discs wider than the {where}", f"{s.radius}", f"<= {min(x1 - x0, y1 - y0) / 2}")
+            yield Issue(keys, f"discs wider than the {where}", f"{s.radius}", f"<= {min(x1 - x0, y1 - y0) / 2}")
 
 
-def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) -> Iterator[Fault]:
+def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) -> Iterator[Issue]:
     place = _name_of(box, space)
     others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
     widest = min(space[2] - space[0], space[3] - space[1])
     for i, d in discs:
         if 2 * d.radius > widest:
-            yield Fault(
+            yield Issue(
                 (("disc", i, "radius"), *others), f"disc wider than the {place}", f"{d.radius}", f"<= {widest / 2}"
             )
             continue
@@ -110,7 +110,7 @@ def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) ->
         inside = True
         for axis, name in enumerate("xy"):
             low, high = space[axis] + d.radius, space[axis + 2] - d.radius
-            if box.joined[axis]:
+            if box.periodic[axis]:
                 inside &= 0 <= d.position[axis] < box.size[axis]
                 allowed.append(f"0 <= {name} < {box.size[axis]}")
             else:
@@ -118,7 +118,7 @@ def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) ->
                 allowed.append(f"{low} <= {name} <= {high}")
         if not inside:
             keys = (("disc", i, "position"), ("disc", i, "radius"), *others)
-            yield Fault(keys, f"disc not in the {place}", str(list(d.position)), " and ".join(allowed))
+            yield Issue(keys, f"disc not in the {place}", str(list(d.position)), " and ".join(allowed))
 
 
 def _name_of(box: Box, space: Rectangle) -> str:
@@ -127,7 +127,7 @@ def _name_of(box: Box, space: Rectangle) -> str:
 
 def _crowding(
     whole: Rectangle, name: str, kinds: list[tuple[int, Species]], discs: list[tuple[int, Disc]]
-) -> Iterator[Fault]:
+) -> Iterator[Issue]:
     """More discs than a region, or the whole space of that name, can hold."""
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
@@ -141,7 +141,7 @@ def _crowding(
             others = [("species", i, key) for i, _ in here for key in ("count", "radius", "region", "placement")]
             place = name if region == whole else "region"
             allowed = f"<= {CLOSE_PACKING:.4f} on a lattice, <= {RANDOM_PACKING} at random"
-            yield Fault(
+            yield Issue(
                 (("species", most, "count"), *others, ("box", "size"), ("piston", "position")),
                 f"too many discs for the {place}",
                 f"packing fraction {packing:.4g}",

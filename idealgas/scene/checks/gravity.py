@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.scene.tables.box import SIDES
 
 if TYPE_CHECKING:
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from idealgas.scene.tables.gravity import Gravity
 
 
-def gravity_faults(box: Box, gravity: Gravity) -> Iterator[Fault]:
+def gravity_issues(box: Box, gravity: Gravity) -> Iterator[Issue]:
     """Gravity that does not pull, or pulls through joined sides for ever."""
     key: Key = ("gravity", "acceleration")
     if not any(gravity.acceleration):
-        yield Fault((key,), "no acceleration", str(list(gravity.acceleration)), "no [gravity], or one that pulls")
-    for axis, (pull, joined) in enumerate(zip(gravity.acceleration, box.joined, strict=True)):
-        if pull and joined:
+        yield Issue((key,), "no acceleration", str(list(gravity.acceleration)), "no [gravity], or one that pulls")
+    for axis, (pull, periodic) in enumerate(zip(gravity.acceleration, box.periodic, strict=True)):
+        if pull and periodic:
             low, high = SIDES[2 * axis : 2 * axis + 2]
             keys = (key, ("box", low), ("box", high))
             what = f"gravity through the periodic sides {low} and {high}"
-            yield Fault(keys, what, f"a component of {pull}", "0, or sides that end the fall")
+            yield Issue(keys, what, f"a component of {pull}", "0, or sides that end the fall")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.scene.tables.box import SIDES
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
 
-def piston_faults(scene: Document, piston: Piston) -> Iterator[Fault]:
+def piston_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Faults of a piston in a scene whose tables are sound."""
     opposite = SIDES[SIDES.index(piston.side) ^ 1]
     for name, allowed in ((piston.side, "reflecting"), (opposite, "reflecting or thermal")):
@@ -25,29 +25,29 @@ def piston_faults(scene: Document, piston: Piston) -> Iterator[Fault]:
         if side == "periodic" or (name == piston.side and side != "reflecting"):
             got = "periodic" if side == "periodic" else "thermal"
             keys: tuple[Key, ...] = (("piston", "side"), ("box", name))
-            yield Fault(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
+            yield Issue(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
     length = scene.box.size[piston.axis]
     start = piston.start(scene.box.size)
     if not 0 <= start <= length:
         keys = (("piston", "position"), ("box", "size"))
-        yield Fault(keys, "piston not in the box", f"{start}", f"0 <= position <= {length}")
+        yield Issue(keys, "piston not in the box", f"{start}", f"0 <= position <= {length}")
         return
-    found = list(_motion_faults(piston))
+    found = list(_motion_issues(piston))
     yield from found
     if not found:
-        moves = _forced_faults(scene, piston) if piston.mass is None else _pressed_faults(scene, piston)
+        moves = _forced_issues(scene, piston) if piston.mass is None else _pressed_issues(scene, piston)
         found = list(moves)
         yield from found
     if not found:
         yield from _walls_in_the_way(scene, piston)
 
 
-def _motion_faults(piston: Piston) -> Iterator[Fault]:
+def _motion_issues(piston: Piston) -> Iterator[Issue]:
     given = [key for key in ("velocity", "mass", "pressure") if getattr(piston, key) is not None]
     if given not in (["velocity"], ["mass", "pressure"]):
         keys: tuple[Key, ...] = (("piston",), *(("piston", key) for key in given))
         what = "not one motion" if given else "no motion"
-        yield Fault(keys, what, ", ".join(given) or "nothing", "velocity alone, or mass and pressure together")
+        yield Issue(keys, what, ", ".join(given) or "nothing", "velocity alone, or mass and pressure together")
 
 
 def _depth(scene: Document, piston: Piston, position: float) -> float:
@@ -62,7 +62,7 @@ def _least_depth(scene: Document, piston: Piston) -> float:
     return max(covered / CLOSE_PACKING / scene.box.size[1 - piston.axis], 2 * max(radii, default=0.0))
 
 
-def _forced_faults(scene: Document, piston: Piston) -> Iterator[Fault]:
+def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Pistons that nothing stops."""
     velocity = piston.velocity or 0.0
     if velocity == 0:
@@ -71,30 +71,30 @@ def _forced_faults(scene: Document, piston: Piston) -> Iterator[Fault]:
     keys: tuple[Key, ...] = (("piston", "velocity"), ("piston", "position"), ("run", "until"), ("box", "size"))
     if scene.run.until is None:
         what = "crushes the gas sooner or later" if inward else "leaves the box sooner or later"
-        yield Fault(keys, what, "a run without until", "a run with until")
+        yield Issue(keys, what, "a run without until", "a run with until")
         return
     end = piston.start(scene.box.size) + velocity * scene.run.until
     if inward:
         depth, least = _depth(scene, piston, end), _least_depth(scene, piston)
         if depth < least:
-            yield Fault(
+            yield Issue(
                 keys, "crushes the gas before the run ends", f"a depth of {depth:.6g} at the end", f">= {least:.6g}"
             )
     elif not 0 <= end <= scene.box.size[piston.axis]:
         allowed = f"0 <= position <= {scene.box.size[piston.axis]}"
-        yield Fault(keys, "leaves the box before the run ends", f"a position of {end:.6g} at the end", allowed)
+        yield Issue(keys, "leaves the box before the run ends", f"a position of {end:.6g} at the end", allowed)
 
 
-def _pressed_faults(scene: Document, piston: Piston) -> Iterator[Fault]:
+def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Pistons with a mass that nothing presses on the gas."""
     acceleration = piston.acceleration(scene.box.size, scene.gravity)
     if acceleration * piston.outward >= 0:
         keys: tuple[Key, ...] = (("piston", "pressure"), ("piston", "mass"), ("gravity", "acceleration"))
         got = f"an acceleration of {acceleration}"
-        yield Fault(keys, "nothing presses the piston on the gas", got, f"{'<' if piston.outward > 0 else '>'} 0")
+        yield Issue(keys, "nothing presses the piston on the gas", got, f"{'<' if piston.outward > 0 else '>'} 0")
 
 
-def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Fault]:
+def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Walls where the piston may come."""
     position = piston.start(scene.box.size)
     if piston.mass is not None:
@@ -108,4 +108,4 @@ def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Fault]:
             keys: tuple[Key, ...] = (("wall", i), ("piston", "position"), ("piston", "velocity"), ("run", "until"))
             opposite = SIDES[SIDES.index(piston.side) ^ 1]
             allowed = f"no farther than {depth:.6g}, where it cannot come"
-            yield Fault(keys, "wall in the way of the piston", f"{reach:.6g} from the {opposite} side", allowed)
+            yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {opposite} side", allowed)

@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.discs import Disc, Species
     from idealgas.scene.tables.rotation import Rotation
 
 
-def spin_faults(
+def rotation_issues(
     rotation: Rotation | None, species: list[tuple[int, Species]], disc: list[tuple[int, Disc]]
-) -> Iterator[Fault]:
+) -> Iterator[Issue]:
     """Spins without rotation, and rotation that no spin ever feels."""
     for table, items in (("species", species), ("disc", disc)):
         for i, item in items:
             given = [key for key in ("angular_velocity", "spin_temperature") if getattr(item, key, None) is not None]
             keys: tuple[Key, ...] = tuple((table, i, key) for key in given)
             if given and rotation is None:
-                yield Fault((*keys, ("rotation",)), "a spin without rotation", given[0], "it with a table [rotation]")
+                yield Issue((*keys, ("rotation",)), "a spin without rotation", given[0], "it with a table [rotation]")
             elif len(given) > 1:
-                yield Fault(keys, "two spins", " and ".join(given), "one of them")
+                yield Issue(keys, "two spins", " and ".join(given), "one of them")
     if rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1:
         keys = (("rotation", "roughness"), ("rotation", "wall_roughness"))
         allowed = "no [rotation], or a roughness > -1"
-        yield Fault(keys, "spins that nothing changes", "smooth discs and smooth walls", allowed)
+        yield Issue(keys, "spins that nothing changes", "smooth discs and smooth walls", allowed)

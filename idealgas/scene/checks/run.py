@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Fault, Key
+from idealgas.document.error import Issue, Key
 from idealgas.scene.defaults import mean_speed
 from idealgas.scene.tables.box import SIDES
 
@@ -27,56 +27,56 @@ PLAIN = "float64"
 """The precision that everything else has too."""
 
 
-def method_faults(scene: Document, unsound: AbstractSet[str]) -> Iterator[Fault]:
+def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Keys of another method, what the method needs, and what it cannot have."""
     run = scene.run
     for key, (owner, thing) in OWNERS.items():
         if run.method != owner and (value := getattr(run, key)) is not None:
             allowed = f'no {key}, or method = "{owner}"'
-            yield Fault((("run", key), ("run", "method")), f"no {thing} in {run.method}", str(value), allowed)
+            yield Issue((("run", key), ("run", "method")), f"no {thing} in {run.method}", str(value), allowed)
     if run.method == MONTE_CARLO:
-        yield from _homogeneous_faults(scene, unsound)
+        yield from _monte_carlo_issues(scene, invalid)
     elif run.method == TIME_DRIVEN:
-        yield from _step_faults(scene)
+        yield from _step_issues(scene)
     elif run.method == BRUTE_FORCE and run.precision not in (None, PLAIN):
-        yield from _precision_faults(scene, unsound)
+        yield from _precision_issues(scene, invalid)
 
 
-def _step_faults(scene: Document) -> Iterator[Fault]:
+def _step_issues(scene: Document) -> Iterator[Issue]:
     got = f'method = "{TIME_DRIVEN}"'
     if scene.run.dt is None:
-        yield Fault((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
+        yield Issue((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
     places: list[Key] = [("wall", i) for i, wall in enumerate(scene.wall) if wall is not None]
     for place in places + ([("piston",)] if scene.piston else []):
-        yield Fault((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
+        yield Issue((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
 
 
-def _precision_faults(scene: Document, unsound: AbstractSet[str]) -> Iterator[Fault]:
+def _precision_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     got = f'precision = "{scene.run.precision}"'
     spun = [(name,) for name in ("rotation",) if scene.rotation]
     lossy = [("restitution",)] if scene.restitution and not scene.restitution.elastic else []
-    for place in (*_places(scene, unsound), *spun, *lossy):
+    for place in (*_places(scene, invalid), *spun, *lossy):
         wrong = "smooth elastic discs in a reflecting box are all there is"
-        yield Fault((place, ("run", "precision")), wrong, got, f'"{PLAIN}"')
+        yield Issue((place, ("run", "precision")), wrong, got, f'"{PLAIN}"')
 
 
-def _homogeneous_faults(scene: Document, unsound: AbstractSet[str]) -> Iterator[Fault]:
+def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Effects that need positions, and gases in which no pair ever meets."""
-    for place in _places(scene, unsound):
+    for place in _places(scene, invalid):
         got = f'method = "{MONTE_CARLO}"'
-        yield Fault((place, ("run", "method")), "needs discs that are somewhere", got, "event_driven, brute_force")
-    if not {"species", "disc"} & unsound and (scene.species or scene.disc):
+        yield Issue((place, ("run", "method")), "needs discs that are somewhere", got, "event_driven, brute_force")
+    if not {"species", "disc"} & invalid and (scene.species or scene.disc):
         if sum(s.count for s in scene.species) + len(scene.disc) < 2:
-            yield Fault((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
+            yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
         elif mean_speed(scene.species, scene.disc) == 0:
-            yield Fault((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
+            yield Issue((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
 
 
-def _places(scene: Document, unsound: AbstractSet[str]) -> Iterator[Key]:
+def _places(scene: Document, invalid: AbstractSet[str]) -> Iterator[Key]:
     """Keys of everything that acts at a place."""
     if scene.gravity:
         yield ("gravity",)
-    if "box" not in unsound:
+    if "box" not in invalid:
         for name, side in zip(SIDES, scene.box.sides, strict=True):
             if side != "reflecting":
                 yield ("box", name)
@@ -87,14 +87,14 @@ def _places(scene: Document, unsound: AbstractSet[str]) -> Iterator[Key]:
         yield ("piston",)
 
 
-def endless_faults(scene: Document) -> Iterator[Fault]:
+def endless_issues(scene: Document) -> Iterator[Issue]:
     """Runs without a stop rule, or with one that is never met."""
     run = scene.run
     keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
     if run.until is not None or run.trials is not None:
         return
     if run.events is None and run.collisions_per_disc is None:
-        yield Fault(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
+        yield Issue(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
         return
     alone = sum(s.count for s in scene.species) + len(scene.disc) == 1
     if (
@@ -103,8 +103,8 @@ def endless_faults(scene: Document) -> Iterator[Fault]:
         and not scene.gravity
         and not scene.piston
     ):
-        yield Fault(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
+        yield Issue(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
     elif run.events is None and alone:
-        yield Fault(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
-    elif alone and all(scene.box.joined) and not scene.wall:
-        yield Fault(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")
+        yield Issue(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
+    elif alone and all(scene.box.periodic) and not scene.wall:
+        yield Issue(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")

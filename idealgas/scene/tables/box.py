@@ -38,6 +38,6 @@ class Box(Table):
         return self.left, self.right, self.bottom, self.top
 
     @property
-    def joined(self) -> tuple[bool, bool]:
+    def periodic(self) -> tuple[bool, bool]:
         """Whether left and right, and bottom and top, are joined: periodic."""
         return self.left == "periodic", self.bottom == "periodic"

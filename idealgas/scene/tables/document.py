@@ -44,7 +44,7 @@ class Document(Table):
         thermal = any(isinstance(side, ThermalSide) for side in self.box.sides) or any(w.temperature for w in self.wall)
         called = (
             self.gravity,
-            any(self.box.joined),
+            any(self.box.periodic),
             self.wall,
             self.rotation,
             self.restitution and not self.restitution.elastic,

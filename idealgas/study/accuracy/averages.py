@@ -54,8 +54,11 @@ def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
     except UserError:
         pass
     else:
-        worst = max(speeds.distributions, key=lambda found: found.tests[-1].distance)
-        distance, noise = worst.tests[-1].distance, 0.87 / math.sqrt(worst.samples)  # mean of Kolmogorov's distribution
+        max_errors = max(speeds.distributions, key=lambda found: found.tests[-1].distance)
+        distance, noise = (
+            max_errors.tests[-1].distance,
+            0.87 / math.sqrt(max_errors.samples),
+        )  # mean of Kolmogorov's distribution
     try:
         found = pressure(log, window)
     except UserError:  # this gas has no theory: what can be counted

@@ -22,11 +22,11 @@ from idealgas.scene import Scene, parse_scene
 FIRST_STEP = 0.5  # diameters that a disc of mean square speed moves in the longest step
 STEPS = 8  # each half as long as the one before
 PRECISIONS = ("float32", "float64", "double-double")
-MIXING = 10.0  # collisions a disc, after which a gas is taken to have forgotten its start
+EQUILIBRATION = 10.0  # collisions a disc, after which a gas is taken to have forgotten its start
 
 
 @dataclass(frozen=True)
-class Rung:
+class Case:
     """One way to run a scene. dt: time, of time steps. precision: of brute force."""
 
     method: str
@@ -67,28 +67,28 @@ class Start:
         return Simulation(self.gas, method, copy.deepcopy(self.effects))
 
 
-def ladder(gas: Gas, precise: bool) -> list[Rung]:
+def compared_cases(gas: Gas, precise: bool) -> list[Case]:
     """Event-driven, time steps from coarse to fine, and if asked for brute force in all precisions."""
     speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
     first = FIRST_STEP * 2 * float(gas.radius.min()) / speed
-    steps = [Rung("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]
+    steps = [Case("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]
     return [
-        Rung("event_driven"),
+        Case("event_driven"),
         *steps,
-        *(Rung("brute_force", precision=precision) for precision in PRECISIONS if precise),
+        *(Case("brute_force", precision=precision) for precision in PRECISIONS if precise),
     ]
 
 
-def mixed(scene: Scene) -> Start:
+def equilibrated(scene: Scene) -> Start:
     """The scene's gas after MIXING collisions a disc, event-driven."""
     gas = make_gas(scene)
     simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
-    stop = Stop(disc_collisions=round(MIXING * len(gas) / 2), events=round(20 * MIXING * len(gas)))
+    stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
     while not simulation.finished(stop):
         simulation.advance(stop, None)
         if simulation.epoch_over:
             simulation.next_epoch()
-    gas, effects = simulation.state_now()
+    gas, effects = simulation.state()
     return Start(gas, effects)
 
 

@@ -91,7 +91,7 @@ def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]
         ax.axvline(row.timing.median, color=GREY, linestyle=":", linewidth=0.8)
         place = (row.timing.median, 1.0)
         ax.annotate(
-            row.rung.precision or "", place, xycoords=("data", "axes fraction"), rotation=90, fontsize="x-small",
+            row.case.precision or "", place, xycoords=("data", "axes fraction"), rotation=90, fontsize="x-small",
             color=GREY, ha="left" if k % 2 else "right", va="top",
         )  # fmt: skip
     ax.set_xscale("log")
@@ -103,12 +103,12 @@ def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]
 
 def _trajectories(ax: Axes, found: Accuracy) -> None:
     """Typical distance from the double-double motion."""
-    rows = [row for row in found.rows if row.rung.precision != "float64"]
+    rows = [row for row in found.rows if row.case.precision != "float64"]
     for k, row in enumerate(rows):
         if row.trajectory is None:
             continue
-        steps = row.rung.dt is not None
-        colour = COLOURS[1] if steps else COLOURS[0] if row.rung.precision is None else COLOURS[2]
+        steps = row.case.dt is not None
+        colour = COLOURS[1] if steps else COLOURS[0] if row.case.precision is None else COLOURS[2]
         shade = 0.3 + 0.7 * k / len(rows) if steps else 1.0
         ax.plot(
             found.collisions,
@@ -117,7 +117,7 @@ def _trajectories(ax: Axes, found: Accuracy) -> None:
             ms=3,
             color=colour,
             alpha=shade,
-            label=row.rung.name,
+            label=row.case.name,
         )
     ax.set_yscale("log")
     ax.set_xlabel("collisions a disc (no unit)")

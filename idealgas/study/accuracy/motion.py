@@ -12,7 +12,7 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import EventBatch, Kind, empty_batch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.study.accuracy.cases import Rung, Start, follow
+from idealgas.study.accuracy.cases import Case, Start, follow
 
 STARTS = 200  # at most, from which collisions are compared
 ENOUGH = 5_000  # collisions compared
@@ -36,7 +36,7 @@ class Missed:
         return math.sqrt(max(self.missed, 1)) / self.compared if self.compared else math.nan
 
 
-def count_missed(start: Start, rungs: Sequence[Rung], rate: float, progress: Callable[[float], None]) -> list[Missed]:
+def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Callable[[float], None]) -> list[Missed]:
     """Compare each rung with the event-driven motion, over a mean free time from many starts.
 
     rate: collisions per disc and time. Compared are the collisions of two discs that have met no other disc yet: both
@@ -44,15 +44,15 @@ def count_missed(start: Start, rungs: Sequence[Rung], rate: float, progress: Cal
     end of the step after.
     """
     reference = start.simulation(EventDriven())
-    compared, missed = np.zeros((2, len(rungs)), int)
+    compared, missed = np.zeros((2, len(cases)), int)
     number = 0
     while number < STARTS and compared.max(initial=0) < ENOUGH:
-        gas, effects = reference.state_now()
+        gas, effects = reference.state()
         here = Start(gas, effects)
-        found = first_collisions(here, Rung("event_driven"), 1 / rate)
-        for k, rung in enumerate(rungs):
-            own = first_collisions(here, rung, 1 / rate + (rung.dt or 0.0))
-            pairs, through = flown_through(found, own, rung.dt or 0.0)
+        found = first_collisions(here, Case("event_driven"), 1 / rate)
+        for k, case in enumerate(cases):
+            own = first_collisions(here, case, 1 / rate + (case.dt or 0.0))
+            pairs, through = flown_through(found, own, case.dt or 0.0)
             compared[k] += pairs
             missed[k] += through
         number += 1
@@ -61,11 +61,11 @@ def count_missed(start: Start, rungs: Sequence[Rung], rate: float, progress: Cal
     return [Missed(int(c), int(m)) for c, m in zip(compared, missed, strict=True)]
 
 
-def first_collisions(start: Start, rung: Rung, duration: float) -> tuple[np.ndarray, np.ndarray]:
+def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """When each disc first meets another, infinite if it does not, and whom."""
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
-    simulation = start.simulation(rung.make())
+    simulation = start.simulation(case.make())
     while not simulation.paused:
         batch = batch_for(start.effects)
         rows = batch.rows(0, simulation.advance(Stop(), batch, pause=duration))
@@ -102,7 +102,7 @@ def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
     found = []
     for time in times:
         follow(simulation, time)
-        found.append(simulation.gas_now().position)
+        found.append(simulation.state()[0].position)
     return np.array(found)
 
 
@@ -111,16 +111,16 @@ def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
     return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
 
 
-def error_on_return(start: Start, rung: Rung, duration: float) -> float:
+def error_on_return(start: Start, case: Case, duration: float) -> float:
     """Run, reverse all velocities, run as long again: rms distance from the start, in mean diameters."""
-    if rung.precision is not None:
-        return _error_on_precise_return(start, rung.precision, duration)
-    simulation = start.simulation(rung.make())
+    if case.precision is not None:
+        return _error_on_precise_return(start, case.precision, duration)
+    simulation = start.simulation(case.make())
     follow(simulation, duration)
-    gas = simulation.gas_now()
-    back = Start(replace(gas, velocity=-gas.velocity), start.effects).simulation(rung.make())
+    gas = simulation.state()[0]
+    back = Start(replace(gas, velocity=-gas.velocity), start.effects).simulation(case.make())
     follow(back, duration)
-    return float(rms_distance(back.gas_now().position, start.gas.position, start.gas))
+    return float(rms_distance(back.state()[0].position, start.gas.position, start.gas))
 
 
 def _error_on_precise_return(start: Start, precision: str, duration: float) -> float:

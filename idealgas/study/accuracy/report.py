@@ -28,10 +28,10 @@ def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
     """One row of the CSV: numbers only, None where there is none."""
     averages, at = row.averages, nearest(found.collisions, 1.0)
     return {
-        "rung": row.rung.name,
-        "method": row.rung.method,
-        "dt": row.rung.dt,
-        "precision": row.rung.precision,
+        "rung": row.case.name,
+        "method": row.case.method,
+        "dt": row.case.dt,
+        "precision": row.case.precision,
         "cpu_s_per_time": row.timing.median,
         "cpu_s_per_time_least": row.timing.least,
         "cpu_s_per_time_most": row.timing.most,
@@ -89,7 +89,7 @@ def sentences(found: Accuracy) -> list[str]:
 
 def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) -> tuple[float, float] | None:
     """a of bias = a dt, from clear biases that are not too large, with its standard error; None if there are none."""
-    estimates = [(row.rung.dt or 0.0, bias(row)) for row in rows]
+    estimates = [(row.case.dt or 0.0, bias(row)) for row in rows]
     points = [(dt, found) for dt, found in estimates if found is not None and abs(found.value) < LARGEST]
     if not any(abs(found.value) > CLEAR * found.standard_error > 0 for _, found in points):
         return None
@@ -100,7 +100,7 @@ def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) 
 
 def cost_of(dt: float, rows: list[Row]) -> float:
     """CPU seconds per time of a step: a power law between two measured steps, and beyond them."""
-    steps = np.log([row.rung.dt or 0.0 for row in rows][::-1])
+    steps = np.log([row.case.dt or 0.0 for row in rows][::-1])
     costs = np.log([row.timing.median for row in rows][::-1])
     k = int(np.clip(np.searchsorted(steps, math.log(dt)), 1, len(steps) - 1))
     slope = (costs[k] - costs[k - 1]) / (steps[k] - steps[k - 1])
@@ -138,7 +138,7 @@ def _of_pressure(found: Accuracy) -> str:
 
 
 def _of_missed(found: Accuracy) -> str:
-    counts = [(row.rung.dt or 0.0, row.missed) for row in found.steps if row.missed and row.missed.compared]
+    counts = [(row.case.dt or 0.0, row.missed) for row in found.steps if row.missed and row.missed.compared]
     if not counts:
         return ""
     (coarse, most), (fine, least) = counts[0], counts[-1]
@@ -167,7 +167,7 @@ def _of_motion(found: Accuracy) -> list[str]:
     return [
         f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions a disc "
         f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
-        f"with dt = {finest.rung.dt:.2g}. The truth is the double-double motion of the whole gas, followed for "
+        f"with dt = {finest.case.dt:.2g}. The truth is the double-double motion of the whole gas, followed for "
         f"{last:.2g} collisions a disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times "
         "the event-driven time.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "

@@ -16,7 +16,7 @@ from idealgas.gas.state import Gas
 from idealgas.run.simulate import Summary
 from idealgas.scene import Scene
 from idealgas.study.accuracy.averages import Averages, measure_averages
-from idealgas.study.accuracy.cases import Rung, Start, cpu_seconds, ladder, mixed
+from idealgas.study.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated
 from idealgas.study.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
 
 SHORTEST_TIMING = 0.1  # CPU seconds of a run that is timed
@@ -53,7 +53,7 @@ class Row:
     rms distance from the start after going back, in diameters.
     """
 
-    rung: Rung
+    case: Case
     timing: Timing
     averages: Averages | None
     rate: Estimate | None
@@ -85,42 +85,42 @@ class Accuracy:
     @property
     def steps(self) -> list[Row]:
         """Time steps, from coarse to fine."""
-        return [row for row in self.rows if row.rung.dt is not None]
+        return [row for row in self.rows if row.case.dt is not None]
 
     @property
     def precisions(self) -> list[Row]:
         """Brute force, from few digits to many."""
-        return [row for row in self.rows if row.rung.precision is not None]
+        return [row for row in self.rows if row.case.precision is not None]
 
 
 def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda what, share: None) -> Accuracy:
     """Run a scene on all rungs. UserError if it cannot be run in time steps, or nothing collides."""
     check(scene)
     progress("mixing the gas", 0.0)
-    start = mixed(scene)
+    start = equilibrated(scene)
     left_out = why_not_precise(scene, start.gas)
-    rungs = ladder(start.gas, precise=not left_out)
-    timings = measure_timings(start, rungs, repeats, progress)
-    averages, until = _all_averages(scene, rungs, timings, progress)
+    cases = compared_cases(start.gas, precise=not left_out)
+    timings = measure_timings(start, cases, repeats, progress)
+    averages, until = _all_averages(scene, cases, timings, progress)
     truth = averages[0]
     assert truth is not None
     rate = 2 * truth.rate.value / len(start.gas)
-    steps = [rung for rung in rungs if rung.dt is not None]
+    steps = [case for case in cases if case.dt is not None]
     missed = dict(
         zip(steps, count_missed(start, steps, rate, lambda share: progress("missed collisions", share)), strict=True)
     )
-    collisions, trajectories, ways_back = _motion(start, rungs, timings, rate, progress)
+    collisions, trajectories, ways_back = _motion(start, cases, timings, rate, progress)
     rows = [
         Row(
-            rung, timing, found,
+            case, timing, found,
             rate=None if found is None or k == 0 else relative(found.rate, truth.rate),
             z_pairs=None if found is None else from_theory(found.z_pairs),
             z_walls=None if found is None else from_theory(found.z_walls),
-            missed=missed.get(rung),
-            trajectory=trajectories.get(rung),
-            way_back=ways_back.get(rung),
+            missed=missed.get(case),
+            trajectory=trajectories.get(case),
+            way_back=ways_back.get(case),
         )
-        for k, (rung, timing, found) in enumerate(zip(rungs, timings, averages, strict=True))
+        for k, (case, timing, found) in enumerate(zip(cases, timings, averages, strict=True))
     ]  # fmt: skip
     return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, tuple(rows))
 
@@ -158,76 +158,76 @@ def from_theory(value: Estimate | None) -> Estimate | None:
     return Estimate(value.value / value.theory - 1, value.standard_error / value.theory, math.inf)
 
 
-def measure_timings(start: Start, rungs: Sequence[Rung], repeats: int, progress: Progress) -> list[Timing]:
+def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
     """CPU time on every rung, in turn; each run is as long as it takes to be timed, found out before."""
     durations = []
-    for k, rung in enumerate(rungs):
-        progress("compiling and first timing", k / len(rungs))
-        durations.append(_long_enough(start, rung))
-    seconds: list[list[float]] = [[] for _ in rungs]
+    for k, case in enumerate(cases):
+        progress("compiling and first timing", k / len(cases))
+        durations.append(_long_enough(start, case))
+    seconds: list[list[float]] = [[] for _ in cases]
     rates = []
     for repeat in range(repeats):
-        for k, (rung, duration) in enumerate(zip(rungs, durations, strict=True)):
-            progress("timing", (repeat + k / len(rungs)) / repeats)
-            simulation = start.simulation(rung.make())
+        for k, (case, duration) in enumerate(zip(cases, durations, strict=True)):
+            progress("timing", (repeat + k / len(cases)) / repeats)
+            simulation = start.simulation(case.make())
             seconds[k].append(cpu_seconds(simulation, duration) / duration)
             if repeat == 0:
-                rates.append(simulation.so_far.disc_collisions / duration)
+                rates.append(simulation.counters.disc_collisions / duration)
     return [
         Timing(statistics.median(each), min(each), max(each), rate) for each, rate in zip(seconds, rates, strict=True)
     ]
 
 
-def _long_enough(start: Start, rung: Rung) -> float:
+def _long_enough(start: Start, case: Case) -> float:
     """Simulated time that takes SHORTEST_TIMING; the machine code is there afterwards."""
     speed = float(np.hypot(*start.gas.velocity.T).mean())
     duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
-    cpu_seconds(start.simulation(rung.make()), duration)
-    simulation = start.simulation(rung.make())
+    cpu_seconds(start.simulation(case.make()), duration)
+    simulation = start.simulation(case.make())
     while cpu_seconds(simulation, duration) < SHORTEST_TIMING:
         duration *= 2
-        simulation = start.simulation(rung.make())
+        simulation = start.simulation(case.make())
     return duration
 
 
 def _all_averages(
-    scene: Scene, rungs: Sequence[Rung], timings: Sequence[Timing], progress: Progress
+    scene: Scene, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress
 ) -> tuple[list[Averages | None], float]:
     """From runs of the whole scene, on the rungs that are quick enough; the event-driven one says how long."""
     found: list[Averages | None] = []
     with tempfile.TemporaryDirectory(prefix="idealgas-accuracy-") as folder:
         path = Path(folder) / "run.h5"
 
-        def run(scene: Scene, rung: Rung, window: float | None = None) -> tuple[Averages, Summary]:
-            return measure_averages(scene, path, window, lambda share: progress(f"averages, {rung.name}", share))
+        def run(scene: Scene, case: Case, window: float | None = None) -> tuple[Averages, Summary]:
+            return measure_averages(scene, path, window, lambda share: progress(f"averages, {case.name}", share))
 
         own = scene.model_copy(
             update={"run": scene.run.model_copy(update={"method": "event_driven", "dt": None, "precision": None})}
         )
-        first, summary = run(own, rungs[0])
+        first, summary = run(own, cases[0])
         found.append(first)
-        for rung, timing in zip(rungs[1:], timings[1:], strict=True):
-            quick = timing.median * summary.end_time < LONGEST_RUN and rung.precision != "float64"  # the same motion
-            found.append(run(rung.scene(scene, summary.end_time), rung, first.window)[0] if quick else None)
+        for case, timing in zip(cases[1:], timings[1:], strict=True):
+            quick = timing.median * summary.end_time < LONGEST_RUN and case.precision != "float64"  # the same motion
+            found.append(run(case.scene(scene, summary.end_time), case, first.window)[0] if quick else None)
     return found, summary.end_time
 
 
 def _motion(
-    start: Start, rungs: Sequence[Rung], timings: Sequence[Timing], rate: float, progress: Progress
-) -> tuple[np.ndarray, dict[Rung, np.ndarray], dict[Rung, float]]:
+    start: Start, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
+) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
     """Collisions a disc, distance from the double-double motion on each rung, and from the start after going back."""
-    if rungs[-1].precision is None:
+    if cases[-1].precision is None:
         return np.empty(0), {}, {}
-    reference, timing = rungs[-1], timings[-1]
+    reference, timing = cases[-1], timings[-1]
     longest = LONGEST_RUN / 2 / timing.median * rate
     collisions = np.array([count for count in FOLLOWED if count <= max(longest, FOLLOWED[0])])
     times = (collisions / rate).tolist()
     progress("reference trajectory, double-double", 0.0)
     truth = positions(start.simulation(reference.make()), times)
     trajectories, ways_back = {}, {}
-    for k, rung in enumerate(rungs):
-        progress("trajectories and ways back", k / len(rungs))
-        if rung is not reference:
-            trajectories[rung] = rms_distance(positions(start.simulation(rung.make()), times), truth, start.gas)
-        ways_back[rung] = error_on_return(start, rung, min(times[-1], 1 / rate))
+    for k, case in enumerate(cases):
+        progress("trajectories and ways back", k / len(cases))
+        if case is not reference:
+            trajectories[case] = rms_distance(positions(start.simulation(case.make()), times), truth, start.gas)
+        ways_back[case] = error_on_return(start, case, min(times[-1], 1 / rate))
     return collisions, trajectories, ways_back

@@ -33,7 +33,7 @@ class _Trial(NamedTuple):
     per_time: float
 
 
-def outlook(sweep: Sweep) -> tuple[Cost, ...]:
+def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
     """What each point costs: by the beginning of a run of each combination of values, and by theory where it can."""
     trials: dict[int, _Trial] = {}
     costs = []

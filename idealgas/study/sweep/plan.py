@@ -14,8 +14,8 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from idealgas.document.dump import dump_document, toml_value
-from idealgas.document.error import Fault, Key
-from idealgas.document.messages import as_faults
+from idealgas.document.error import Issue, Key
+from idealgas.document.messages import as_issues
 from idealgas.document.origin import Origin
 from idealgas.document.overrides import OverrideError, apply
 from idealgas.document.table import Number, Positive, Table
@@ -110,7 +110,7 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     try:
         tables = Tables.model_validate(document)
     except ValidationError as error:
-        raise SceneError(origin.report(as_faults(error.errors(include_url=False), Tables))) from None
+        raise SceneError(origin.report(as_issues(error.errors(include_url=False), Tables))) from None
     if found := list(_faults(tables)):
         raise SceneError(origin.report(found))
     points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
@@ -142,32 +142,32 @@ def _read_base(path: Path) -> Base:
     return parse_document(text, str(path)), Origin(text, str(path))
 
 
-def _faults(tables: Tables) -> Iterator[Fault]:
+def _faults(tables: Tables) -> Iterator[Issue]:
     """What no table can know alone."""
     along = [i for i, axis in enumerate(tables.axis) if axis.key == BASE]
     given = ["sweep.scene"] * (tables.sweep.scene is not None) + ["[base]"] * (tables.base is not None)
     given += ["an axis base"] * bool(along)
     if len(given) != 1:
         allowed = "one of sweep.scene, [base] tables, and an axis base of paths"
-        yield Fault((("sweep", "scene"), ("base",)), "not one base scene", " and ".join(given) or "nothing", allowed)
+        yield Issue((("sweep", "scene"), ("base",)), "not one base scene", " and ".join(given) or "nothing", allowed)
     for i in along:
         if not all(isinstance(value, str) for value in tables.axis[i].steps):
-            yield Fault((("axis", i, "values"),), "not paths of scenes", toml_value(tables.axis[i].steps), "texts")
+            yield Issue((("axis", i, "values"),), "not paths of scenes", toml_value(tables.axis[i].steps), "texts")
     seen: set[str] = set()
     lengths: dict[str, int] = {}
     for i, axis in enumerate(tables.axis):
         given = [name for name in ("values", "range", "log_range") if getattr(axis, name) is not None]
         if len(given) != 1:
             got = " and ".join(given) or "nothing"
-            yield Fault((("axis", i),), "not one list of values", got, "exactly one of values, range and log_range")
+            yield Issue((("axis", i),), "not one list of values", got, "exactly one of values, range and log_range")
         if axis.key == "scene.seed":
-            yield Fault((("axis", i, "key"),), "seeds are no axis", axis.key, "sweep.seed and sweep.replicates")
+            yield Issue((("axis", i, "key"),), "seeds are no axis", axis.key, "sweep.seed and sweep.replicates")
         if axis.key in seen:
-            yield Fault((("axis", i, "key"),), "second axis of this key", axis.key, "one axis for each key")
+            yield Issue((("axis", i, "key"),), "second axis of this key", axis.key, "one axis for each key")
         seen.add(axis.key)
         if axis.zip is not None and lengths.setdefault(axis.zip, len(axis.steps)) != len(axis.steps):
             got, allowed = f"{len(axis.steps)} values", f"{lengths[axis.zip]}, as the others of zip = {axis.zip}"
-            yield Fault((("axis", i, "zip"),), "not as long as the axes it goes along with", got, allowed)
+            yield Issue((("axis", i, "zip"),), "not as long as the axes it goes along with", got, allowed)
 
 
 # ── points ──

@@ -59,7 +59,7 @@ def test_virial_of_pairs_across_joined_sides(tmp_path, sides):
     simulate(parse_scene(GAS + box), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         edges = np.array([0.1, 0.9]) * log.end_time
-        tally = Impacts(len(log.walls), log.joined)
+        tally = Impacts(len(log.walls), log.periodic)
         stream(log, edges, [tally])
         (rows,) = log.chunks(None, log.row_at(edges[0], "right"), log.row_at(edges[1], "right"))
         shifts = [np.array(k) * log.box for k in np.ndindex(3, 3)]

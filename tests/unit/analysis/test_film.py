@@ -85,8 +85,8 @@ def test_the_smallest_disc_is_seen():
 
 def test_discs_at_joined_sides_show_their_other_half():
     state = STATE._replace(position=np.array([[0.1, 9.9], [5.0, 5.0]]))
-    joined = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
-    made = parse_scene(joined + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
+    periodic = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+    made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
         f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
     ))  # fmt: skip
     painter = Painter(made, make_gas(made), None, SIZE, 1.0, False)

@@ -7,7 +7,7 @@ import pytest
 
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.relaxation import measure as module
-from idealgas.analysis.relaxation.acceptance import trials
+from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.figure import relaxation_figure
 from idealgas.analysis.relaxation.measure import (
     colliding_span,
@@ -18,7 +18,7 @@ from idealgas.analysis.relaxation.measure import (
     relative_entropy,
     relaxation,
 )
-from idealgas.analysis.relaxation.speeds import development
+from idealgas.analysis.relaxation.speeds import speed_distributions
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -140,7 +140,7 @@ def test_what_was_seen_of_equal_speeds(make_log):
     assert found.kurtosis[40] == pytest.approx((square**2).mean() / square.mean() ** 2)
     assert found.equilibrium_kurtosis == 2 * 160 / 162
     assert found.collisions[-1] == pytest.approx(40, abs=2 / 80)
-    k = found.told_until
+    k = found.first_indistinguishable
     assert found.distance[k] < found.critical_distance <= found.distance[:k].min()
     assert found.in_collisions.value / found.in_time.value == pytest.approx(
         found.collisions[-1] / found.time[-1], rel=0.1
@@ -153,7 +153,7 @@ def test_of_a_gas_in_equilibrium_no_relaxation_is_seen(make_log):
     with make_log(SCENE.replace("speed = 2.0", "temperature = 1.0")) as log:
         found = relaxation(log)
     assert found.in_time is None
-    assert found.told_until is not None
+    assert found.first_indistinguishable is not None
     assert found.as_dict()["relaxation_time"] is None
 
 
@@ -171,7 +171,7 @@ def test_gases_that_do_not_tend_to_the_law(make_log, extra, message):
 
 def test_development_counts_every_disc_at_every_instant(make_log):
     with make_log(SCENE) as log:
-        found = development(log, 1.0, end=5.0)
+        found = speed_distributions(log, 1.0, end=5.0)
         at_two = np.hypot(*log.state_at(2.0).velocity.T)
     assert found.time.tolist() == [0, 1, 2, 3, 4, 5]
     assert found.counts.sum(axis=1).tolist() == [80] * 6
@@ -187,7 +187,7 @@ def test_development_by_trials(make_log):
     with make_log(
         SCENE.replace("run.collisions_per_disc = 60", "run.trials = 2500\nrun.method = 'monte_carlo'")
     ) as log:
-        found, made = development(log, 1000), trials(log)
+        found, made = speed_distributions(log, 1000), acceptance(log)
         (rows,) = log.chunks(("time", "trial"))
     assert found.trials.tolist() == [0, 1000, 2000]
     assert found.collisions[1] * 80 == (rows.trial <= 1000).sum()
@@ -197,4 +197,4 @@ def test_development_by_trials(make_log):
 
 def test_a_table_without_end_is_refused(make_log):
     with make_log(SCENE) as log, pytest.raises(UserError, match="instants are too many for a table"):
-        development(log, 1e-9)
+        speed_distributions(log, 1e-9)

@@ -90,6 +90,6 @@ def test_block_averages():
 
 
 def test_import_prints_nothing():
-    code = "import idealgas.analysis.statistics"
+    code = "import idealgas.analysis.core.statistics"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout + done.stderr == ""

@@ -210,7 +210,7 @@ def test_rows_cut_into_chunks_make_no_difference(log, edges):
     """Pairs may straddle two chunks."""
 
     class Cut:
-        discs, scene, joined, has_positions = log.discs, log.scene, log.joined, log.has_positions
+        discs, scene, periodic, has_positions = log.discs, log.scene, log.periodic, log.has_positions
         state_at, row_at = log.state_at, log.row_at
 
         def chunks(self, columns, start, stop):

@@ -52,18 +52,18 @@ def test_correlations_are_plain_averages():
         )
 
 
-@pytest.mark.parametrize("joined", [(False, False), (True, False), (True, True)])
-def test_chance_of_a_distance(joined):
+@pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
+def test_chance_of_a_distance(periodic):
     """Against points thrown at random; four standard errors."""
     random = np.random.default_rng(4)
-    reach = [(5.0, 4.0) if not joined[0] else (5.0, 5.0), (3.0, 3.5) if not joined[1] else (3.0, 3.0)]
+    reach = [(5.0, 4.0) if not periodic[0] else (5.0, 5.0), (3.0, 3.5) if not periodic[1] else (3.0, 3.0)]
     n, r = 200_000, np.array([0.5, 1.0, 1.4])
     apart = [random.uniform(-a / 2, a / 2, n) - random.uniform(-b / 2, b / 2, n) for a, b in reach]
     for axis in range(2):
-        if joined[axis]:
+        if periodic[axis]:
             apart[axis] -= reach[axis][0] * np.round(apart[axis] / reach[axis][0])
     distance = np.hypot(*apart)
-    for radius, chance in zip(r, _chance(r, reach, joined), strict=True):
+    for radius, chance in zip(r, _chance(r, reach, periodic), strict=True):
         assert (distance < radius).mean() == pytest.approx(chance, abs=4 * np.sqrt(chance / n))
 
 
@@ -77,5 +77,5 @@ def test_a_single_result_holds_together(log):
     (rate,), (contact,) = result.collision_rates, result.contacts
     assert contact.value.deviation == pytest.approx(rate.rate.deviation, rel=1e-9)
     assert g.edges[0] == 0.6
-    assert result.walled == (not all(log.joined))
+    assert result.walled == (not all(log.periodic))
     assert all(abs(estimate.deviation) < 4 for estimate in (rate.rate, contact.value))

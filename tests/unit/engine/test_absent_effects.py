@@ -11,10 +11,10 @@ from idealgas.physics.effects import Effects
 from idealgas.scene import EFFECTS
 
 MARKERS = {
-    "gravity": {"exits.accelerated_exit", "fall.landing_delay", "segment.accelerated_body_delay"},
-    "periodic sides": {"periodic.images_between", "agenda.image_of", "periodic.nearest_image"},
-    "wall segments": {"segment.segment_contact", "segment.segment_normal"},
-    "rotation": {"rotation.roll_off", "rotation.roll_off_wall"},
+    "gravity": {"crossings.accelerated_crossing", "fall.time_to_plane", "wall.accelerated_body_delay"},
+    "periodic sides": {"periodic.images_between", "state.image_of", "periodic.nearest_image"},
+    "wall segments": {"wall.segment_contact", "wall.segment_normal"},
+    "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
     "thermal walls": {"thermal.uniform"},
     "piston": {"piston.advance_piston", "piston.piston_contact", "piston.collide_with_piston"},
 }
@@ -23,9 +23,9 @@ MARKERS = {
 PROGRAM = """
 import json, sys
 from numba.core.event import RecordingListener, install_listener
-from idealgas.engine.event_driven import advance_events
-from idealgas.study.bench_effects import effect_scene
-from idealgas.simulate import simulate
+from idealgas.engine.event_driven.method import advance_events
+from idealgas.study.bench.effects import effect_scene
+from idealgas.run.simulate import simulate
 
 called = set()
 if sys.argv[2] == "all":

@@ -63,15 +63,15 @@ def test_some_events_in_the_thinnest_gas():
     assert FEWEST_PER_DISC * len(thinnest) / 2 <= events <= FEWEST_PER_DISC * len(thinnest)
 
 
-def in_a_channel(velocity, joined=(False, False)):
+def in_a_channel(velocity, periodic=(False, False)):
     """Length of an epoch of one disc with room for a millionth of its diameter across."""
     one = replace(
         gas(1), box=(50.0, 1.0 + 1e-6), position=np.array([[25.0, 0.5 + 5e-7]]), velocity=np.array([velocity])
     )
-    return epoch_length(one, encounters_per_length(one, joined), joined=joined)
+    return epoch_length(one, encounters_per_length(one, periodic), periodic=periodic)
 
 
 def test_in_a_narrow_room_only_motion_across_it_counts():
     assert in_a_channel([1.0, 0.0]) > 1e3
     assert in_a_channel([1.0, 1.0]) < 1e-2
-    assert in_a_channel([1.0, 1.0], joined=(False, True)) > 1e2
+    assert in_a_channel([1.0, 1.0], periodic=(False, True)) > 1e2

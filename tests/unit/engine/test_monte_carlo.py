@@ -23,7 +23,7 @@ def run(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
     """All event rows up to the stop."""
     found = []
     while not simulation.finished(stop):
-        batch = empty_batch(rows, homogeneous=True)
+        batch = empty_batch(rows, without_positions=True)
         found.append(batch.rows(0, simulation.advance(stop, batch)))
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
@@ -55,8 +55,8 @@ def test_rows_give_the_state_at_the_end():
     rows = run(made, Stop(trials=5000))
     velocity = some_gas().velocity.copy()
     velocity[rows.disc] = rows.velocity
-    assert made.gas_now().velocity.tolist() == velocity.tolist()
-    assert made.gas_now().position.tolist() == some_gas().position.tolist()
+    assert made.state()[0].velocity.tolist() == velocity.tolist()
+    assert made.state()[0].position.tolist() == some_gas().position.tolist()
 
 
 @pytest.mark.parametrize("rows", [3, 17, 4096])
@@ -70,18 +70,18 @@ def test_neither_batches_nor_slices_change_anything(rows):
         silent.advance(Stop(trials=40_000), None, 7)
         if silent.epoch_over:
             silent.next_epoch()
-    assert silent.so_far.events == len(whole.time) // 2
+    assert silent.counters.events == len(whole.time) // 2
     assert silent.epoch >= 2
 
 
 def test_stops_where_it_should():
     made = simulation()
     rows = run(made, Stop(trials=1234))
-    assert (made.so_far.trials, made.so_far.events) == (1234, len(rows.time) // 2)
+    assert (made.counters.trials, made.counters.events) == (1234, len(rows.time) // 2)
     assert rows.trial[-1] <= 1234
     made = simulation()
     assert len(run(made, Stop(disc_collisions=77)).time) == 2 * 77
-    assert made.so_far.trials == int(run(simulation(), Stop(events=77)).trial[-1])
+    assert made.counters.trials == int(run(simulation(), Stop(events=77)).trial[-1])
     made = simulation()
     assert run(made, Stop(time=9.5)).time[-1] <= 9.5
     assert made.finished(Stop(time=9.5))
@@ -117,7 +117,7 @@ def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
     message = str(caught.value)
     assert "\n" not in message
     needed = float(message.split("allowed >= ")[1].split(",")[0])
-    gas = made.gas_now()
+    gas = made.state()[0]
     speeds = np.hypot(*(gas.velocity[:, None] - gas.velocity).T)
     assert speeds == pytest.approx(speeds.T)
     assert np.isclose(speeds, needed, rtol=1e-5).any()
@@ -125,14 +125,14 @@ def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
 
 
 def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
-    def turns(one_sided):
+    def boundary_crossings(one_sided):
         gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
         rows = run(simulation(gas, v_ref=4.0, one_sided=one_sided), Stop(events=2000))
         relative = np.concatenate(([[2.0, 0.0]], rows.velocity[0::2] - rows.velocity[1::2]))
         return np.sign(relative[:-1, 0] * relative[1:, 1] - relative[:-1, 1] * relative[1:, 0])
 
-    assert set(turns(True)) in ({1.0}, {-1.0})
-    assert abs(turns(False).mean()) < 4 / math.sqrt(2000)
+    assert set(boundary_crossings(True)) in ({1.0}, {-1.0})
+    assert abs(boundary_crossings(False).mean()) < 4 / math.sqrt(2000)
 
 
 def test_impact_parameters_are_uniform():
@@ -171,7 +171,7 @@ def test_acceptance_is_in_proportion_to_speed_and_size():
         made = Simulation(gas, MonteCarlo(seed, v_ref))
         rows = run(made, Stop(events=1), 3)
         shares[rows.disc[0], rows.disc[1]] += 1
-        done += made.so_far.trials
+        done += made.counters.trials
     for i, j in ((0, 1), (0, 2), (1, 2)):
         speed = math.hypot(*np.subtract(velocity[i], velocity[j]))
         expected = (gas.radius[i] + gas.radius[j]) * speed / (0.5 * v_ref)

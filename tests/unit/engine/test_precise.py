@@ -36,7 +36,7 @@ def test_in_double_precision_it_is_brute_force_bit_for_bit(n, seed):
     plain, precise = Simulation(gas, BruteForce()), Simulation(gas, PreciseBruteForce("float64"))
     assert plain.length > stop.time
     assert same_rows(record(precise, stop), record(plain, stop))
-    assert precise.gas_now().position.tolist() == plain.gas_now().position.tolist()
+    assert precise.state()[0].position.tolist() == plain.state()[0].position.tolist()
 
 
 def lattice(n):
@@ -149,5 +149,5 @@ def test_it_moves_as_with_50_digits(precision, n, events, seed):
     record(made, Stop(events=events))
     with mpmath.workdps(50):
         truth = mp_motion(gas, events)
-        assert made.so_far.disc_collisions > 0
+        assert made.counters.disc_collisions > 0
         assert errors(made.method.columns, truth) < DIGITS[precision]

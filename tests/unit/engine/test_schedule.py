@@ -48,7 +48,7 @@ def test_the_root_is_the_next_event(case):
     entries = [(None, None, None)] * n
 
     def renew(i):
-        predictions[i].contact = predictions[i].exit = 1e9
+        predictions[i].contact = predictions[i].crossing = 1e9
         predictions[i].partner = -1
         time = float(draw.integers(5))
         kind = draw.integers(3) if n > 1 else draw.integers(2)
@@ -58,7 +58,7 @@ def test_the_root_is_the_next_event(case):
             entries[i] = (time, partner, None)
         else:
             side = int(draw.integers(4)) + SIDE_OF_BOX * int(kind)
-            predictions[i].exit, predictions[i].exit_code = time, side
+            predictions[i].crossing, predictions[i].crossing_code = time, side
             entries[i] = (time, None, side)
         return enter(tree, predictions, ids, i)
 

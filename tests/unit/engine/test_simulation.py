@@ -48,7 +48,7 @@ def run(simulation, stop, batch_rows=64):
 def test_one_disc_bounces_between_two_sides(method):
     simulation = Simulation(gas_of((10, 10), (5, 5, 1, 0, 1)), method())
     assert run(simulation, Stop(time=30.0)) == [(4, 0, -2), (12, 0, -1), (20, 0, -2), (28, 0, -1)]
-    end = simulation.gas_now()
+    end = simulation.state()[0]
     assert end.position.tolist() == [[3, 5]]
     assert end.velocity.tolist() == [[1, 0]]
 
@@ -72,10 +72,10 @@ def test_stops_where_it_should(method):
     whole = run(Simulation(gas_of((10, 10), *discs), method()), Stop(time=200.0))
     some = Simulation(gas_of((10, 10), *discs), method())
     assert run(some, Stop(time=200.0, events=17)) == whole[: len(run_rows(whole, 17))]
-    assert some.so_far.events == 17
+    assert some.counters.events == 17
     pairs = Simulation(gas_of((10, 10), *discs), method())
     run(pairs, Stop(time=200.0, disc_collisions=5))
-    assert pairs.so_far.disc_collisions == 5
+    assert pairs.counters.disc_collisions == 5
     early = Simulation(gas_of((10, 10), *discs), method())
     assert run(early, Stop(time=20.0)) == [row for row in whole if row[0] <= 20.0]
 
@@ -114,7 +114,7 @@ def test_three_discs_in_line_pass_the_motion_on(method):
     discs = [(2, 5, 1, 0, 1), (5, 5, 0, 0, 1), (7, 5, 0, 0, 1)]
     simulation = Simulation(gas_of((20, 10), *discs), method())
     assert run(simulation, Stop(time=2.0)) == [(1, 0, 1), (1, 1, 0), (1, 1, 2), (1, 2, 1)]
-    assert simulation.gas_now().velocity.tolist() == [[0, 0], [0, 0], [1, 0]]
+    assert simulation.state()[0].velocity.tolist() == [[0, 0], [0, 0], [1, 0]]
 
 
 @methods
@@ -128,7 +128,7 @@ def test_the_end_of_an_epoch_changes_only_records(method):
     assert simulation.epoch == 3
     assert simulation.time == 3 * simulation.length
     x = 1 + abs((4 + stop.time + 8) % 16 - 8)
-    assert simulation.gas_now().position[0, 0] == pytest.approx(x, abs=1e-9)
+    assert simulation.state()[0].position[0, 0] == pytest.approx(x, abs=1e-9)
     audit = simulation.audit()
     assert audit.kinetic_energy == pytest.approx(0.625, rel=1e-15)
     assert audit.overlap == 0
@@ -154,6 +154,6 @@ def test_a_gas_keeps_its_energy_and_never_overlaps(method):
     overlap = 0.0
     while not simulation.finished(stop):
         simulation.advance(stop, None, 100)
-        overlap = max(overlap, simulation.audit_of(simulation.gas_now()).overlap)
-    assert math.isclose(simulation.gas_now().kinetic_energy, energy, rel_tol=1e-13)
+        overlap = max(overlap, simulation.audit_of(simulation.state()[0]).overlap)
+    assert math.isclose(simulation.state()[0].kinetic_energy, energy, rel_tol=1e-13)
     assert overlap < 1e-13

@@ -92,7 +92,7 @@ def test_extended_xyz(log, frames, tmp_path):
     read = ase.read(tmp_path / "run.extxyz", index=":")
     for time, state, atoms in zip(times, states, read, strict=True):
         assert atoms.info["Time"] == time
-        assert atoms.pbc.tolist() == [*log.joined, False]
+        assert atoms.pbc.tolist() == [*log.periodic, False]
         assert np.diag(atoms.cell)[:2].tolist() == list(log.box)
         assert np.array_equal(atoms.positions[:, :2], state.position)
         assert np.array_equal(atoms.arrays["velo"][:, :2], state.velocity)
@@ -108,7 +108,7 @@ def test_h5md_in_three_dimensions(log, frames, tmp_path):
         group = file["particles/trajectory"]
         assert np.array_equal(group["position/value"][..., :2], [state.position for state in states])
         assert np.array_equal(group["velocity/time"], times)
-        assert ("edges" in group["box"]) == any(log.joined)
+        assert ("edges" in group["box"]) == any(log.periodic)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         mda = pytest.importorskip("MDAnalysis")

@@ -27,9 +27,9 @@ def test_chunks_are_slices(log, start, stop):
     blocks = list(log.chunks(("velocity", "disc"), start, stop))
     expected = rows(0, STOP)
     assert all(0 < len(block.disc) <= BLOCK for block in blocks)
-    joined = np.concatenate([np.empty((0, 2)), *(block.velocity for block in blocks)])
-    assert np.array_equal(joined, expected.velocity[start:stop])
-    assert sum(len(block.disc) for block in blocks) == len(joined)
+    periodic = np.concatenate([np.empty((0, 2)), *(block.velocity for block in blocks)])
+    assert np.array_equal(periodic, expected.velocity[start:stop])
+    assert sum(len(block.disc) for block in blocks) == len(periodic)
 
 
 def test_row_at(log):

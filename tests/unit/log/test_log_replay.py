@@ -32,7 +32,7 @@ def test_states_are_those_of_the_engine(path):
         for step, state in enumerate(log.frames(times)):
             size = max(log.box)
             wrapped = (state.position - discs["position/value"][step]) / size
-            assert np.abs(wrapped - wrapped.round() * log.joined).max() < 1e-13
+            assert np.abs(wrapped - wrapped.round() * log.periodic).max() < 1e-13
             assert np.abs(state.velocity - discs["velocity/value"][step]).max() < 1e-12
             if state.image is not None:
                 unwrapped = state.position + state.image * log.box
@@ -71,7 +71,7 @@ def test_snapshots_are_h5md(path):
             assert np.array_equal(element.time[:], log.snapshot_times)
             assert np.array_equal(element.step[:], np.arange(len(log.snapshot_times)))
         assert discs["box"].attrs["dimension"] == 2
-        assert [word == b"periodic" for word in discs["box"].attrs["boundary"]] == list(log.joined)
+        assert [word == b"periodic" for word in discs["box"].attrs["boundary"]] == list(log.periodic)
         assert discs["box/edges"][:].tolist() == list(log.box)
         for name in ("species", "mass", "radius"):
             assert np.array_equal(pyh5md.element(discs, name).value[:], getattr(log.discs, name))

@@ -12,7 +12,7 @@ from idealgas.engine.simulation import Stop
 from idealgas.errors import UserError
 from idealgas.physics.effects import Effects
 from idealgas.scene import parse_scene
-from idealgas.study.accuracy.cases import Rung, Start, follow, ladder
+from idealgas.study.accuracy.cases import Case, Start, compared_cases, follow
 from idealgas.study.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
 from idealgas.study.accuracy.report import cost_of, flat_row, linear_coefficient, lost_after, sentences
 from idealgas.study.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
@@ -40,15 +40,15 @@ def test_a_simulation_is_followed_to_any_time_without_a_change(start):
         there.advance(stop, None)
         if there.epoch_over and not there.finished(stop):
             there.next_epoch()
-    assert steps.gas_now().position.tolist() == there.gas_now().position.tolist()
+    assert steps.state()[0].position.tolist() == there.state()[0].position.tolist()
 
 
 def test_the_ladder_goes_down_in_steps_of_two():
-    rungs = ladder(some_gas(), precise=True)
-    steps = [rung.dt for rung in rungs if rung.dt]
+    cases = compared_cases(some_gas(), precise=True)
+    steps = [case.dt for case in cases if case.dt]
     assert np.allclose(np.divide(steps[:-1], steps[1:]), 2, rtol=0.01)
-    assert [rung.name for rung in rungs[-3:]] == ["float32", "float64", "double-double"]
-    assert not any(rung.precision for rung in ladder(some_gas(), precise=False))
+    assert [case.name for case in cases[-3:]] == ["float32", "float64", "double-double"]
+    assert not any(case.precision for case in compared_cases(some_gas(), precise=False))
 
 
 SCENE = """
@@ -64,11 +64,11 @@ collisions_per_disc = 5
 """
 
 
-@pytest.mark.parametrize("rung", ladder(some_gas(), precise=True), ids=lambda rung: rung.name)
-def test_a_rung_takes_a_scene_to_a_time(rung):
+@pytest.mark.parametrize("rung", compared_cases(some_gas(), precise=True), ids=lambda case: case.name)
+def test_a_rung_takes_a_scene_to_a_time(case):
     for before in ([], ['run.method="time_driven"', "run.dt=0.1", "run.events=7"], ['run.method="brute_force"']):
-        scene = rung.scene(parse_scene(SCENE, overrides=before), 3.25)
-        assert (scene.run.method, scene.run.dt, scene.run.precision) == (rung.method, rung.dt, rung.precision)
+        scene = case.scene(parse_scene(SCENE, overrides=before), 3.25)
+        assert (scene.run.method, scene.run.dt, scene.run.precision) == (case.method, case.dt, case.precision)
         assert (scene.run.until, scene.run.events, scene.run.collisions_per_disc) == (3.25, None, None)
 
 
@@ -98,8 +98,8 @@ def test_pairs_that_fly_through_each_other_are_told_from_those_that_meet_others(
 
 def test_steps_miss_less_the_shorter_they_are(start):
     """For a pair alone (w dt/S)²/6 are missed; the event-driven run against itself misses none."""
-    rungs = [Rung("event_driven"), Rung("time_driven", dt=0.2), Rung("time_driven", dt=0.02)]
-    itself, coarse, fine = count_missed(start, rungs, 1.0, lambda share: None)
+    cases = [Case("event_driven"), Case("time_driven", dt=0.2), Case("time_driven", dt=0.02)]
+    itself, coarse, fine = count_missed(start, cases, 1.0, lambda share: None)
     assert (itself.missed, itself.compared > 100) == (0, True)
     assert coarse.share > 0.03
     assert coarse.share - 4 * coarse.error > fine.share
@@ -108,7 +108,7 @@ def test_steps_miss_less_the_shorter_they_are(start):
 
 def test_the_way_back_shows_the_digits(start):
     """After a collision or two a disc: 7, 16 and 32 digits, and in double precision by both methods the same."""
-    error = {rung.name: error_on_return(start, rung, 1.5) for rung in ladder(start.gas, precise=True)}
+    error = {case.name: error_on_return(start, case, 1.5) for case in compared_cases(start.gas, precise=True)}
     assert error["float64"] == error["event-driven"]
     assert 1e-7 < error["float32"] < 1e-3
     assert 1e-17 < error["float64"] < 1e-12
@@ -118,8 +118,12 @@ def test_the_way_back_shows_the_digits(start):
 def test_trajectories_in_double_precision_are_those_of_the_event_driven_run(start):
     times = [1.5, 2.0, 3.0]
     event_driven, double, twice = (
-        positions(start.simulation(rung.make()), times)
-        for rung in (Rung("event_driven"), Rung("brute_force", precision="float64"), ladder(start.gas, True)[-1])
+        positions(start.simulation(case.make()), times)
+        for case in (
+            Case("event_driven"),
+            Case("brute_force", precision="float64"),
+            compared_cases(start.gas, True)[-1],
+        )
     )
     assert event_driven.tolist() == double.tolist()
     apart = rms_distance(event_driven, twice, start.gas)
@@ -134,7 +138,7 @@ def row(dt=None, cost=1.0, rate=None, error=0.001, missed=None, trajectory=None,
     bias = None if rate is None else Estimate(rate, error, math.inf)
     pairs = None if z is None else Estimate(z, error, math.inf)
     timing = Timing(cost, 0.9 * cost, 1.1 * cost, 100.0)
-    return Row(Rung(method, dt), timing, None, bias, pairs, None, missed, trajectory, None)
+    return Row(Case(method, dt), timing, None, bias, pairs, None, missed, trajectory, None)
 
 
 def steps():

@@ -30,7 +30,7 @@ MOST_IMAGES = 400  # of walls along a flight
 
 
 @dataclass
-class Worst:
+class MaxErrors:
     """The largest errors seen: contact and place in units of the resolution, energy relative. events: looked at."""
 
     contact: float = 0.0
@@ -39,14 +39,14 @@ class Worst:
     events: int = 0
 
 
-class Witness:
+class InvariantChecker:
     """Follows one run. Every method raises AssertionError where something does not hold."""
 
-    def __init__(self, scene: Scene, gas: Gas, effects: Effects, worst: Worst) -> None:
+    def __init__(self, scene: Scene, gas: Gas, effects: Effects, max_errors: MaxErrors) -> None:
         n = len(gas)
-        self.gas, self.worst = gas, worst
+        self.gas, self.max_errors = gas, max_errors
         self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
-        self.size, self.joined = np.array(gas.box), np.array(scene.box.joined)
+        self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
         self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
         self.temperature = wall_temperatures(scene)
@@ -60,7 +60,7 @@ class Witness:
         self.inertia = np.zeros(n) if effects.rotation is None else effects.rotation.inertia
         self.first, self.second = np.triu_indices(n, 1)
         self.reach = gas.radius[self.first] + gas.radius[self.second]
-        across, along = ((-1, 0, 1) if joined else (0,) for joined in self.joined)
+        across, along = ((-1, 0, 1) if periodic else (0,) for periodic in self.periodic)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.known, self.epochs, self.events, self.fastest = 0.0, 0.0, 0, 0, 0.0
         self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston, 0.0)[1])
@@ -82,7 +82,7 @@ class Witness:
 
     def wrapped(self, difference: np.ndarray) -> np.ndarray:
         """Through joined sides where that is shorter."""
-        return difference - np.where(self.joined, self.size * np.round(difference / self.size), 0.0)
+        return difference - np.where(self.periodic, self.size * np.round(difference / self.size), 0.0)
 
     # ── one event ──
 
@@ -109,14 +109,14 @@ class Witness:
         if rows.angular_velocity is not None:
             self.omega[discs] = rows.angular_velocity
         self.events += 1
-        self.worst.events += 1
+        self.max_errors.events += 1
         self.compare(time, simulation)
 
     def note(self, what: str, error: float, bound: float) -> None:
         """Assert a bound and remember how close it came."""
         assert error <= bound, f"{what}: {error:.3g} > {bound:.3g}"
         share = FEW * float(error / bound) if bound else 0.0
-        setattr(self.worst, what, max(getattr(self.worst, what), share))
+        setattr(self.max_errors, what, max(getattr(self.max_errors, what), share))
 
     def finish(self, time: float, simulation: Simulation) -> None:
         """The end of the run, at its end time."""
@@ -147,11 +147,13 @@ class Witness:
         duration = time - self.now
         apart = self.wrapped(place[self.first] - place[self.second])
         closing = velocity[self.first] - velocity[self.second]
-        turns = np.where(self.joined, np.ceil(np.abs(closing).max(axis=0, initial=0) * duration / self.size) + 1, 0)
-        turns = np.minimum(turns, 4).astype(int)
+        boundary_crossings = np.where(
+            self.periodic, np.ceil(np.abs(closing).max(axis=0, initial=0) * duration / self.size) + 1, 0
+        )
+        boundary_crossings = np.minimum(boundary_crossings, 4).astype(int)
         squared = (closing**2).sum(axis=1)
-        for x in range(-turns[0], turns[0] + 1):
-            for y in range(-turns[1], turns[1] + 1):
+        for x in range(-boundary_crossings[0], boundary_crossings[0] + 1):
+            for y in range(-boundary_crossings[1], boundary_crossings[1] + 1):
                 shifted = apart + np.array([x, y]) * self.size
                 nearest = np.divide(-(shifted * closing).sum(axis=1), squared, out=0 * squared, where=squared > 0)
                 path = shifted + closing * np.clip(nearest, 0, duration)[:, None]
@@ -166,11 +168,11 @@ class Witness:
             tops = -velocity / self.pull
         path = self.path(disc, np.concatenate((times, tops[(tops > 0) & (tops < duration)])))
         inside = (path >= radius - self.known) & (path <= self.size - radius + self.known)
-        assert (inside | self.joined).all(), "out of the box"
+        assert (inside | self.periodic).all(), "out of the box"
         if not len(self.walls):
             return
         low, high = (np.floor(edge / self.size) for edge in (path.min(axis=0) - radius, path.max(axis=0) + radius))
-        low, high = np.where(self.joined, low, 0).astype(int), np.where(self.joined, high, 0).astype(int)
+        low, high = np.where(self.periodic, low, 0).astype(int), np.where(self.periodic, high, 0).astype(int)
         if (high - low + 1).prod() * len(self.walls) > MOST_IMAGES:
             return
         shifts = [(x, y) for x in range(low[0], high[0] + 1) for y in range(low[1], high[1] + 1)]
@@ -318,7 +320,7 @@ class Witness:
 
     def compare(self, time: float, simulation: Simulation) -> None:
         """The engine's state is the one that follows from the log, the piston is beyond all discs, energies add up."""
-        gas, effects = simulation.state_now()
+        gas, effects = simulation.state()
         place, velocity = self.at(time)
         speed = self.fastest + np.hypot(*self.pull) * time
         assert np.abs(self.wrapped(gas.position - place)).max() <= self.known, "state"
@@ -333,7 +335,7 @@ class Witness:
         if self.conserved:
             drift = abs(energy.balance - self.start.balance)
             assert drift <= bound, f"energy drifts by {drift}"
-            self.worst.energy = max(self.worst.energy, drift / self.scale if self.scale else 0.0)
+            self.max_errors.energy = max(self.max_errors.energy, drift / self.scale if self.scale else 0.0)
         else:
             self.lowest = min(self.lowest, energy.balance)
 

@@ -10,7 +10,7 @@ import pytest
 from support import ROOT
 
 from idealgas.analysis.histogram.measure import histogram
-from idealgas.analysis.relaxation.acceptance import trials
+from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.measure import relaxation
 from idealgas.analysis.temperature.measure import temperature
 from idealgas.errors import UserError
@@ -85,7 +85,7 @@ def test_time_is_that_of_kinetic_theory(log, quantity):
 
 
 def test_acceptance(log):
-    found = trials(log)
+    found = acceptance(log)
     assert found.collisions == 500_000
     assert abs(found.acceptance.deviation) < STANDARD_ERRORS
     assert found.acceptance.standard_error < 3e-3 * found.acceptance.value
@@ -149,14 +149,14 @@ def test_the_classic_run(tmp_path):
     """28 000 trials of 200 equal speeds: about 7 020 collisions, and speeds that nobody can tell from Maxwell's."""
     simulate(load_scene(ROOT / "configs" / "novak-bortz.toml"), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
-        tried, found = trials(log), relaxation(log)
+        tried, found = acceptance(log), relaxation(log)
     assert tried.number == 28_000
     assert tried.published == 6_552
     assert tried.at_start == pytest.approx(4 / math.pi / 5, rel=0.02)
     assert tried.expected["Maxwell-Boltzmann"] == pytest.approx(math.sqrt(math.pi / 2) / 5, rel=1e-12)
     assert abs(tried.collisions - 7_020) < STANDARD_ERRORS * math.sqrt(7_020 * 0.75)
-    assert found.told_until is not None
-    assert found.collisions[found.told_until] < 12
+    assert found.first_indistinguishable is not None
+    assert found.collisions[found.first_indistinguishable] < 12
 
 
 def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
