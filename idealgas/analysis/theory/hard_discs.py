@@ -80,7 +80,10 @@ def mixture_compressibility(radius: ArrayLike, number: ArrayLike, area: float) -
 
 
 def confinement(
-    radius: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
+    radius: ArrayLike,
+    box: tuple[float, float],
+    periodic: tuple[bool, bool] = (False, False),
+    axis: int | None = None,
 ) -> np.ndarray:
     """How much oftener discs i and j touch in a box than in a part of the plane of its size, (S, S).
 
@@ -88,11 +91,13 @@ def confinement(
     opposite. For two discs alone it is exact: the part of the contact circle that stays inside, averaged. In a gas it
     is so to first order in the density; in simulations Z - 1 follows it within 1e-3 up to φ = 0.5 in boxes of nine
     diameters or more, and within 1.5 % at φ = 0.3 in one of five. Joined sides are no walls.
+
+    axis: count contacts by what they pass on along it, as the pressure on the walls across it does.
     """
     radius = np.asarray(radius, float)
     own, other = radius[:, None, None], radius[:, None]
     angle = (np.arange(4096) + 0.5) / 4096 * 2 * math.pi
-    share = np.ones(())
+    share = np.ones(()) if axis is None else 2 * (np.cos(angle), np.sin(angle))[axis] ** 2
     for side, is_periodic, component in zip(box, periodic, (np.cos(angle), np.sin(angle)), strict=True):
         if is_periodic:
             continue
