@@ -14,9 +14,9 @@ ALLOWED = {
     "document": set(),
     "scene": {"document"},
     "physics": {"_jit"},
-    "gas": {"_jit", "document", "scene"},
+    "gas": {"_jit", "document", "scene", "physics"},  # discs are placed by the nearest image's distance
     "engine": {"_jit", "gas", "physics"},
-    "log": {"_jit", "gas", "scene"},
+    "log": {"_jit", "gas", "scene", "physics"},  # states between two events are free flight
     "run": {"_jit", "document", "scene", "physics", "gas", "engine", "log"},
     "analysis": {"_jit", "scene", "physics", "gas", "log"},
     "study": {"document", "scene", "physics", "gas", "engine", "log", "run", "analysis"},

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import optimize
 
 from idealgas.analysis.core.equilibrium import Ensemble, ensemble
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -106,7 +106,7 @@ def relaxation(
     sums = np.empty((2, len(time), groups.max() + 1))
     for k, state in enumerate(log.frames(time)):
         energy = reduced_energy(log, state.velocity, equilibrium)
-        distance[k], entropy[k] = ks_distance(energy), relative_entropy(energy)
+        distance[k], entropy[k] = ks_distance(energy, reduced_energy_cdf), relative_entropy(energy)
         sums[:, k] = np.bincount(groups, energy), np.bincount(groups, energy**2)
         if progress is not None:
             progress(k + 1, len(time))
@@ -172,11 +172,9 @@ def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.
     return gas.mass * square / (2 * equilibrium.of_species[gas.species])
 
 
-def ks_distance(energy: np.ndarray) -> float:
-    """Largest distance between the distribution function of reduced energies and 1 - exp(-x)."""
-    n = len(energy)
-    law = -np.expm1(-np.sort(energy))
-    return float(max((np.arange(1, n + 1) / n - law).max(), (law - np.arange(n) / n).max()))
+def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
+    """Distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
+    return -np.expm1(-energy)
 
 
 def relative_entropy(energy: np.ndarray) -> float:
@@ -186,7 +184,7 @@ def relative_entropy(energy: np.ndarray) -> float:
     """
     n = len(energy)
     cells = max(2, min(CELLS, n // 5))
-    place = np.minimum((-np.expm1(-energy) * cells).astype(int), cells - 1)
+    place = np.minimum((reduced_energy_cdf(energy) * cells).astype(int), cells - 1)
     share = np.bincount(place, minlength=cells) / n
     seen = share[share > 0]
     return float((seen * np.log(seen * cells)).sum() - (cells - 1) / (2 * n))

@@ -127,12 +127,10 @@ def _contacts(
 ) -> tuple[Contact, ...]:
     """Γ_ij over what it would be if discs did not crowd each other. No disc meets itself."""
     contacts = []
+    speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
     for k, found in enumerate(rates):
         i, j = divmod(k, len(discs.name))
-        reduced = discs.mass[i] * discs.mass[j] / (discs.mass[i] + discs.mass[j])
-        speed = math.sqrt(math.pi * equilibrium.temperature / (2 * reduced))
-        speed *= hard_discs.finite_speed_factor(equilibrium.dof)
-        alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed
+        alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed[i, j]
         if j < i or alone == 0:
             continue
         rate, known = found.rate, np.isfinite(expected[i, j])
@@ -178,7 +176,7 @@ def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float,
     if gas.packing_fraction > hard_discs.FREEZING:
         return None
     density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
-    chi = float((hard_discs.compressibility(gas.packing_fraction) - 1) / (2 * gas.packing_fraction))
+    chi = hard_discs.fluid_contact_value(gas.packing_fraction)
     state = (sigma, density, equilibrium.temperature, discs.mass[0], chi)
     viscosity = hard_discs.enskog_viscosity(*state) / (density * discs.mass[0])
     return density, hard_discs.enskog_diffusion(*state), viscosity

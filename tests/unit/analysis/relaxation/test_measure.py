@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation import measure as module
 from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.figure import relaxation_figure
@@ -13,8 +14,8 @@ from idealgas.analysis.relaxation.measure import (
     colliding_span,
     collisions_per_disc,
     critical_distance,
-    ks_distance,
     reduced_energy,
+    reduced_energy_cdf,
     relative_entropy,
     relaxation,
 )
@@ -48,10 +49,10 @@ def make_log(tmp_path_factory):
 
 def test_distance_of_a_few_values():
     """Of one energy: the larger part of the law on either side of it."""
-    assert ks_distance(np.array([math.log(4)])) == pytest.approx(0.75)
-    assert ks_distance(np.array([1e-12, math.log(2)])) == pytest.approx(0.5)
+    assert ks_distance(np.array([math.log(4)]), reduced_energy_cdf) == pytest.approx(0.75)
+    assert ks_distance(np.array([1e-12, math.log(2)]), reduced_energy_cdf) == pytest.approx(0.5)
     places = -np.log(1 - (np.arange(10) + 0.5) / 10)
-    assert ks_distance(places) == pytest.approx(0.05)
+    assert ks_distance(places, reduced_energy_cdf) == pytest.approx(0.05)
 
 
 def test_entropy_of_equal_energies_and_of_the_law():
@@ -81,7 +82,7 @@ def test_one_gas_in_twenty_exceeds_the_critical_distance(number):
     random, gases = np.random.default_rng(number), 4000
     energies = random.exponential(size=(gases, number))
     energies /= energies.mean(axis=1, keepdims=True)
-    share = np.mean([ks_distance(gas) > critical_distance(number) for gas in energies])
+    share = np.mean([ks_distance(gas, reduced_energy_cdf) > critical_distance(number) for gas in energies])
     assert abs(share - 0.05) < STANDARD_ERRORS * math.sqrt(0.05 * 0.95 / gases)
 
 
