@@ -33,6 +33,7 @@ LEFT_OUT = {
     ".venv/bin/pytest": "is these tests themselves",
     "NUMBA_DISABLE_JIT=1 .venv/bin/pytest": "the same",
     "idealgas accuracy configs/three-discs.toml": "takes half a minute; test_accuracy.py runs it",
+    "cp orbit/orbit.png": "copies its picture",
 }
 """How commands begin that are not run here, and why."""
 

@@ -215,6 +215,7 @@ def test_every_dataset_of_a_log_is_named(folder):
 # ── engine, analyses, studies ──
 
 
+@pytest.mark.slow
 def test_code_of_the_engine_runs(folder):
     assert all(printed for _, printed in run_blocks(ENGINE, blocks(ENGINE)))
 
@@ -233,6 +234,7 @@ def test_code_of_the_analyses_runs(folder):
         assert (folder / name).stat().st_size > 1000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["equation-of-state", "heat-capacity", "effusion"])
 def test_shipped_sweeps_give_their_pictures(folder, name):
     (block,) = (block for block in analysis_blocks()[0] if f"sweeps/{name}.toml" in block.text)
@@ -240,6 +242,7 @@ def test_shipped_sweeps_give_their_pictures(folder, name):
     assert [path.name for path in (folder / ".readme").iterdir()] == [f"{name}.png"]
 
 
+@pytest.mark.slow
 def test_code_of_the_studies_runs(folder, monkeypatch):
     """The cluster is one in name only: its queue takes whatever is asked for."""
     asked = []
