@@ -8,7 +8,7 @@ from support import gas_of, record, same_rows
 
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
-from idealgas.events import Kind, empty_batch
+from idealgas.events import Kind
 from idealgas.physics.effects import Effects
 from idealgas.physics.motion import Gravity
 from idealgas.physics.periodic import Periodic
@@ -69,7 +69,7 @@ def test_it_does_what_the_plain_method_does(gravity, periodic):
     gas, dt, steps = some_gas(radius=0.2), 0.02, 120  # no three overlap: the order of collisions does not matter
     effects = effects_of(gravity=gravity, periodic=periodic)
     made = Simulation(gas, TimeDriven(dt), effects)
-    rows = record_with(made, Stop(time=dt * (steps + 0.5)), effects)
+    rows = record(made, Stop(time=dt * (steps + 0.5)))
     expected, position, velocity = plainly(gas, dt, steps, effects)
     assert sorted(zip(np.rint(rows.time / dt), rows.disc, rows.partner, strict=True)) == expected
     assert {kind.value for kind in (Kind.DISC,)} <= set(rows.kind.tolist())
@@ -82,23 +82,12 @@ def test_it_does_what_the_plain_method_does(gravity, periodic):
     assert "x" in periodic or not boxes.any()
 
 
-def record_with(simulation, stop, effects, rows=65_536, events=1 << 62):
-    parts = []
-    while not simulation.finished(stop):
-        batch = empty_batch(rows, periodic=effects.periodic is not None)
-        parts.append(batch.rows(0, simulation.advance(stop, batch, events)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    columns = zip(*parts, strict=True)
-    return type(parts[0])(*(None if column[0] is None else np.concatenate(column) for column in columns))
-
-
 @pytest.mark.parametrize(("rows", "events"), [(3, 1 << 62), (17, 5), (4096, 1)])
 def test_neither_batches_nor_slices_change_anything(rows, events):
     stop = Stop(time=12.0)
     whole = Simulation(some_gas(), TimeDriven(0.05))
     parts = Simulation(some_gas(), TimeDriven(0.05))
-    assert same_rows(record(whole, stop), record_with(parts, stop, Effects(), rows, events))
+    assert same_rows(record(whole, stop), record(parts, stop, rows, events))
     assert whole.state()[0].position.tolist() == parts.state()[0].position.tolist()
     assert whole.method.deepest_overlap() == parts.method.deepest_overlap() > 0
 
