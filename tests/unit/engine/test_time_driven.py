@@ -7,7 +7,7 @@ import pytest
 from support import gas_of, record, same_rows
 
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.engine.time_driven import TimeDriven
+from idealgas.engine.time_driven import TimeDriven, make_nearby
 from idealgas.events import Kind
 from idealgas.physics.effects import Effects
 from idealgas.physics.motion import Gravity
@@ -128,10 +128,20 @@ def test_it_neither_makes_nor_loses_energy():
 
 
 def test_a_longer_list_is_made_where_the_first_is_too_short():
-    gas = some_gas(200, radius=0.3)
-    made = Simulation(gas, TimeDriven(0.02))
-    made.method._near = made.method._near._replace(pairs=np.empty((5, 2), np.int32))
-    assert same_rows(record(made, Stop(time=5.0)), record(Simulation(gas, TimeDriven(0.02)), Stop(time=5.0)))
+    """A crowd in a corner of an empty box has far more pairs near each other than the same discs all over it."""
+    k = np.arange(100)
+    place = np.column_stack((k % 10, k // 10)) * 0.15 + 0.5
+    gas = gas_of(BOX, place, np.random.default_rng(3).normal(size=place.shape), 0.02)
+    near = make_nearby(gas, (False, False))
+    distance = np.hypot(*(place[:, None] - place).T)
+    assert (distance < 0.04 + near.skin).sum() / 2 > 2 * len(near.pairs)
+    dt, steps = 0.002, 100
+    made = Simulation(gas, TimeDriven(dt))
+    rows = record(made, Stop(time=dt * (steps + 0.5)))
+    expected, _, velocity = plainly(gas, dt, steps, Effects())
+    assert sorted(zip(np.rint(rows.time / dt), rows.disc, rows.partner, strict=True)) == expected
+    assert len(expected) > 20
+    assert np.abs(made.state()[0].velocity - velocity).max() < 1e-10  # each collision multiplies roundings
 
 
 # how wrong it is
