@@ -11,10 +11,11 @@
             print(route.name, route.compressibility.value, route.compressibility.standard_error)
         print(log.to_pandas("events", disc=0))
 
-`load_scene` or `parse_scene` make a `Scene`; `simulate` runs it and writes a log, `resume` goes on with one, both give a
-`Summary`; `open_log` reads a `Log`; `analyse` and the analyses by their names measure it. Results are dataclasses with
-`as_dict()`, plain values for JSON; measured numbers are an `Estimate`, a value with its standard error. What a user can
-mend is a `UserError` of one line, of which `SceneError` and `LogError` are kinds.
+`load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` goes on with a run; both
+return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
+it. Results are dataclasses with `as_dict()`, which gives plain values for JSON; a measured number is an `Estimate`, a
+value with its standard error. An error that a user can mend is a `UserError`, in one plain line; `SceneError` and
+`LogError` are kinds of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
 used, so that `import idealgas` itself is quick.

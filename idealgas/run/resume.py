@@ -27,7 +27,7 @@ def resume(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Go on with the run of a log from its last checkpoint: one that was interrupted or killed, or that is to end later.
+    """Go on with a run that was interrupted or killed, or that is to end later, from the last checkpoint of its log.
 
     The events in the log become bit for bit those of a run without a break. A log that is at its end already stays as
     it is, and its summary is returned.

@@ -89,7 +89,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is. share: part of the way to its end, 0 to 1. time: of the last event, in the gas. events: so far."""
+    """Where a run is. share: of the way to its end, 0 to 1. time: of the last event. events: number of them so far."""
 
     share: float
     time: float
