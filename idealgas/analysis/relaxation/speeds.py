@@ -10,7 +10,7 @@ import numpy as np
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import last_trial
-from idealgas.analysis.relaxation.measure import check_steady, collisions_per_disc, ks_distance, reduced_energy
+from idealgas.analysis.relaxation.velocities import check_steady, collisions_per_disc, ks_distance, reduced_energy
 from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.errors import UserError
 from idealgas.log import Log
