@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind
+from idealgas.events import IMAGE, EventBatch, Kind, columns_named
 from idealgas.gas.state import Gas
 from idealgas.log.errors import LogError
 from idealgas.log.hdf5.superblock import is_locked
@@ -160,6 +160,12 @@ class Log:
         """The start state."""
         columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         return Gas(box=self.box, species_names=tuple(self._source.texts("discs/species_name")), **columns)
+
+    @cached_property
+    def inertia(self) -> np.ndarray | None:
+        """(N,) moment of inertia of each disc, mass length²; None where discs do not spin."""
+        spins = "angular_velocity" in self._source.names("checkpoints")
+        return self._source.fixed("discs/inertia") if spins else None
 
     @cached_property
     def walls(self) -> list[Wall]:
@@ -289,14 +295,13 @@ class Log:
 
     @property
     def _start(self) -> Checkpoint:
-        """The start state, as a checkpoint would have it."""
-        arrays = {"velocity": self.discs.velocity}
-        if self.has_positions:
-            arrays["position"] = self.discs.position
-        if "image" in self.columns:
-            arrays["image"] = np.zeros((len(self.discs), 2), np.int32)
-        if "angular_velocity" in self.columns:
-            arrays["angular_velocity"] = self._source.fixed("discs/angular_velocity")
+        """The start state, as a checkpoint would have it; images count from there on."""
+        arrays = {}
+        for column in columns_named(self.columns):
+            if column is IMAGE:
+                arrays[column.name] = np.zeros((len(self.discs), *column.shape), column.dtype)
+            elif column.name in LogState._fields[1:]:
+                arrays[column.name] = self._source.fixed(f"discs/{column.name}")
         return Checkpoint(self.start_time, 0, 0, arrays, {})
 
     def _times(self, first: int) -> np.ndarray:

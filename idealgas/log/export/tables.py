@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind, empty_batch
+from idealgas.events import EVENT_COLUMNS, POSITION, EventBatch, Kind, columns_named, empty_batch
 from idealgas.log.reader import Log
 from idealgas.log.replay import LogState
 
 Columns = dict[str, np.ndarray]
-_VECTORS = {"position": ("x", "y"), "velocity": ("vx", "vy"), "image": ("image_x", "image_y")}
+_PARTS = {column.name: column.parts for column in EVENT_COLUMNS if column.parts}
 
 
 def write_csv_events(log: Log, path: Path) -> int:
@@ -68,8 +68,8 @@ def _write(path: Path, blocks: Iterable[Columns], make_writer: Callable[[Path, A
 
 def _event_columns(log: Log) -> Iterator[Columns]:
     kinds = np.array([kind.name.lower() for kind in Kind])
-    empty = empty_batch(0, "angular_velocity" in log.columns, "image" in log.columns, not log.has_positions)
-    for block in (empty, *()) if not len(log) else log.chunks():
+    empty = empty_batch(0, columns_named(log.columns))
+    for block in (empty,) if not len(log) else log.chunks():
         columns = _flat(block)
         yield columns | {"kind": kinds[columns["kind"]]}
 
@@ -79,7 +79,8 @@ def _frame_columns(log: Log, times: Sequence[float]) -> Iterator[Columns]:
     for state in log.frames(times):
         columns = _flat(state)
         if not log.has_positions:
-            del columns["x"], columns["y"]
+            for part in POSITION.parts:
+                del columns[part]
         time = np.full(len(ids), columns.pop("time"))
         yield {"time": time, "disc": ids, "species": names, **columns}
 
@@ -88,8 +89,8 @@ def _flat(block: EventBatch | LogState) -> Columns:
     """Columns of one number a row."""
     columns: Columns = {}
     for name, values in block._asdict().items():
-        if name in _VECTORS and values is not None:
-            columns |= dict(zip(_VECTORS[name], np.ascontiguousarray(values.T), strict=True))
+        if name in _PARTS and values is not None:
+            columns |= dict(zip(_PARTS[name], np.ascontiguousarray(values.T), strict=True))
         elif values is not None:
             columns[name] = values
     return columns
