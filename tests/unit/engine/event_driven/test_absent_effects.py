@@ -68,7 +68,7 @@ def test_all_effects_are_none_for_the_kernel(plain):
 @pytest.mark.parametrize("effect", MARKERS)
 def test_nothing_of_an_absent_effect_is_compiled(plain, effect):
     compiled, _ = plain
-    assert "event_driven.advance_events" in compiled
+    assert "method.advance_events" in compiled
     assert not compiled & MARKERS[effect]
 
 

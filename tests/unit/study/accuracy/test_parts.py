@@ -64,8 +64,8 @@ collisions_per_disc = 5
 """
 
 
-@pytest.mark.parametrize("rung", compared_cases(some_gas(), precise=True), ids=lambda case: case.name)
-def test_a_rung_takes_a_scene_to_a_time(case):
+@pytest.mark.parametrize("case", compared_cases(some_gas(), precise=True), ids=lambda case: case.name)
+def test_a_case_takes_a_scene_to_a_time(case):
     for before in ([], ['run.method="time_driven"', "run.dt=0.1", "run.events=7"], ['run.method="brute_force"']):
         scene = case.scene(parse_scene(SCENE, overrides=before), 3.25)
         assert (scene.run.method, scene.run.dt, scene.run.precision) == (case.method, case.dt, case.precision)
