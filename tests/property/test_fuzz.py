@@ -24,7 +24,7 @@ from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.epoch import LONGEST_WAY
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import EventBatch, empty_batch
+from idealgas.events import IMAGES, POSITIONS, SPINS, EventBatch, empty_batch, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
@@ -36,8 +36,10 @@ from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects
 from idealgas.run.simulate import stop_of
 from idealgas.scene import Scene
+from idealgas.sides import FIRST_SEGMENT
 
 PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
+COLUMNS = event_columns(POSITIONS, SPINS, IMAGES)
 MOST_EPOCHS = 5_000  # no scene has many, but for those in which a disc goes a long way and meets nothing
 
 
@@ -72,9 +74,9 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         segments=aligned(0, SEGMENT),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
-        thermal=Thermal(np.full(4 + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
+        thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
         piston=beyond,
-        wall_energy=np.zeros(4 + walls),
+        wall_energy=np.zeros(FIRST_SEGMENT + walls),
     )
     return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
 
@@ -83,7 +85,7 @@ def columns_of(scene: Scene, gas: Gas, stop: Stop) -> list[np.ndarray]:
     """The whole log by brute force."""
     simulation, parts = Simulation(gas, BruteForce(), fresh_effects(scene, gas)), []
     while not simulation.finished(stop):
-        batch = empty_batch(1024, True, True)
+        batch = empty_batch(1024, COLUMNS)
         parts.append(batch.rows(0, simulation.advance(stop, batch)))
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
@@ -100,7 +102,7 @@ def run_scene(text: str, max_errors: MaxErrors) -> None:
     seen: list[EventBatch] = []
     longest, way = LONGEST_WAY * gas.radius.min(), 0.0  # an epoch's, at least, unless there is much to do
     while not simulation.finished(stop):
-        batch = empty_batch(4, True, True)
+        batch = empty_batch(4, COLUMNS)
         rows = batch.rows(0, simulation.advance(stop, batch, events=1))
         if len(rows.time):
             seen.append(rows)

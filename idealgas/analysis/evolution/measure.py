@@ -10,6 +10,8 @@ from idealgas.analysis.core.window import span
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.physics.piston import piston_energy
+from idealgas.scene.walls import walls_inside
 
 INSTANTS = 257
 
@@ -89,8 +91,7 @@ def _samples(log: Log, inside: np.ndarray) -> Course:
 
 def _frames(log: Log, first: float, last: float) -> Course:
     """At even times."""
-    gas, frame, rotation, gate = log.discs, drift(log), log.scene.rotation, _gate(log)
-    inertia = rotation.inertia * gas.mass * gas.radius**2 if rotation else None
+    gas, frame, inertia, gate = log.discs, drift(log), log.inertia, _gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -107,9 +108,9 @@ def _frames(log: Log, first: float, last: float) -> Course:
 
 def _gate(log: Log) -> tuple[int, float] | None:
     """The axis that leads through the first gate along one, and its place there."""
-    for wall in log.scene.wall:
+    for wall in walls_inside(log.scene):
         for axis in range(2):
-            if np.isfinite(wall.absence[0]) and wall.start[axis] == wall.end[axis]:
+            if wall.is_gate and wall.start[axis] == wall.end[axis]:
                 return axis, wall.start[axis]
     return None
 
@@ -126,8 +127,8 @@ def _account(
     if piston and piston.mass:  # its own energy counts: what it gives is not from outside
         counted[[wall.name for wall in log.walls].index(piston.side)] = False
         pull = piston.acceleration(log.box, log.scene.gravity)
-        motion, place = observed["piston_velocity"] ** 2 / 2, observed["piston_position"]
-        parts["piston"] = piston.mass * (motion - pull * place)
+        place, velocity = observed["piston_position"], observed["piston_velocity"]
+        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
     from_outside = given[:, counted].sum(axis=1)
     total = sum(parts.values()) - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))

@@ -36,9 +36,6 @@ First Sonine approximation: van Noije & Ernst, Granular Matter 1, 57 (1998), ela
 equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
 """
 
-STEADY = ("periodic sides", "wall segments")
-"""Effects that leave every disc its energy between collisions with other discs."""
-
 
 @dataclass(frozen=True)
 class Relaxation:
@@ -135,7 +132,7 @@ def check_steady(log: Log) -> None:
     """UserError if there is no law of Maxwell and Boltzmann that the discs of the log tend to, or no event in it."""
     if not log.has_events:
         raise UserError(f"{log.path}: has no events (made with log.events = false)")
-    if restless := [name for name in log.scene.effects if name not in STEADY]:
+    if restless := log.scene.lacking("conserves_motion"):
         raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")

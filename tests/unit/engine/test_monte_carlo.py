@@ -9,7 +9,7 @@ from support import gas_of
 from idealgas.engine.monte_carlo import MonteCarlo
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.errors import UserError
-from idealgas.events import BLOCK, EventBatch, Kind, empty_batch
+from idealgas.events import BLOCK, TRIALS, EventBatch, Kind, empty_batch, event_columns
 
 BOX = (10.0, 10.0)
 
@@ -23,7 +23,7 @@ def run(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
     """All event rows up to the stop."""
     found = []
     while not simulation.finished(stop):
-        batch = empty_batch(rows, without_positions=True)
+        batch = empty_batch(rows, event_columns(TRIALS))
         found.append(batch.rows(0, simulation.advance(stop, batch)))
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()

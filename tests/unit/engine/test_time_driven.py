@@ -10,8 +10,9 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
 from idealgas.events import Kind, empty_batch
 from idealgas.physics.effects import Effects
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
+from idealgas.run.layout import row_columns
 
 BOX = (10.0, 8.0)
 
@@ -85,7 +86,7 @@ def test_it_does_what_the_plain_method_does(gravity, periodic):
 def record_with(simulation, stop, effects, rows=65_536, events=1 << 62):
     parts = []
     while not simulation.finished(stop):
-        batch = empty_batch(rows, periodic=effects.periodic is not None)
+        batch = empty_batch(rows, row_columns(effects))
         parts.append(batch.rows(0, simulation.advance(stop, batch, events)))
         if simulation.epoch_over and not simulation.finished(stop):
             simulation.next_epoch()
