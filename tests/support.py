@@ -14,6 +14,7 @@ from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import BLOCK, EventBatch, empty_batch
 from idealgas.gas.state import Gas
+from idealgas.run.layout import row_columns
 
 ROOT = Path(__file__).parent.parent
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
@@ -48,8 +49,7 @@ def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
 
 def batch_for(simulation: Simulation, rows: int) -> EventBatch:
     """An empty batch with the columns that the simulation fills."""
-    effects, without_positions = simulation.effects, simulation.method.without_positions
-    return empty_batch(rows, effects.rotation is not None, effects.periodic is not None, without_positions)
+    return empty_batch(rows, row_columns(simulation.effects, simulation.method.without_positions))
 
 
 def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = UNLIMITED) -> Iterator[EventBatch]:
