@@ -213,18 +213,20 @@ def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float)
     whole = _kurtosis(sums.sum(axis=2), members.sum())
     if abs(whole[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(members.sum()):
         return None
-    value = _decay_time(time, whole, target)
+    value = decay_time(time, whole, target)
     less = _kurtosis(sums.sum(axis=2)[..., None] - sums, members.sum() - members)
     groups = len(members)
     if groups < 2:
         return Estimate(value, math.nan, 1.0)
-    parts = np.array([_decay_time(time, less[:, g], target) for g in range(groups)])
+    parts = np.array([decay_time(time, less[:, g], target) for g in range(groups)])
     error = math.sqrt((groups - 1) / groups * ((parts - parts.mean()) ** 2).sum())
     return Estimate(value, error, float(groups))
 
 
-def _decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """τ of target + (series[0] - target) exp(-time/τ) that is nearest to the series."""
+def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
+    """The τ whose target + (series[0] - target) exp(-time/τ) is nearest to the series, by least squares; in its unit of
+    time. time, series: (S,).
+    """
 
     def misfit(logarithm: float) -> float:
         model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))

@@ -89,12 +89,12 @@ def test_one_gas_in_twenty_exceeds_the_critical_distance(number):
 def test_decay_times_are_found():
     time = np.linspace(0, 40, 321)
     for tau in (0.5, 2.9, 30.0):
-        assert module._decay_time(time, 2 - np.exp(-time / tau), 2.0) == pytest.approx(tau, rel=1e-4)
+        assert module.decay_time(time, 2 - np.exp(-time / tau), 2.0) == pytest.approx(tau, rel=1e-4)
 
 
 def test_decay_times_are_found_in_collisions_that_set_in_late():
     collisions = np.maximum(np.linspace(-3, 37, 321), 0)
-    assert module._decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
+    assert module.decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
 
 
 def test_reduced_energies_of_both_species_have_mean_one(make_log):
