@@ -41,5 +41,5 @@ class Gas:
 
     @property
     def temperature(self) -> float:
-        """Kinetic temperature E/N, mass length²/time²: two degrees of freedom a disc, k_B = 1, rest frame of the box."""
+        """Kinetic temperature E/N, mass length²/time², as a disc has two degrees of freedom and k_B = 1."""
         return self.kinetic_energy / len(self)
