@@ -7,12 +7,14 @@ independent (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007)) and where equ
 
 import logging
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from scipy import stats
+
+from idealgas.errors import UserError
 
 logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
 from pymbar import timeseries  # noqa: E402
@@ -22,6 +24,9 @@ ENOUGH_REPLICATES = 20
 
 LONG_BLOCKS = 32
 """Blocks that errors of anticorrelated series are taken from."""
+
+TOLERANCE = 4.0
+"""Standard errors by which measurement and theory may differ where they are checked."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,14 @@ class Estimate:
         """Fields and deviation by name, for JSON: None for what is not finite."""
         fields = asdict(self) | {"deviation": self.deviation}
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
+
+
+def agree(found: Iterable[Estimate]) -> bool:
+    """Whether every value is within TOLERANCE standard errors of its theory. UserError if that cannot be said."""
+    deviations = [one.deviation for one in found]
+    if any(deviation is None or not math.isfinite(deviation) for deviation in deviations):
+        raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
+    return all(abs(deviation) <= TOLERANCE for deviation in deviations if deviation is not None)
 
 
 def inefficiency(series: np.ndarray) -> float:

@@ -18,23 +18,13 @@ from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogra
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
 from idealgas.scene import EFFECTS
-
-QUANTITIES = {
-    "speed": "length/time",
-    "vx": "length/time",
-    "vy": "length/time",
-    "energy": "energy",
-    "free-path": "length",
-    "free-time": "time",
-    "wait": "time",
-}
-"""What there are distributions of, and its unit."""
 
 UNIFORM = ("periodic sides", "rotation", "thermal walls")
 """Effects that leave the gas uniform, its flights straight and its laws known."""

@@ -16,7 +16,7 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.statistics import Estimate, agree, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
@@ -32,9 +32,6 @@ WALLS, PAIRS = "walls, virial", "pairs, virial"
 
 EFFECTS = ("periodic sides", "rotation", "thermal walls")
 """With these the gas is uniform, at a temperature known beforehand."""
-
-TOLERANCE = 4.0
-"""Standard errors that measurement and theory may differ by."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +64,7 @@ class Pressure:
 
     def check(self) -> bool:
         """Whether Z by the walls' and by the pairs' virial agrees with theory. UserError if it cannot be said."""
-        deviations = [route.compressibility.deviation for route in self.routes if route.name in (WALLS, PAIRS)]
-        if any(deviation is None or not np.isfinite(deviation) for deviation in deviations):
-            raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
-        return all(abs(deviation) <= TOLERANCE for deviation in deviations if deviation is not None)
+        return agree(route.compressibility for route in self.routes if route.name in (WALLS, PAIRS))
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -10,12 +10,11 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.statistics import Estimate, equilibration, mean, ratio
 from idealgas.analysis.core.window import Window, block_edges
+from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.rotation import moment_of_inertia
-
-BINS = 20
 
 FEWEST_FRAMES = 32
 """Frames with a disc in a strip, below which its temperature is not told."""

@@ -9,17 +9,16 @@ from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation import measure as module
 from idealgas.analysis.relaxation.acceptance import acceptance
+from idealgas.analysis.relaxation.combine import combine_relaxation
 from idealgas.analysis.relaxation.figure import relaxation_figure
 from idealgas.analysis.relaxation.measure import (
     colliding_span,
-    collisions_per_disc,
     critical_distance,
-    reduced_energy,
-    reduced_energy_cdf,
     relative_entropy,
     relaxation,
 )
 from idealgas.analysis.relaxation.speeds import speed_distributions
+from idealgas.analysis.relaxation.velocities import collisions_per_disc, reduced_energy, reduced_energy_cdf
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -146,7 +145,7 @@ def test_what_was_seen_of_equal_speeds(make_log):
     assert found.in_collisions.value / found.in_time.value == pytest.approx(
         found.collisions[-1] / found.time[-1], rel=0.1
     )
-    axes = relaxation_figure([found, found]).axes
+    axes = relaxation_figure(combine_relaxation([found, found])).axes
     assert all("(" in axis.get_xlabel() and "(" in axis.get_ylabel() for axis in axes)
 
 
