@@ -31,7 +31,12 @@ TOLERANCE = 4.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """A measured value, its standard error, the independent samples behind it, and what theory says."""
+    """A measured number with its error bar.
+
+    value: in the unit of the quantity. standard_error: of the value, nan if there are too few samples for one.
+    independent_samples: number of them that the error comes from, inf for what is known exactly. theory: value that
+    theory expects of this gas; None where no theory applies.
+    """
 
     value: float
     standard_error: float
@@ -46,7 +51,7 @@ class Estimate:
         return (self.value - self.theory) / self.standard_error
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval by Student's t."""
+        """Confidence interval of a level, 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
 
@@ -62,7 +67,7 @@ class Estimate:
         )
 
     def as_dict(self) -> dict[str, float | None]:
-        """For JSON, which has no word for what is not a number."""
+        """Fields and deviation by name, for JSON: None for what is not finite."""
         fields = asdict(self) | {"deviation": self.deviation}
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
 
