@@ -4,12 +4,13 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import BLOCK, EventBatch, empty_batch
 from idealgas.gas.state import Gas
@@ -45,19 +46,28 @@ def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
     )
 
 
-def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> Iterator[EventBatch]:
-    """Run to the stop and yield the event rows, at most `rows` at a time."""
-    while not simulation.finished(stop):
-        batch = empty_batch(rows)
-        yield batch.rows(0, simulation.advance(stop, batch))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
+def batch_for(simulation: Simulation, rows: int) -> EventBatch:
+    """An empty batch with the columns that the simulation fills."""
+    effects, without_positions = simulation.effects, simulation.method.without_positions
+    return empty_batch(rows, effects.rotation is not None, effects.periodic is not None, without_positions)
 
 
-def record(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
-    """Run to the stop and return all event rows."""
-    columns = zip(*batches(simulation, stop, rows), strict=True)
-    return EventBatch(*(None if parts[0] is None else np.concatenate(parts) for parts in columns))
+def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = UNLIMITED) -> Iterator[EventBatch]:
+    """Run to the stop and yield the event rows, at most so many rows and events at a time."""
+    batch = batch_for(simulation, rows)
+    for count in simulation.slices(stop, batch, events):
+        yield EventBatch(*(None if column is None else column[:count].copy() for column in batch))
+
+
+def joined(parts: Iterable[EventBatch]) -> EventBatch:
+    """The rows of all parts, one after the other."""
+    columns = zip(*parts, strict=True)
+    return EventBatch(*(None if column[0] is None else np.concatenate(column) for column in columns))
+
+
+def record(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = UNLIMITED) -> EventBatch:
+    """Run to the stop, at most so many rows and events at a time, and return all event rows."""
+    return joined(batches(simulation, stop, rows, events))
 
 
 def same_rows(a: EventBatch, b: EventBatch) -> bool:

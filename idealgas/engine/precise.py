@@ -234,9 +234,7 @@ def write_record(c, i, disc):
 
 
 @njit
-def advance_precisely(
-    c, coming, record, ids, effects, until, most_events, most_collisions, epoch_start, batch, counters
-):
+def advance_precisely(c, coming, record, ids, effects, limits, epoch_start, batch, counters):
     """As `brute_force.advance_events`; record: the discs rounded, kept so."""
     rows = 0
     events = 0
@@ -245,14 +243,14 @@ def advance_precisely(
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    while events < most_events and collisions < most_collisions and rows < capacity:
+    while events < limits.events and collisions < limits.collisions and rows < capacity:
         i = 0
         time = load(coming.time, 0)
         for k in range(1, record.shape[0]):
             if less(load(coming.time, k), time):
                 i, time = k, load(coming.time, k)
         clock = rounded(time)
-        if clock > until:
+        if clock > limits.until:
             reached = True
             break
         j = np.int64(coming.partner[i])
@@ -311,7 +309,7 @@ class PreciseBruteForce:
         """See `advance_precisely`."""
         record, ids, _ = self.discs
         return advance_precisely(
-            self.columns, self._coming, record, ids, self._effects, *limits[:3], epoch_start, batch, counters
+            self.columns, self._coming, record, ids, self._effects, limits, epoch_start, batch, counters
         )
 
     def deepest_overlap(self) -> float:

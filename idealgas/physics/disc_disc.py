@@ -70,13 +70,8 @@ def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
     if touch == max(a.t, b.t):
         _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
         k = normal_impulse(x, y, vx, vy, a.m + b.m, rebound(restitution, a_id, b_id, touch))
-        unchanged = (
-            (a.vx - k * b.m * x == a.vx)
-            & (a.vy - k * b.m * y == a.vy)
-            & (b.vx + k * a.m * x == b.vx)
-            & (b.vy + k * a.m * y == b.vy)
-        )
-        if unchanged:
+        a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, x, y, k)
+        if (a_vx == a.vx) & (a_vy == a.vy) & (b_vx == b.vx) & (b_vy == b.vy):
             return NEVER
     return touch
 
@@ -88,13 +83,16 @@ def normal_impulse(x, y, vx, vy, total_mass, factor):
 
 
 @inline
+def velocities_after(a, b, x, y, k):
+    """Velocities of a and b after an impulse along their line of centres: k as `normal_impulse` gives it for (x, y)."""
+    return a.vx - k * b.m * x, a.vy - k * b.m * y, b.vx + k * a.m * x, b.vy + k * a.m * y
+
+
+@inline
 def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
     """Exchange the momentum of two discs whose records stand at the contact."""
     x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)
     k = normal_impulse(x, y, a.vx - b.vx, a.vy - b.vy, a.m + b.m, rebound(restitution, a_id, b_id, a.t))
-    a.vx -= k * b.m * x
-    a.vy -= k * b.m * y
-    b.vx += k * a.m * x
-    b.vy += k * a.m * y
+    a.vx, a.vy, b.vx, b.vy = velocities_after(a, b, x, y, k)

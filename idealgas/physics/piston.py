@@ -8,7 +8,7 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
-from idealgas.physics.motion import acceleration_along
+from idealgas.physics.motion import acceleration_along, position_after, velocity_after
 from idealgas.physics.restitution import wall_rebound
 
 PISTON = np.dtype(
@@ -39,10 +39,10 @@ def piston_contact(disc, piston, gravity):
     p_dt = time - piston.t
     pull = acceleration_along(gravity, along_y)
     place, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
-    d_place = place + velocity * d_dt + 0.5 * pull * d_dt * d_dt
-    p_place = piston.x + piston.v * p_dt + 0.5 * piston.a * p_dt * p_dt
-    d_velocity = velocity + pull * d_dt
-    p_velocity = piston.v + piston.a * p_dt
+    d_place = position_after(place, velocity, pull, d_dt)
+    p_place = position_after(piston.x, piston.v, piston.a, p_dt)
+    d_velocity = velocity_after(velocity, pull, d_dt)
+    p_velocity = velocity_after(piston.v, piston.a, p_dt)
     height = sign * (p_place - d_place) - disc.r
     delay = time_to_plane(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
     return time + delay if delay < NEVER else NEVER
@@ -59,10 +59,15 @@ def stop_contact(piston):
 @inline
 def advance_piston(piston, time):
     """Move the piston's record to a later time."""
-    dt = time - piston.t
-    piston.x += piston.v * dt + 0.5 * piston.a * dt * dt
-    piston.v += piston.a * dt
+    delay = time - piston.t
+    piston.x += position_after(0.0, piston.v, piston.a, delay)
+    piston.v = velocity_after(piston.v, piston.a, delay)
     piston.t = time
+
+
+def piston_energy(mass, position, velocity, acceleration):
+    """Energy of motion and place of a piston with a mass, m (V²/2 - A X), constant between hits. Numbers or arrays."""
+    return mass * (0.5 * velocity**2 - acceleration * position)
 
 
 @inline

@@ -5,11 +5,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from support import ROOT
 
 from idealgas.scene import EFFECTS, load_scene
 
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
-CONFIGS = Path(__file__).parents[2] / "configs"
+CONFIGS = ROOT / "configs"
 
 
 def check(*arguments, folder=None):

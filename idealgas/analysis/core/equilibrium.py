@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.physics.rotation import moment_of_inertia
 from idealgas.scene import Scene, ThermalSide
 
 
@@ -64,7 +65,7 @@ def known_ensemble(log: Log) -> Ensemble | None:
     energy = float((gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum())  # twice
     if scene.rotation:
         dof += len(gas)
-        inertia = scene.rotation.inertia * gas.mass * gas.radius**2
+        inertia = moment_of_inertia(scene.rotation.inertia, gas.mass, gas.radius)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((inertia * spin**2).sum())
     walls = wall_temperatures(scene)
@@ -105,7 +106,7 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
     energy = gas.kinetic_energy - float(gas.mass @ start.position[:, axis]) * g
     spins = 0.0
     if scene.rotation and start.angular_velocity is not None:
-        inertia = scene.rotation.inertia * gas.mass * gas.radius**2
+        inertia = moment_of_inertia(scene.rotation.inertia, gas.mass, gas.radius)
         energy += float(inertia @ start.angular_velocity**2) / 2
         spins = len(gas) / 2
     height = log.box[axis] - 2 * discs.radius

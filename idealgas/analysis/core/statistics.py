@@ -147,6 +147,15 @@ def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: float | None =
     return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
 
 
+def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:
+    """Kolmogorov and Smirnov's distance: the largest between the distribution function of samples and a law's, `cdf`.
+
+    Where its probability by chance is asked for as well, `scipy.stats.kstest` gives both.
+    """
+    law, steps = cdf(np.sort(samples)), np.arange(len(samples) + 1) / len(samples)
+    return float(max((steps[1:] - law).max(), (law - steps[:-1]).max()))
+
+
 def block_averages(series: np.ndarray, blocks: int) -> np.ndarray:
     """Averages over `blocks` equal stretches of a series; samples that do not fill the last one are left out."""
     length = len(series) // blocks

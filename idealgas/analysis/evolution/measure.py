@@ -11,6 +11,8 @@ from idealgas.analysis.core.window import span
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.physics.piston import piston_energy
+from idealgas.physics.rotation import moment_of_inertia
 
 INSTANTS = 257
 
@@ -101,7 +103,7 @@ def _samples(log: Log, inside: np.ndarray) -> Course:
 def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> Course:
     """At even times."""
     gas, frame, rotation, gate = log.discs, drift(log), log.scene.rotation, _gate(log)
-    inertia = rotation.inertia * gas.mass * gas.radius**2 if rotation else None
+    inertia = moment_of_inertia(rotation.inertia, gas.mass, gas.radius) if rotation else None
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -139,8 +141,7 @@ def _account(
     if piston and piston.mass:  # its own energy counts: what it gives is not from outside
         counted[[wall.name for wall in log.walls].index(piston.side)] = False
         pull = piston.acceleration(log.box, log.scene.gravity)
-        motion, place = observed["piston_velocity"] ** 2 / 2, observed["piston_position"]
-        parts["piston"] = piston.mass * (motion - pull * place)
+        parts["piston"] = piston_energy(piston.mass, observed["piston_position"], observed["piston_velocity"], pull)
     from_outside = given[:, counted].sum(axis=1)
     total = sum(parts.values()) - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))

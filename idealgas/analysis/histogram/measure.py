@@ -20,6 +20,7 @@ from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, m
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.theory import distributions
+from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
@@ -189,7 +190,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     path = quantity == "free-path"
     high = 10 / rate
     if path:
-        high *= np.sqrt(np.pi * temperature / (2 * discs.mass))
+        high *= mean_speed(temperature, discs.mass)
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress, UNIFORM)
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))

@@ -14,6 +14,7 @@ from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.physics.rotation import moment_of_inertia
 
 FEWEST_FRAMES = 32
 """Frames with a disc in a strip, below which its temperature is not told."""
@@ -108,7 +109,7 @@ def _collect(
     middle = np.empty((len(times), shape[0]))
     number = np.bincount(gas.species)
     rotation = log.scene.rotation
-    inertia = rotation.inertia * gas.mass * gas.radius**2 if rotation else np.zeros(len(gas))
+    inertia = moment_of_inertia(rotation.inertia, gas.mass, gas.radius) if rotation else np.zeros(len(gas))
     for k, state in enumerate(log.frames(times)):
         place = state.position[:, axis]
         strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)

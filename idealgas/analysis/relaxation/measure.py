@@ -14,11 +14,16 @@ import numpy as np
 from scipy import optimize
 
 from idealgas.analysis.core.equilibrium import ensemble
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
 from idealgas.analysis.relaxation.speeds import SpeedDistributions, speed_distributions
-from idealgas.analysis.relaxation.velocities import check_steady, collisions_per_disc, ks_distance, reduced_energy
+from idealgas.analysis.relaxation.velocities import (
+    check_steady,
+    collisions_per_disc,
+    reduced_energy,
+    reduced_energy_cdf,
+)
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -113,7 +118,7 @@ def relaxation(
     sums = np.empty((2, len(time), groups.max() + 1))
     for k, state in enumerate(log.frames(time)):
         energy = reduced_energy(log, state.velocity, equilibrium)
-        distance[k], entropy[k] = ks_distance(energy), relative_entropy(energy)
+        distance[k], entropy[k] = ks_distance(energy, reduced_energy_cdf), relative_entropy(energy)
         sums[:, k] = np.bincount(groups, energy), np.bincount(groups, energy**2)
         if progress is not None:
             progress(k + 1, len(time))
@@ -162,7 +167,7 @@ def relative_entropy(energy: np.ndarray) -> float:
     """
     n = len(energy)
     cells = max(2, min(CELLS, n // 5))
-    place = np.minimum((-np.expm1(-energy) * cells).astype(int), cells - 1)
+    place = np.minimum((reduced_energy_cdf(energy) * cells).astype(int), cells - 1)
     share = np.bincount(place, minlength=cells) / n
     seen = share[share > 0]
     return float((seen * np.log(seen * cells)).sum() - (cells - 1) / (2 * n))
@@ -191,18 +196,20 @@ def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float)
     whole = _kurtosis(sums.sum(axis=2), members.sum())
     if abs(whole[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(members.sum()):
         return None
-    value = _decay_time(time, whole, target)
+    value = decay_time(time, whole, target)
     less = _kurtosis(sums.sum(axis=2)[..., None] - sums, members.sum() - members)
     groups = len(members)
     if groups < 2:
         return Estimate(value, math.nan, 1.0)
-    parts = np.array([_decay_time(time, less[:, g], target) for g in range(groups)])
+    parts = np.array([decay_time(time, less[:, g], target) for g in range(groups)])
     error = math.sqrt((groups - 1) / groups * ((parts - parts.mean()) ** 2).sum())
     return Estimate(value, error, float(groups))
 
 
-def _decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """τ of target + (series[0] - target) exp(-time/τ) that is nearest to the series."""
+def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
+    """The τ whose target + (series[0] - target) exp(-time/τ) is nearest to the series, by least squares; in its unit of
+    time. time, series: (S,).
+    """
 
     def misfit(logarithm: float) -> float:
         model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))

@@ -36,8 +36,6 @@ def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.
     return gas.mass * square / (2 * equilibrium.of_species[gas.species])
 
 
-def ks_distance(energy: np.ndarray) -> float:
-    """Largest distance between the distribution function of reduced energies and 1 - exp(-x)."""
-    n = len(energy)
-    law = -np.expm1(-np.sort(energy))
-    return float(max((np.arange(1, n + 1) / n - law).max(), (law - np.arange(n) / n).max()))
+def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
+    """Distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
+    return -np.expm1(-energy)

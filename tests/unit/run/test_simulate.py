@@ -2,10 +2,10 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from idealgas.gas.build import make_gas
 from idealgas.log import open_log
@@ -14,7 +14,7 @@ from idealgas.run.energy import Energy, is_conserved
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
 
-CONFIGS = Path(__file__).parents[2] / "configs"
+CONFIGS = ROOT / "configs"
 
 
 def run(path, scene):

@@ -5,17 +5,17 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from log_samples import STEP, check, rows, write_log, write_rows
+from support import ROOT
 
 from idealgas.events import BLOCK, EventBatch
 from idealgas.log import LogError, LogWriter, open_log, recover
 
-SAMPLES = Path(__file__).parents[2] / "log_samples.py"
+SAMPLES = ROOT / "tests" / "log_samples.py"
 
 
 def start_writer(path, compression="gzip"):
