@@ -1,0 +1,1 @@
+"""Studies that run many simulations: what accuracy costs, sweeps, and how fast the engine is."""

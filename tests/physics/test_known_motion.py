@@ -1,16 +1,16 @@
 """Shipped scenes whose motion is known by hand, as their comments tell it."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
 
-CONFIGS = Path(__file__).parents[2] / "configs"
+CONFIGS = ROOT / "configs"
 
 CORNER = [
     (1.0, 0, -1), (1.0, 0, -3), (1.25, 3, 4), (1.25, 4, 3), (1.5, 1, 2), (1.5, 2, 1),

@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from log_samples import check, write_log
+from support import ROOT
 
 from idealgas.log import LogError, open_log, recover
 
-SAMPLES = Path(__file__).parents[1] / "log_samples.py"
+SAMPLES = ROOT / "tests" / "log_samples.py"
 ROWS = 70_000
 
 

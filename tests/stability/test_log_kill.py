@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from log_samples import check, write_rows
+from support import ROOT
 
 from idealgas.events import BLOCK
 from idealgas.log import LogError, LogWriter, open_log, recover
 
-SAMPLES = Path(__file__).parents[1] / "log_samples.py"
+SAMPLES = ROOT / "tests" / "log_samples.py"
 IN_CI, BY_HAND = 6, 100
 
 

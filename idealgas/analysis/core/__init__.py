@@ -1,0 +1,1 @@
+"""What the analyses share: streams over a log, windows, statistics, tables and the style of pictures."""

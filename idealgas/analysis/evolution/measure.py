@@ -1,5 +1,6 @@
 """The course in time of temperatures, energies and the account of the walls, and of discs beyond a gate."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,8 @@ from idealgas.analysis.core.window import span
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.physics.piston import piston_energy
+from idealgas.scene.walls import walls_inside
 
 INSTANTS = 257
 
@@ -43,13 +46,23 @@ class Evolution:
         if self.law is not None:
             at_rest = {"spin": self.law.spin, "piston": self.law.piston}
             law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
-        return lists | tables | {"law": law}
+        return lists | tables | {"law": law, "end": self._end()}
+
+    def _end(self) -> dict[str, float]:
+        """The last of each series that is one number at a time."""
+        series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
+        return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
 
 TABLES = ("beyond", "parts", "given")
 
 
-def evolution(log: Log, start: float | None = None, end: float | None = None) -> Evolution:
+def evolution(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Evolution:
     """Follow a log from one time to another, by default from its start to its end. UserError if it has no samples."""
     first, last = span(log, start, end)
     if not len(log.observables["kinetic_energy"][0]):
@@ -57,7 +70,7 @@ def evolution(log: Log, start: float | None = None, end: float | None = None) ->
     observed = {name: values for name, (_, values) in log.observables.items()}
     samples = log.observables["kinetic_energy"][0]
     inside = (samples >= first) & (samples <= last)
-    time, temperature, spin, beyond = _frames(log, first, last) if log.has_events else _samples(log, inside)
+    time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
     parts, given, balance = _account(log, observed)
     return Evolution(
         time,
@@ -87,10 +100,9 @@ def _samples(log: Log, inside: np.ndarray) -> Course:
     return time[inside], kinetic[inside] / n, spin, {}
 
 
-def _frames(log: Log, first: float, last: float) -> Course:
+def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> Course:
     """At even times."""
-    gas, frame, rotation, gate = log.discs, drift(log), log.scene.rotation, _gate(log)
-    inertia = rotation.inertia * gas.mass * gas.radius**2 if rotation else None
+    gas, frame, inertia, gate = log.discs, drift(log), log.inertia, _gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -101,15 +113,17 @@ def _frames(log: Log, first: float, last: float) -> Course:
         if gate is not None:
             axis, place = gate
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
+        if progress is not None:
+            progress(k + 1, len(time))
     shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gate is not None else {}
     return time, temperature, None if inertia is None else spin, shares
 
 
 def _gate(log: Log) -> tuple[int, float] | None:
     """The axis that leads through the first gate along one, and its place there."""
-    for wall in log.scene.wall:
+    for wall in walls_inside(log.scene):
         for axis in range(2):
-            if np.isfinite(wall.absence[0]) and wall.start[axis] == wall.end[axis]:
+            if wall.is_gate and wall.start[axis] == wall.end[axis]:
                 return axis, wall.start[axis]
     return None
 
@@ -126,8 +140,8 @@ def _account(
     if piston and piston.mass:  # its own energy counts: what it gives is not from outside
         counted[[wall.name for wall in log.walls].index(piston.side)] = False
         pull = piston.acceleration(log.box, log.scene.gravity)
-        motion, place = observed["piston_velocity"] ** 2 / 2, observed["piston_position"]
-        parts["piston"] = piston.mass * (motion - pull * place)
+        place, velocity = observed["piston_position"], observed["piston_velocity"]
+        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
     from_outside = given[:, counted].sum(axis=1)
     total = sum(parts.values()) - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))

@@ -12,6 +12,7 @@ import numpy as np
 from idealgas.analysis.core.statistics import equilibration
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.physics.piston import piston_energy
 
 FEWEST = 16
 """Samples below which nothing can be said of fluctuations."""
@@ -48,7 +49,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
     if scene.piston and scene.piston.mass:
         position, velocity = series["piston_position"], series["piston_velocity"]
         pull = scene.piston.acceleration(scene.box.size, scene.gravity)
-        energy = energy + scene.piston.mass * (velocity**2 / 2 - pull * position)
+        energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
     moving = [series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()]  # beyond rounding
     first = 0 if start is not None else equilibration(*moving)
     if len(at) - first < FEWEST:

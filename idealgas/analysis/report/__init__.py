@@ -1,0 +1,1 @@
+"""A log as one page with every analysis that applies."""

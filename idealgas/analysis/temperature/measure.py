@@ -12,7 +12,6 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.log import Log
-from idealgas.scene import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ def temperature(
 ) -> Temperature:
     """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
     moments = Moments(log.gravity)
-    window = measure(log, [moments], start, end, progress, allowed=EFFECTS)
+    window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
     equilibrium = known_ensemble(log)
     shares: list[float] | list[None] = [None] * len(discs.name)

@@ -1,0 +1,1 @@
+"""Logs as files that other programs read."""

@@ -1,0 +1,1 @@
+"""The tables of a scene, one file a table."""

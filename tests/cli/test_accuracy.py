@@ -1,0 +1,84 @@
+"""`idealgas accuracy` as a user runs it: a small gas, the orbit of three discs, and what it refuses."""
+
+import csv
+import json
+
+import pytest
+from support import ROOT, called, idealgas
+
+SMALL = """
+[box]
+size = [10, 10]
+left = "periodic"
+right = "periodic"
+[[species]]
+name = "gas"
+count = 60
+radius = 0.3
+temperature = 1
+[run]
+collisions_per_disc = 60
+"""
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("accuracy")
+    (folder / "small.toml").write_text(SMALL)
+    return folder, idealgas("accuracy", "small.toml", "-o", "out", "--repeats", 1, folder=folder)
+
+
+def test_it_prints_tables_and_sentences_and_nothing_else(small):
+    _, done = small
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Time and averages" in done.stdout
+    assert "event-driven" in done.stdout
+    assert "- No trajectories were compared: no other precision than float64 knows of periodic sides." in done.stdout
+    assert done.stdout.splitlines()[-1] == "out/accuracy.csv, out/accuracy.json, out/accuracy.png"
+
+
+def test_its_files_hold_all_numbers(small):
+    folder, _ = small
+    with (folder / "out/accuracy.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    result = json.loads((folder / "out/accuracy.json").read_text())
+    assert [row["rung"] for row in rows] == [row["rung"] for row in result["rows"]]
+    assert [row["method"] for row in rows] == ["event_driven"] + ["time_driven"] * 8
+    assert rows[0]["rate_bias"] == ""
+    coarse = rows[1]
+    assert float(coarse["rate_bias"]) < -4 * float(coarse["rate_bias_error"]) < 0
+    assert float(coarse["missed_share"]) > 0
+    assert float(coarse["deepest_overlap"]) > 0.1 > 1e-9 > float(rows[0]["deepest_overlap"])
+    assert all(float(row["cpu_s_per_time"]) > 0 for row in rows)
+    assert (folder / "out/accuracy.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_orbit_of_three_discs(tmp_path):
+    scene = ROOT / "configs" / "three-discs.toml"
+    done = called("accuracy", scene, "--json", "-o", tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    result = json.loads(done.stdout)
+    assert result["placements"] >= 12
+    medians = [found["median"] for found in result["survivals"]]
+    assert medians == sorted(medians)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.csv", "orbit.json", "orbit.png"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "message"), [("baffle", "nothing to compare: time steps know nothing of wall segments"),
+                           ("bounce", "nothing to compare: one disc alone collides with none"),
+                           ("novak-bortz", "run.method: nothing to compare")],
+)  # fmt: skip
+def test_what_cannot_be_compared_is_refused_in_a_line(scene, message, tmp_path):
+    done = called("accuracy", ROOT / "configs" / f"{scene}.toml", folder=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(message)
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_is_refused_before_anything_runs(tmp_path):
+    (tmp_path / "file").write_text("")
+    done = called("accuracy", ROOT / "configs" / "quickstart.toml", "-o", "file/out", folder=tmp_path)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("file/out: cannot be written: ")

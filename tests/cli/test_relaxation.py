@@ -1,0 +1,96 @@
+"""`idealgas relaxation`: tables, JSON and pictures of one log and of several, and one line for what it cannot do."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from idealgas_cli.main import main
+
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+box.size = [10, 10]
+species = [{name = "gas", count = 100, radius = 0.1, speed = 1.0}]
+run.collisions_per_disc = 30
+"""
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory):
+    """Paths: event-driven, Monte Carlo, and with gravity."""
+    folder = tmp_path_factory.mktemp("relaxation")
+    extras = {
+        "exact": "",
+        "random": 'run.method = "monte_carlo"\nrun.v_ref = 10\n',
+        "falling": "gravity.acceleration = [0, -1]\n",
+    }
+    for name, extra in extras.items():
+        simulate(parse_scene(SCENE + extra), folder / f"{name}.h5")
+    return {name: folder / f"{name}.h5" for name in extras}
+
+
+def idealgas(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def test_one_table_for_several_logs(logs, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    shown = idealgas("relaxation", logs["exact"], logs["random"])
+    assert (shown.exit_code, shown.stderr) == (0, "")
+    rows = [line for line in shown.stdout.splitlines() if ".h5" in line and "│" in line]
+    assert all(" 100 " in row for row in rows[:4])  # two logs, in time and in collisions per disc
+    assert f"{logs['random']}" in rows[4]
+    assert " 1,500 " in rows[4]
+    assert all(f"{logs['exact']}" not in row for row in rows[4:])
+    assert "published" not in shown.stdout
+
+
+def test_numbers_for_machines(logs):
+    shown = idealgas("relaxation", logs["exact"], logs["random"], "--every", 300, "--json")
+    assert shown.exit_code == 0
+    exact, random = json.loads(shown.stdout)["logs"]
+    assert (exact["path"], random["path"]) == (str(logs["exact"]), str(logs["random"]))
+    assert exact["acceptance"] is None
+    assert random["acceptance"]["collisions"] == 1500
+    assert exact["speed_distributions"]["trials"] is None
+    assert random["speed_distributions"]["trials"][:3] == [0, 300, 600]
+    for found in (exact, random):
+        assert found["relaxation_time"]["standard_error"] > 0
+        assert len(found["time"]) == len(found["kurtosis"]) == len(found["distance"]) == len(found["entropy"])
+        assert found["collisions_per_disc"][-1] == pytest.approx(30)
+
+
+def test_speeds_at_instants(logs):
+    shown = idealgas("relaxation", logs["exact"], "--every", 5)
+    assert shown.exit_code == 0
+    counts = [line.split() for line in shown.stdout.splitlines() if line.strip().startswith(("0 ", "5 ", "law "))]
+    assert counts[0] == ["0", "0.00", counts[0][2], "0", "0", "0", "100", "0", "0", "0", "0", "0"]
+    assert sum(map(int, counts[1][3:])) == 100
+    assert sum(map(float, counts[2][1:])) == pytest.approx(100, abs=0.5)
+
+
+def test_picture(logs, tmp_path):
+    drawn = idealgas("relaxation", logs["exact"], logs["random"], "--plot", tmp_path / "picture.svg")
+    assert drawn.exit_code == 0
+    assert (tmp_path / "picture.svg").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("falling",), "the kinetic energy of its discs is not constant: gravity"),
+        (("exact", "--from", 1e6), "no window from t = 1e+06"),
+        (("exact", "--from", 1, "--to", 1), "no window from t = 1 to 1"),
+        (("exact", "--to", 1e-9), "no two discs collide between t = 0 and 1e-09"),
+        (("exact", "--every", 1e-9), "instants are too many for a table (allowed <= 10000)"),
+        (("exact", "--plot", "picture.xyz"), "unknown kind of picture"),
+        (("exact", "none"), "cannot be read: No such file or directory"),
+    ],
+)
+def test_bad_input_is_one_line(logs, arguments, message):
+    paths = logs | {"none": "none.h5"}
+    result = idealgas("relaxation", *(paths.get(argument, argument) for argument in arguments))
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1

@@ -1,0 +1,198 @@
+"""`idealgas run` as a user meets it: what is printed, what is written, and what is refused."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from idealgas_cli.main import main
+from support import IDEALGAS, ROOT, called, idealgas, same_rows
+
+from idealgas.log import open_log
+
+CORNER = ROOT / "configs" / "corner.toml"
+ENDLESS = """
+box.size = [30, 30]
+run.until = 1e9
+[[species]]
+name = "gas"
+count = 100
+radius = 0.5
+temperature = 1
+placement = "lattice"
+"""
+
+
+def test_summary(tmp_path):
+    result = idealgas("run", CORNER, "-o", "run.h5", folder=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    for part in (
+        "run.h5",
+        "events",
+        "8",
+        "simulated time",
+        "energy drift",
+        "deepest overlap",
+        "wall time",
+        "file size",
+    ):
+        assert part in result.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
+
+
+def test_json(tmp_path):
+    result = idealgas("run", CORNER, "-o", "run.h5", "--json", folder=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    summary = json.loads(result.stdout)
+    assert (summary["events"], summary["disc_collisions"], summary["wall_hits"]) == (8, 2, 6)
+    assert (summary["completed"], summary["end_time"], summary["rows"]) == (True, 10.0, 10)
+    with open_log(tmp_path / "run.h5") as log:
+        assert log.summary == summary
+        assert log.command == f"idealgas run {CORNER} -o run.h5 --json"
+
+
+def test_overrides_come_last(tmp_path):
+    overrides = ("--set", "run.until=2", "--set", "run.events=3")
+    result = idealgas("run", CORNER, "-o", "run.h5", "--json", *overrides, folder=tmp_path)
+    assert json.loads(result.stdout)["events"] == 3
+    with open_log(tmp_path / "run.h5") as log:
+        assert (log.scene.run.until, log.scene.run.events) == (2.0, 3)
+
+
+def test_the_same_scene_gives_the_same_rows(tmp_path):
+    scene = ROOT / "configs" / "quickstart.toml"
+    for name in ("a.h5", "b.h5"):
+        assert idealgas("run", scene, "-o", name, "--set", "run.events=2000", folder=tmp_path).returncode == 0
+    with open_log(tmp_path / "a.h5") as a, open_log(tmp_path / "b.h5") as b:
+        assert all(same_rows(x, y) for x, y in zip(a.chunks(), b.chunks(), strict=True))
+
+
+def test_shipped_scenes(shipped_scene, tmp_path):
+    result = called("run", shipped_scene, "-o", "run.h5", "--json", "--set", "run.events=3000", folder=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    summary = json.loads(result.stdout)
+    assert summary["completed"]
+    assert summary["deepest_overlap"] <= 1e-12
+    if shipped_scene.stem == "cooling":  # loses energy, as it should
+        assert summary["energy_drift"] is None
+        assert summary["energy_change"] < 0
+    else:
+        assert abs(summary["energy_drift"]) <= 1e-12
+
+
+def test_an_existing_output_is_refused_and_left_alone(tmp_path):
+    output = tmp_path / "run.h5"
+    output.write_bytes(b"precious")
+    result = idealgas("run", CORNER, "-o", "run.h5", folder=tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr == "run.h5: exists already (--force replaces it)\n"
+    assert output.read_bytes() == b"precious"
+    assert idealgas("run", CORNER, "-o", "run.h5", "--force", folder=tmp_path).returncode == 0
+    with open_log(output) as log:
+        assert len(log) == 10
+
+
+@pytest.mark.parametrize(
+    ("output", "code", "message"),
+    [
+        ("missing/run.h5", 2, "missing/run.h5: no folder missing\n"),
+        ("folder", 2, "folder: is a folder\n"),
+        ("file/run.h5", 2, "file/run.h5: no folder file\n"),
+        pytest.param(
+            "/proc/run.h5", 1, "/proc/run.h5: cannot be written: ",
+            marks=pytest.mark.skipif(not Path("/proc/self").exists(), reason="no other folder is closed to root"),
+        ),
+    ],
+)  # fmt: skip
+def test_outputs_that_cannot_be(output, code, message, tmp_path):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    result = idealgas("run", CORNER, "-o", output, folder=tmp_path)
+    assert (result.returncode, result.stdout) == (code, "")
+    assert result.stderr.startswith(message)
+    assert result.stderr.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "folder"]
+
+
+def test_a_bad_scene_writes_nothing(invalid_case, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    overrides = [argument for override in invalid_case.overrides for argument in ("--set", override)]
+    result = CliRunner().invoke(main, ["run", str(invalid_case.path), "-o", "run.h5", *overrides])
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.splitlines() == invalid_case.lines
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_room_left_is_one_line_and_keeps_the_rows_so_far(tmp_path):
+    """The file may not grow beyond 2 MB."""
+    (tmp_path / "scene.toml").write_text(ENDLESS)
+    result = subprocess.run(
+        [IDEALGAS, "run", "scene.toml", "-o", "run.h5"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000)),
+    )
+    assert (result.returncode, result.stdout) == (1, "")
+    assert result.stderr == "run.h5: cannot be written: File too large\n"
+    with open_log(tmp_path / "run.h5") as log:
+        assert not log.complete
+        assert sum(len(block.time) for block in log.chunks()) == len(log)
+
+
+def test_ctrl_c_ends_the_run_with_a_readable_log(tmp_path):
+    (tmp_path / "scene.toml").write_text(ENDLESS)
+    output = tmp_path / "run.h5"
+    command = [IDEALGAS, "run", "scene.toml", "-o", "run.h5"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while process.poll() is None and not (output.exists() and os.path.getsize(output) > 1_000_000):
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=60)
+    assert (process.returncode, stderr) == (130, "")
+    assert "run.h5 (interrupted)" in stdout
+    with open_log(output) as log:
+        assert not log.complete
+        assert not log.unclosed
+        assert log.summary == {}
+        assert sum(len(block.time) for block in log.chunks()) == len(log) > 0
+        assert log.state_at(log.end_time).time == log.end_time
+    described = idealgas("info", "run.h5", folder=tmp_path)
+    assert (described.returncode, described.stderr) == (0, "")
+    assert "interrupted" in described.stdout
+
+
+@pytest.mark.interpreted
+def test_without_compilation(tmp_path):
+    result = idealgas("run", CORNER, "-o", "run.h5", "--json", folder=tmp_path, NUMBA_DISABLE_JIT="1")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert json.loads(result.stdout)["events"] == 8
+
+
+@pytest.mark.parametrize("arguments", [[], [CORNER], [CORNER, "-o"], [CORNER, "--fast", "-o", "x"]])
+def test_wrong_usage(arguments, tmp_path):
+    result = idealgas("run", *arguments, folder=tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "Error: " in result.stderr
+    assert "Traceback" not in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_clock_that_stands_still_is_one_line(tmp_path):
+    """A gate closes over a disc at the top of its flight: at rest, it collides with it without end."""
+    (tmp_path / "scene.toml").write_text("""
+disc = [{ position = [2.4, 0.55], velocity = [0.1, 0.1], radius = 0.2 }]
+wall = [{ from = [0, 0.5], to = [6, 0.5], closes_at = 0.1 }]
+box.size = [6, 1.5]
+gravity.acceleration = [0, -1]
+run = { until = 3, method = "brute_force" }
+""")
+    result = idealgas("run", "scene.toml", "-o", "run.h5", folder=tmp_path)
+    assert result.returncode == 2
+    assert result.stderr.splitlines()[-1].startswith("after t = 0.1: the clock stands still: a disc collides without")
+    assert idealgas("info", "run.h5", folder=tmp_path).returncode == 0

@@ -1,0 +1,101 @@
+"""The estimators on energies drawn from the ensembles they are made for."""
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
+from idealgas.analysis.heat_capacity.energy_series import EnergySeries
+from idealgas.analysis.heat_capacity.measure import (
+    BATH,
+    CLOSED,
+    PISTON,
+    Measured,
+    _bath_fluctuations,
+    _kinetic_fluctuations,
+)
+
+N = 20
+
+
+@pytest.mark.parametrize("dof", [2, 3], ids=["smooth", "rough"])
+def test_heat_bath(dof):
+    """Energies of the canonical ensemble follow a Gamma law; four standard errors, and the interval's coverage."""
+    random, hits = np.random.default_rng(1), 0
+    for _ in range(100):
+        energy = 1.5 * random.gamma(dof * N / 2, size=2000)
+        found = _bath_fluctuations(EnergySeries(energy, energy, None, 0.0), N, 1.5, dof / 2, False)
+        low, high = found.interval()
+        hits += low < dof / 2 < high
+    assert 85 <= hits <= 100
+
+
+@pytest.mark.parametrize(
+    ("other", "piston"), [(0.5, False), (1.0, False), (1.0, True)], ids=["spin", "height", "piston"]
+)
+def test_isolated_gas(other, piston):
+    """K/E follows Beta(N, b): b = N/2 with spin, N with a height, and N + 3/2 with a piston."""
+    random, hits = np.random.default_rng(2), 0
+    b = other * N + (1.5 if piston else 0.0)
+    for _ in range(100):
+        kinetic = 37.0 * random.beta(N, b, size=3000)
+        series = EnergySeries(kinetic, np.full(3000, 37.0), None, 0.0)
+        low, high = _kinetic_fluctuations(series, N, 2 * N, 1 + other, piston).interval()
+        hits += low < 1 + other < high
+    assert 85 <= hits <= 100
+
+
+def measured(kind, energy, temperature, errors, routes=None, theory=1.0, excess=None):
+    e, t = Estimate(energy, errors[0], 100.0), Estimate(temperature, errors[1], 100.0)
+    return Measured("run.h5", kind, N, e, t, "any", routes or {}, theory, excess)
+
+
+@pytest.mark.parametrize("errors", [(0.0, 0.01), (0.01, 0.0), (0.01, 0.005)], ids=["exact E", "exact T", "neither"])
+def test_slope(errors):
+    random, deviations = np.random.default_rng(3), []
+    for _ in range(200):
+        logs = [
+            measured(
+                CLOSED,
+                1.5 * t + random.normal(0, errors[0] or 1e-99),
+                t + random.normal(0, errors[1] or 1e-99),
+                errors,
+                theory=1.5,
+            )
+            for t in (0.5, 1.0, 1.5, 2.0)
+        ]
+        (route,) = combine_heat_capacity(logs).routes
+        assert route.name == "dE/dT"
+        deviations.append(route.value.deviation)
+    assert np.std(deviations) == pytest.approx(1.0, abs=0.2)  # 4/√(2·200)
+    assert abs(np.mean(deviations)) < 0.3
+
+
+def test_routes_that_do_not_apply_say_why():
+    logs = [measured(BATH, 1.0, 1.0, (0.01, 0.0), {"Var(E)/T²": Estimate(1.0, 0.02, 100.0, 1.0)})]
+    found = combine_heat_capacity(logs)
+    assert [route.name for route in found.routes] == ["Var(E)/T²"]
+    assert set(found.refused) == {"dE/dT", "E/T", "fluctuations of the kinetic energy", "γ"}
+
+
+def test_gamma_takes_the_best_measured_capacity_at_constant_area():
+    c_a = measured(CLOSED, 1.0, 1.0, (0.0, 0.01), {"E/T": Estimate(1.01, 0.01, 100.0, 1.0)})
+    c_p = measured(
+        PISTON,
+        2.0,
+        1.0,
+        (0.0, 0.01),
+        {"fluctuations of the kinetic energy": Estimate(2.02, 0.02, 100.0, 2.0)},
+        2.0,
+        1.0,
+    )
+    gamma = combine_heat_capacity([c_a, c_p]).routes[-1]
+    assert gamma.name == "γ"
+    assert (gamma.value.value, gamma.value.theory) == pytest.approx((2.0, 2.0))
+    alone = combine_heat_capacity([c_p]).routes[-1]
+    assert alone.value.value == pytest.approx(2.02 / 1.02)
+
+
+def test_json_comes_back():
+    log = measured(PISTON, 2.0, 1.0, (0.0, 0.01), {"E/T": Estimate(1.0, 0.1, float("inf"), 1.0)}, 2.0, 1.0)
+    assert Measured.from_dict(log.as_dict()) == log

@@ -1,0 +1,79 @@
+import math
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
+from idealgas.analysis.theory import hard_discs
+from idealgas.errors import UserError
+
+
+def samples(phis, error, number=1000, runs=4, seed=0):
+    """Runs whose Z is theory's at their N with noise of a known size."""
+    random = np.random.default_rng(seed)
+    for phi in phis:
+        z = float(hard_discs.compressibility(phi, number))
+        for value in random.normal(z, error * z, runs):
+            yield Sample(phi, number, Estimate(float(value), error * z, 500.0, z))
+
+
+def test_virial_coefficients_come_back():
+    """Four standard errors; the errors themselves must be small enough to tell B2 to 0.5 %."""
+    found = equation_of_state(list(samples(np.linspace(0.02, 0.25, 12), 2e-4, seed=3)))
+    assert [state.runs for state in found.states] == [4] * 12
+    for coefficient in (found.b2, found.b3):
+        assert abs(coefficient.deviation) < 4
+    assert found.b2.standard_error < 0.005 * found.b2.value
+    assert found.check()
+
+
+def test_spread_of_the_fit_is_its_standard_error():
+    phis = np.linspace(0.02, 0.25, 8)
+    fits = [equation_of_state(list(samples(phis, 1e-3, seed=k))) for k in range(100)]
+    for name in ("b2", "b3"):
+        deviations = [getattr(fit, name).deviation for fit in fits]
+        assert np.std(deviations) == pytest.approx(1.0, abs=0.3)  # 4/√(2·100)
+        assert abs(np.mean(deviations)) < 0.4
+
+
+def test_a_wrong_pressure_is_found():
+    wrong = [
+        Sample(
+            s.packing_fraction,
+            s.number,
+            Estimate(1.01 * s.compressibility.value, 1e-3, 500.0, s.compressibility.theory),
+        )
+        for s in samples([0.1, 0.2], 1e-4)
+    ]
+    assert not equation_of_state(wrong).check()
+
+
+def test_few_states_give_no_coefficients_and_frozen_ones_nothing():
+    few = equation_of_state(list(samples([0.1, 0.2], 1e-3)))
+    assert few.b2 is None
+    assert few.b3 is None
+    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75"):
+        equation_of_state([Sample(0.75, 100, Estimate(9.0, 0.1, 10.0))])
+
+
+def test_resummed_series_beside_pade_approximants():
+    """Both Padé approximants of the ten known terms agree with it within 1e-4 up to φ = 0.55."""
+    series = [b * 2.0**k for k, b in enumerate(hard_discs.VIRIAL)]
+    for above, below in ((4, 5), (5, 4)):
+        matrix = [
+            [series[above + k - j] if above + k >= j else 0.0 for j in range(1, below + 1)] for k in range(1, below + 1)
+        ]
+        q = Polynomial([1.0, *np.linalg.solve(matrix, [-series[above + k] for k in range(1, below + 1)])])
+        p = Polynomial((Polynomial(series) * q).coef[: above + 1])
+        phi = np.linspace(0.01, 0.55, 55)
+        assert hard_discs.compressibility(phi) == pytest.approx(p(phi) / q(phi), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("expansion", "z"), [(10, 1.21068), (5, 1.49838), (3, 2.0771), (2, 3.4243), (1.8, 4.1715), (1.6, 5.4963)]
+)
+def test_resummed_series_beside_molecular_dynamics(expansion, z):
+    """Area over that of close packing: Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985); theirs are good to 1e-4."""
+    assert hard_discs.compressibility(math.pi / math.sqrt(12) / expansion) == pytest.approx(z, rel=2e-4)

@@ -1,0 +1,200 @@
+"""Measures of the way to equilibrium, on samples whose law is known and on a small log counted by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.statistics import ks_distance
+from idealgas.analysis.relaxation import measure as module
+from idealgas.analysis.relaxation.acceptance import acceptance
+from idealgas.analysis.relaxation.combine import combine_relaxation
+from idealgas.analysis.relaxation.figure import relaxation_figure
+from idealgas.analysis.relaxation.measure import (
+    colliding_span,
+    critical_distance,
+    relative_entropy,
+    relaxation,
+)
+from idealgas.analysis.relaxation.speeds import speed_distributions
+from idealgas.analysis.relaxation.velocities import collisions_per_disc, reduced_energy, reduced_energy_cdf
+from idealgas.errors import UserError
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+scene.seed = 5
+box.size = [10, 10]
+species = [{name = "gas", count = 80, radius = 0.1, speed = 2.0}]
+run.collisions_per_disc = 60
+"""
+STANDARD_ERRORS = 4
+
+
+@pytest.fixture(scope="module")
+def make_log(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("relaxation")
+
+    def make(text):
+        path = folder / f"{abs(hash(text))}.h5"
+        if not path.exists():
+            simulate(parse_scene(text), path)
+        return open_log(path)
+
+    return make
+
+
+def test_distance_of_a_few_values():
+    """Of one energy: the larger part of the law on either side of it."""
+    assert ks_distance(np.array([math.log(4)]), reduced_energy_cdf) == pytest.approx(0.75)
+    assert ks_distance(np.array([1e-12, math.log(2)]), reduced_energy_cdf) == pytest.approx(0.5)
+    places = -np.log(1 - (np.arange(10) + 0.5) / 10)
+    assert ks_distance(places, reduced_energy_cdf) == pytest.approx(0.05)
+
+
+def test_entropy_of_equal_energies_and_of_the_law():
+    """Equal energies fill one of 32 cells; of samples of the law the mean is 0 within its error √(31/2)/N per gas."""
+    assert relative_entropy(np.ones(3200)) == pytest.approx(math.log(32) - 31 / 6400)
+    random = np.random.default_rng(3)
+    found = [relative_entropy(random.exponential(size=2000)) for _ in range(200)]
+    assert abs(np.mean(found)) < STANDARD_ERRORS * math.sqrt(31 / 2) / 2000 / math.sqrt(200)
+
+
+def test_entropy_of_a_gas_that_is_too_hot():
+    """∫ p ln(p/e^(-x)) dx of p = e^(-x/a)/a is a - 1 - ln a, of which 32 cells see over 90 %.
+
+    The error is that of the mean of ln(p/e^(-x)), which varies by a - 1.
+    """
+    energies = np.random.default_rng(1).exponential(1.3, size=1_000_000)
+    beyond = (1 - np.arange(33) / 32) ** (1 / 1.3)
+    share = -np.diff(beyond)
+    in_cells = (share * np.log(32 * share)).sum()
+    assert relative_entropy(energies) == pytest.approx(in_cells, abs=STANDARD_ERRORS * 0.3 / 1000)
+    assert 0.9 < in_cells / (0.3 - math.log(1.3)) < 1
+
+
+@pytest.mark.parametrize("number", [20, 100, 1000])
+def test_one_gas_in_twenty_exceeds_the_critical_distance(number):
+    """Energies that add up to a fixed sum are exponential ones over their mean."""
+    random, gases = np.random.default_rng(number), 4000
+    energies = random.exponential(size=(gases, number))
+    energies /= energies.mean(axis=1, keepdims=True)
+    share = np.mean([ks_distance(gas, reduced_energy_cdf) > critical_distance(number) for gas in energies])
+    assert abs(share - 0.05) < STANDARD_ERRORS * math.sqrt(0.05 * 0.95 / gases)
+
+
+def test_decay_times_are_found():
+    time = np.linspace(0, 40, 321)
+    for tau in (0.5, 2.9, 30.0):
+        assert module.decay_time(time, 2 - np.exp(-time / tau), 2.0) == pytest.approx(tau, rel=1e-4)
+
+
+def test_decay_times_are_found_in_collisions_that_set_in_late():
+    collisions = np.maximum(np.linspace(-3, 37, 321), 0)
+    assert module.decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
+
+
+def test_reduced_energies_of_both_species_have_mean_one(make_log):
+    """In the mean over the discs, whatever their masses, about the velocity of the centre of mass."""
+    text = SCENE.replace("}]", '}, {name = "heavy", count = 20, radius = 0.1, mass = 10, speed = 1.0}]')
+    with make_log(text) as log:
+        state = log.state_at(log.end_time)
+        found = reduced_energy(log, state.velocity, ensemble(log))
+    assert found.mean() == pytest.approx(1)
+    energy = log.discs.mass * (state.velocity**2).sum(axis=1) / 2
+    assert found == pytest.approx(energy / energy.mean())
+
+
+def test_collisions_are_counted_for_both_discs(make_log):
+    with make_log(SCENE) as log:
+        (rows,) = log.chunks(("time", "partner"))
+        time = np.array([0.0, rows.time[99], rows.time[-1]])
+        found = collisions_per_disc(log, time)
+        assert found[0] == 0
+        assert found[1] * 80 == (rows.partner[rows.time <= time[1]] >= 0).sum()
+        assert found[2] * 80 == (rows.partner >= 0).sum() == 4800
+        late = collisions_per_disc(log, time[1:])
+        assert late[1] == found[2] - found[1]
+
+
+def test_forty_collisions_a_disc_are_looked_at(make_log):
+    with make_log(SCENE) as log:
+        first, last = colliding_span(log, None, None)
+        assert first == 0
+        assert collisions_per_disc(log, np.array([0.0, last]))[-1] == pytest.approx(40, abs=2 / 80)
+        assert colliding_span(log, 1.0, 2.0) == (1.0, 2.0)
+        assert colliding_span(log, None, log.end_time) == (0, log.end_time)
+        with pytest.raises(UserError, match="no two discs collide between t = 0 and 1e-09"):
+            colliding_span(log, None, 1e-9)
+
+
+def test_what_was_seen_of_equal_speeds(make_log):
+    with make_log(SCENE) as log:
+        found = relaxation(log)
+        late = log.state_at(found.time[40]).velocity
+    assert found.kurtosis[0] == pytest.approx(1, abs=1e-12)
+    assert found.distance[0] == pytest.approx(1 - math.exp(-1), abs=1e-12)
+    square = (late**2).sum(axis=1)
+    assert found.kurtosis[40] == pytest.approx((square**2).mean() / square.mean() ** 2)
+    assert found.equilibrium_kurtosis == 2 * 160 / 162
+    assert found.collisions[-1] == pytest.approx(40, abs=2 / 80)
+    k = found.first_indistinguishable
+    assert found.distance[k] < found.critical_distance <= found.distance[:k].min()
+    assert found.in_collisions.value / found.in_time.value == pytest.approx(
+        found.collisions[-1] / found.time[-1], rel=0.1
+    )
+    axes = relaxation_figure(combine_relaxation([found, found])).axes
+    assert all("(" in axis.get_xlabel() and "(" in axis.get_ylabel() for axis in axes)
+
+
+def test_of_a_gas_in_equilibrium_no_relaxation_is_seen(make_log):
+    with make_log(SCENE.replace("speed = 2.0", "temperature = 1.0")) as log:
+        found = relaxation(log)
+    assert found.in_time is None
+    assert found.first_indistinguishable is not None
+    assert found.as_dict()["relaxation_time"] is None
+
+
+@pytest.mark.parametrize(
+    ("extra", "message"),
+    [
+        ("gravity.acceleration = [0, -1]", "the kinetic energy of its discs is not constant: gravity"),
+        ("log.events = false", r"has no events \(made with log.events = false\)"),
+    ],
+)
+def test_gases_that_do_not_tend_to_the_law(make_log, extra, message):
+    with make_log(SCENE + extra) as log, pytest.raises(UserError, match=message):
+        relaxation(log)
+
+
+def test_development_counts_every_disc_at_every_instant(make_log):
+    with make_log(SCENE) as log:
+        found = speed_distributions(log, 1.0, end=5.0)
+        at_two = np.hypot(*log.state_at(2.0).velocity.T)
+    assert found.time.tolist() == [0, 1, 2, 3, 4, 5]
+    assert found.counts.sum(axis=1).tolist() == [80] * 6
+    assert found.counts[0].tolist() == [0, 0, 0, 80, 0, 0, 0, 0, 0]
+    assert found.rms == pytest.approx(2)
+    assert found.counts[2].tolist() == np.histogram(at_two, [*found.edges, np.inf])[0].tolist()
+    assert found.expected.sum() == pytest.approx(80)
+    assert found.expected[-1] == pytest.approx(80 * math.exp(-(2.4**2)))
+    assert found.trials is None
+
+
+def test_development_by_trials(make_log):
+    with make_log(
+        SCENE.replace("run.collisions_per_disc = 60", "run.trials = 2500\nrun.method = 'monte_carlo'")
+    ) as log:
+        found, made = speed_distributions(log, 1000), acceptance(log)
+        (rows,) = log.chunks(("time", "trial"))
+    assert found.trials.tolist() == [0, 1000, 2000]
+    assert found.collisions[1] * 80 == (rows.trial <= 1000).sum()
+    assert found.time[1] == rows.time[rows.trial <= 1000][-1]
+    assert (made.number, made.collisions, made.published) == (2500, len(rows.time) // 2, None)
+
+
+def test_a_table_without_end_is_refused(make_log):
+    with make_log(SCENE) as log, pytest.raises(UserError, match="instants are too many for a table"):
+        speed_distributions(log, 1e-9)

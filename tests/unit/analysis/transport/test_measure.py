@@ -1,0 +1,81 @@
+"""Transport against slow and obvious computations, and against cases whose answer is known."""
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.transport.measure import autocorrelation, mean_square_displacement, transport
+from idealgas.analysis.transport.pair_distribution import chance_within
+from idealgas.analysis.transport.trajectories import sample_trajectories
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+scene.seed = 3
+box = {{size = [6, 5], left = "{x}", right = "{x}", bottom = "{y}", top = "{y}"}}
+species = [{{name = "gas", count = 12, radius = 0.3, temperature = 1.0}}]
+run.collisions_per_disc = 60
+"""
+
+
+@pytest.fixture(
+    scope="module", params=[("reflecting", "reflecting"), ("periodic", "periodic"), ("periodic", "reflecting")], ids=str
+)
+def log(request, tmp_path_factory):
+    path = tmp_path_factory.mktemp("transport") / "small.h5"
+    x, y = request.param
+    simulate(parse_scene(SCENE.format(x=x, y=y)), path)
+    with open_log(path) as log:
+        yield log
+
+
+def test_trajectories_are_those_of_the_frames(log):
+    times = np.linspace(0.3 * log.end_time, log.end_time, 40)
+    discs = np.array([1, 5, 11])
+    places, velocities = sample_trajectories(log, times, discs)
+    for k, state in enumerate(log.frames(times)):
+        image = 0 if state.image is None else state.image[discs]
+        assert places[k] == pytest.approx(state.position[discs] + image * np.array(log.box), abs=1e-12)
+        assert velocities[k] == pytest.approx(state.velocity[discs], abs=1e-13)
+    assert np.abs(np.diff(places, axis=0)).max() < 5 * np.diff(times)[0] * np.abs(velocities).max()
+
+
+def test_correlations_are_plain_averages():
+    random = np.random.default_rng(1)
+    series = random.normal(size=(2, 30, 3, 2)).cumsum(axis=1)
+    correlation, displacement = autocorrelation(series), mean_square_displacement(series)
+    for lag in range(30):
+        early, late = series[:, : 30 - lag], series[:, lag:]
+        assert correlation[:, lag] == pytest.approx((early * late).sum(axis=3).mean(axis=(1, 2)), rel=1e-9, abs=1e-9)
+        assert displacement[:, lag] == pytest.approx(
+            ((late - early) ** 2).sum(axis=3).mean(axis=(1, 2)), rel=1e-9, abs=1e-9
+        )
+
+
+@pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
+def test_chance_of_a_distance(periodic):
+    """Against points thrown at random; four standard errors."""
+    random = np.random.default_rng(4)
+    reach = [(5.0, 4.0) if not periodic[0] else (5.0, 5.0), (3.0, 3.5) if not periodic[1] else (3.0, 3.0)]
+    n, r = 200_000, np.array([0.5, 1.0, 1.4])
+    apart = [random.uniform(-a / 2, a / 2, n) - random.uniform(-b / 2, b / 2, n) for a, b in reach]
+    for axis in range(2):
+        if periodic[axis]:
+            apart[axis] -= reach[axis][0] * np.round(apart[axis] / reach[axis][0])
+    distance = np.hypot(*apart)
+    for radius, chance in zip(r, chance_within(r, reach, periodic), strict=True):
+        assert (distance < radius).mean() == pytest.approx(chance, abs=4 * np.sqrt(chance / n))
+
+
+def test_a_single_result_holds_together(log):
+    result = transport(log)
+    (diffusion,), (g,) = result.diffusion, result.pair_distributions
+    assert diffusion.correlation[0] == pytest.approx(1.0)
+    assert diffusion.displacement[0] == pytest.approx(0.0, abs=1e-12)
+    lag, temperature = diffusion.lag[1], 1.0
+    assert diffusion.displacement[1] == pytest.approx(2 * temperature * lag**2, rel=0.3)  # ballistic
+    (rate,), (contact,) = result.collision_rates, result.contacts
+    assert contact.value.deviation == pytest.approx(rate.rate.deviation, rel=1e-9)
+    assert g.edges[0] == 0.6
+    assert result.walled == (not all(log.periodic))
+    assert all(abs(estimate.deviation) < 4 for estimate in (rate.rate, contact.value))

@@ -1,0 +1,79 @@
+"""Absent effects leave no machine code behind: from a cold cache, numba compiles what it needs and nothing else."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from idealgas.physics.effects import Effects
+from idealgas.scene import EFFECTS
+
+MARKERS = {
+    "gravity": {"crossings.accelerated_crossing", "fall.time_to_plane", "wall.accelerated_body_delay"},
+    "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},
+    "wall segments": {"wall.segment_contact", "wall.segment_normal"},
+    "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
+    "thermal walls": {"thermal.uniform"},
+    "piston": {"piston.advance_piston", "piston.piston_contact", "piston.collide_with_piston"},
+}
+"""Functions that only make sense with an effect. Restitution has none: its numbers would be read in those of others."""
+
+PROGRAM = """
+import json, sys
+from numba.core.event import RecordingListener, install_listener
+from idealgas.engine.event_driven.method import advance_events
+from idealgas.study.bench.effects import effect_scene
+from idealgas.run.simulate import simulate
+
+called = set()
+if sys.argv[2] == "all":
+    sys.setprofile(lambda frame, event, _: called.add((frame.f_globals.get("__name__"), frame.f_code.co_name)))
+compilations = RecordingListener()
+with install_listener("numba:compile", compilations):
+    simulate(effect_scene("all" if sys.argv[2] == "all" else None, 300), sys.argv[1])
+sys.setprofile(None)
+for _, event in compilations.buffer:
+    function = event.data["dispatcher"].py_func
+    called.add((function.__module__, function.__name__))
+names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
+signatures = getattr(advance_events, "signatures", [])
+types = [str(kind) for kind in signatures[0][3].types] if signatures else []
+print(json.dumps([sorted(names), types]))
+"""
+
+
+def run(folder, effects: str, **environment: str) -> tuple[set[str], list[str]]:
+    """Functions that were compiled (or, for "all", interpreted) in a run, and the types of its effects."""
+    variables = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache"), **environment}
+    command = [sys.executable, "-W", "ignore", "-c", PROGRAM, str(folder / "run.h5"), effects]
+    result = subprocess.run(command, env=variables, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    names, types = json.loads(result.stdout)
+    return set(names), types
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """A plain box, compiled without optimisation, which takes half of the time."""
+    return run(tmp_path_factory.mktemp("plain"), "none", NUMBA_OPT="0", NUMBA_DISABLE_JIT="0")
+
+
+def test_all_effects_are_none_for_the_kernel(plain):
+    _, types = plain
+    assert types == ["none"] * len(Effects._fields)
+
+
+@pytest.mark.parametrize("effect", MARKERS)
+def test_nothing_of_an_absent_effect_is_compiled(plain, effect):
+    compiled, _ = plain
+    assert "method.advance_events" in compiled
+    assert not compiled & MARKERS[effect]
+
+
+def test_with_the_effects_the_same_functions_run(tmp_path):
+    """What the names above are worth: each is called where its effect is."""
+    called, _ = run(tmp_path, "all", NUMBA_DISABLE_JIT="1")
+    assert set().union(*MARKERS.values()) <= called
+    assert set(MARKERS) | {"restitution"} == set(EFFECTS)

@@ -1,0 +1,173 @@
+"""Exported files, read by the packages they are for."""
+
+import sys
+import warnings
+
+import h5py
+import numpy as np
+import pytest
+from log_compare import scene_of
+
+from idealgas.log import LogError, open_log
+from idealgas.log.export.export import FORMATS, export, frame_times
+from idealgas.run.simulate import simulate
+
+FRAMES = 5
+
+
+@pytest.fixture(scope="module", params=["mixture", "rough", "periodic"])
+def log(request, tmp_path_factory):
+    path = tmp_path_factory.mktemp("export") / "run.h5"
+    simulate(scene_of(request.param, "run.events=4000"), path)
+    with open_log(path) as log:
+        yield log
+
+
+@pytest.fixture(scope="module")
+def frames(log):
+    return frame_times(log, str(FRAMES)), list(log.frames(frame_times(log, str(FRAMES))))
+
+
+def read_table(path):
+    pyarrow_csv = pytest.importorskip("pyarrow.csv")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    table = pyarrow_csv.read_csv(path) if path.suffix == ".csv" else parquet.read_table(path)
+    return {name: table[name].to_numpy() for name in table.column_names}
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_events_as_a_table(log, kind, tmp_path):
+    path = tmp_path / f"events.{kind}"
+    assert export(log, kind, path) == len(log)
+    table = read_table(path)
+    stored = next(log.chunks())
+    for name in ("time", "disc", "partner"):
+        assert np.array_equal(table[name], getattr(stored, name))
+    assert set(table["kind"]) <= {"disc", "wall"}
+    assert np.array_equal(table["kind"] == "wall", stored.partner < 0)
+    for axis, letter in enumerate("xy"):
+        assert np.array_equal(table[letter], stored.position[:, axis])
+        assert np.array_equal(table[f"v{letter}"], stored.velocity[:, axis])
+    assert ("angular_velocity" in table) == ("angular_velocity" in log.columns)
+    assert ("image_x" in table) == ("image" in log.columns)
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_frames_as_a_table(log, frames, kind, tmp_path):
+    times, states = frames
+    path = tmp_path / f"frames.{kind}"
+    assert export(log, kind, path, times) == FRAMES
+    table, number = read_table(path), len(log.discs)
+    assert np.array_equal(table["time"], np.repeat(times, number))
+    assert np.array_equal(table["disc"], np.tile(np.arange(number), FRAMES))
+    assert table["species"][0] == log.discs.species_names[log.discs.species[0]]
+    assert np.array_equal(table["x"], np.concatenate([state.position[:, 0] for state in states]))
+    assert np.array_equal(table["vy"], np.concatenate([state.velocity[:, 1] for state in states]))
+
+
+def test_gsd(log, frames, tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+    times, states = frames
+    assert export(log, "gsd", tmp_path / "run.gsd", times) == FRAMES
+    with hoomd.open(str(tmp_path / "run.gsd")) as file:
+        assert len(file) == FRAMES
+        for time, state, frame in zip(times, states, file, strict=True):
+            assert frame.log["time"] == time
+            assert frame.configuration.dimensions == 2
+            assert frame.configuration.box[:3].tolist() == pytest.approx([*log.box, 0])
+            centred = (state.position - np.array(log.box) / 2).astype(np.float32)
+            assert np.array_equal(frame.particles.position[:, :2], centred)
+            assert not frame.particles.position[:, 2].any()
+            assert np.array_equal(frame.particles.velocity[:, :2], state.velocity.astype(np.float32))
+            assert np.array_equal(frame.particles.diameter, (2 * log.discs.radius).astype(np.float32))
+            assert np.array_equal(frame.particles.mass, log.discs.mass.astype(np.float32))
+            assert frame.particles.types == list(log.discs.species_names)
+            assert np.array_equal(frame.particles.typeid, log.discs.species)
+
+
+def test_extended_xyz(log, frames, tmp_path):
+    ase = pytest.importorskip("ase.io")
+    times, states = frames
+    assert export(log, "extxyz", tmp_path / "run.extxyz", times) == FRAMES
+    read = ase.read(tmp_path / "run.extxyz", index=":")
+    for time, state, atoms in zip(times, states, read, strict=True):
+        assert atoms.info["Time"] == time
+        assert atoms.pbc.tolist() == [*log.periodic, False]
+        assert np.diag(atoms.cell)[:2].tolist() == list(log.box)
+        assert np.array_equal(atoms.positions[:, :2], state.position)
+        assert np.array_equal(atoms.arrays["velo"][:, :2], state.velocity)
+        assert np.array_equal(atoms.arrays["radius"], log.discs.radius)
+        assert atoms.arrays["type"][-1] == log.discs.species_names[log.discs.species[-1]]
+
+
+def test_h5md_in_three_dimensions(log, frames, tmp_path):
+    times, states = frames
+    path = tmp_path / "run.h5md"
+    assert export(log, "h5md3d", path, times) == FRAMES
+    with h5py.File(path) as file:
+        group = file["particles/trajectory"]
+        assert np.array_equal(group["position/value"][..., :2], [state.position for state in states])
+        assert np.array_equal(group["velocity/time"], times)
+        assert ("edges" in group["box"]) == any(log.periodic)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mda = pytest.importorskip("MDAnalysis")
+        universe = mda.Universe.empty(len(log.discs), trajectory=False)
+        universe.load_new(str(path), format="H5MD", convert_units=False)
+        assert len(universe.trajectory) == FRAMES
+        for step, state in zip(universe.trajectory, states, strict=True):
+            assert np.array_equal(step.positions[:, :2], state.position.astype(np.float32))
+            assert not step.positions[:, 2].any()
+
+
+def test_choices_of_frames(log):
+    assert frame_times(log, "3").tolist() == [0.0, log.end_time / 2, log.end_time]
+    step = log.end_time / 4.5
+    assert frame_times(log, f"every={step}").tolist() == [k * step for k in range(5)]
+    for choice in ("0", "-1", "x", "every=0", "every=x", "every=nan", "each=1", "2.5", "every="):
+        with pytest.raises(LogError, match="no choice of frames"):
+            frame_times(log, choice)
+
+
+def test_an_existing_file_stays(log, tmp_path):
+    (tmp_path / "run.csv").write_text("precious")
+    with pytest.raises(LogError, match="exists already"):
+        export(log, "csv", tmp_path / "run.csv")
+    assert (tmp_path / "run.csv").read_text() == "precious"
+    pytest.importorskip("pyarrow")
+    assert export(log, "csv", tmp_path / "run.csv", force=True) == len(log)
+    assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
+
+
+@pytest.mark.parametrize("kind", ["gsd", "extxyz", "h5md3d"])
+def test_events_need_a_table(log, kind, tmp_path):
+    with pytest.raises(LogError, match="has no room for events"):
+        export(log, kind, tmp_path / "out")
+
+
+@pytest.mark.parametrize(("kind", "package"), [("csv", "pyarrow"), ("parquet", "pyarrow"), ("gsd", "gsd.hoomd")])
+def test_a_missing_package_is_named(log, kind, package, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(LogError, match=rf"{kind} needs {package}: pip install 'idealgas\[export\]'"):
+        export(log, kind, tmp_path / "out", [0.0])
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_gas_without_positions_has_tables_only(tmp_path):
+    simulate(scene_of("novak-bortz", "run.events=300"), tmp_path / "run.h5")
+    pytest.importorskip("pyarrow")
+    with open_log(tmp_path / "run.h5") as log:
+        assert export(log, "csv", tmp_path / "events.csv") == len(log)
+        assert export(log, "csv", tmp_path / "frames.csv", [0.0]) == 1
+        assert "x" not in read_table(tmp_path / "events.csv")
+        for kind in set(FORMATS) - {"csv", "parquet"}:
+            with pytest.raises(LogError, match="no positions"):
+                export(log, kind, tmp_path / "out", [0.0])
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_a_table_without_events_has_its_columns(kind, tmp_path):
+    simulate(scene_of("mixture", "run.until=1e-9"), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert export(log, kind, tmp_path / f"events.{kind}") == 0
+    assert list(read_table(tmp_path / f"events.{kind}")) == ["time", "disc", "partner", "kind", "x", "y", "vx", "vy"]

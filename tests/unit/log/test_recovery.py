@@ -1,0 +1,185 @@
+"""Logs opened for writing again: after their writer died, and to go on from a checkpoint."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+import pytest
+from log_samples import STEP, check, rows, write_log, write_rows
+from support import ROOT
+
+from idealgas.events import BLOCK, EventBatch
+from idealgas.log import LogError, LogWriter, open_log, recover
+
+SAMPLES = ROOT / "tests" / "log_samples.py"
+
+
+def start_writer(path, compression="gzip"):
+    """A process that writes a log, and has already written some of it."""
+    child = subprocess.Popen([sys.executable, SAMPLES, path, compression, "499"])
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        time.sleep(0.05)
+        try:
+            with open_log(path) as log:
+                if len(log) > 2000:
+                    return child
+        except LogError:
+            assert child.poll() is None
+    child.kill()
+    child.wait()
+    raise TimeoutError
+
+
+@pytest.fixture(scope="module", params=["gzip", "none"])
+def left(request, tmp_path_factory):
+    """A log whose writer was killed."""
+    path = tmp_path_factory.mktemp("log") / "run.h5"
+    child = start_writer(path, request.param)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    return path
+
+
+def copied(path, folder):
+    (folder / "run.h5").write_bytes(path.read_bytes())
+    return folder / "run.h5"
+
+
+def assert_plain(path, stop):
+    """h5py opens it, and all columns have just these rows."""
+    with h5py.File(path) as file:
+        for name, values in zip(EventBatch._fields, rows(0, stop), strict=True):
+            assert values is None or np.array_equal(file["events"][name][:], values)
+        assert len({len(column) for column in file["checkpoints"].values()}) == 1
+
+
+def test_a_living_writer_is_left_alone(tmp_path):
+    path = tmp_path / "run.h5"
+    child = start_writer(path)
+    try:
+        with open_log(path) as log:
+            assert log.live
+            before = check(log)
+            log.refresh()
+            assert check(log) >= before
+        for refused in (recover, LogWriter.resume):
+            with pytest.raises(LogError, match="another process has this file open"):
+                refused(path)
+        assert child.poll() is None
+    finally:
+        child.kill()
+        child.wait()
+    with open_log(path) as log:
+        assert not log.live
+
+
+def test_a_dead_writers_log_is_read_as_it_is(left):
+    before = left.read_bytes()
+    with open_log(left) as log:
+        assert check(log) > 2000
+        assert (log.unclosed, log.live, log.complete) == (True, False, False)
+    assert left.read_bytes() == before
+    with pytest.raises(OSError, match="already open"):
+        h5py.File(left)
+
+
+def test_recovery_in_place(left, tmp_path):
+    path = copied(left, tmp_path)
+    with open_log(path) as log:
+        stop, checkpoints = len(log), len(log.checkpoints)
+    assert recover(path) == stop
+    with open_log(path) as log:
+        assert check(log) == stop
+        assert (log.unclosed, log.complete, len(log.checkpoints)) == (False, False, checkpoints)
+    assert_plain(path, stop)
+    again = path.read_bytes()
+    assert recover(path) == stop
+    assert path.read_bytes() == again
+
+
+def test_recovery_of_a_copy(left, tmp_path):
+    before = left.read_bytes()
+    stop = recover(left, tmp_path / "copy.h5")
+    assert left.read_bytes() == before
+    assert_plain(tmp_path / "copy.h5", stop)
+    with pytest.raises(LogError, match="exists already"):
+        recover(left, tmp_path / "copy.h5")
+
+
+@pytest.mark.parametrize("torn", ["events/velocity", "checkpoints/position"])
+def test_a_chunk_torn_while_it_was_rewritten(left, tmp_path, torn):
+    """Beyond the committed rows anything may stand."""
+    path = copied(left, tmp_path)
+    with h5py.File(path, swmr=True) as file, open_log(path) as log:
+        stop, count = check(log), log.commit.rows[torn.partition("/")[0]]
+        column = file[torn]
+        within = count % column.chunks[0]
+        where = column.id.get_chunk_info_by_coord((count - within,) + (0,) * (column.ndim - 1))
+        row_bytes = column.dtype.itemsize * int(np.prod(column.shape[1:]))
+        assert where.size > row_bytes * (within + 1)
+    with path.open("r+b") as raw:
+        raw.seek(where.byte_offset + within * row_bytes)
+        raw.write(b"torn")
+    with open_log(path) as log:
+        assert check(log) == stop
+    recover(path)
+    assert_plain(path, stop)
+
+
+@pytest.mark.parametrize("compression", ["gzip", "none"])
+@pytest.mark.parametrize("checkpoint", [0, 3, -1])
+@pytest.mark.parametrize("more", [0, 10, 3 * BLOCK])
+def test_going_on_after_a_checkpoint(tmp_path, compression, checkpoint, more):
+    path = write_log(tmp_path / "run.h5", 100_000, compression=compression)
+    with open_log(path) as log:
+        chosen = log.checkpoints[checkpoint]
+    writer = LogWriter.resume(path, checkpoint)
+    assert writer.rows == chosen.row
+    stop = chosen.row + more
+    while writer.rows < stop:
+        batch = writer.batch()
+        size = min(len(batch.time), 50_000, stop - writer.rows)
+        for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
+            if values is not None:
+                column[:size] = values
+        writer.write(size)
+    writer.close({"end_time": stop * STEP})
+    with open_log(path) as log:
+        assert check(log) == stop
+        assert log.complete
+        assert log.checkpoints[-1].row == log.observables["hits"][1][-1] == chosen.row
+    assert_plain(path, stop)
+
+
+def test_going_on_after_a_death(left, tmp_path):
+    path = copied(left, tmp_path)
+    with LogWriter.resume(path) as writer:
+        start = writer.rows
+        write_rows(writer, start + 1000, [100])
+    with open_log(path) as log:
+        assert check(log) == start + 1000
+        assert not log.complete
+    assert_plain(path, start + 1000)
+
+
+def test_going_on_needs_a_checkpoint(tmp_path):
+    path = write_log(tmp_path / "run.h5", 0)
+    with pytest.raises(LogError, match="no checkpoint -1 among 0"):
+        LogWriter.resume(path)
+
+
+def test_damage_is_not_recovered(left, tmp_path):
+    path = copied(left, tmp_path)
+    with path.open("r+b") as raw:
+        raw.seek(20)
+        raw.write(b"\x55")
+    with pytest.raises(LogError, match="damaged"):
+        recover(path)
+    with pytest.raises(LogError, match="damaged"):
+        recover(path, tmp_path / "copy.h5")
+    assert not os.path.exists(tmp_path / "copy.h5")

@@ -1,0 +1,308 @@
+"""Logs written: round trips, what a plain HDF5 reader sees, and what is refused."""
+
+import errno
+import json
+import math
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import h5py
+import numpy as np
+import pytest
+from log_samples import DISCS, STEP, check, gas, mark, new_writer, rows, write_log, write_rows
+
+import idealgas.log.writer as log_writer
+from idealgas.events import (
+    BLOCK,
+    IMAGE,
+    IMAGES,
+    POSITION,
+    POSITIONS,
+    SPINS,
+    VELOCITY,
+    EventBatch,
+    Kind,
+    event_columns,
+)
+from idealgas.log import LogError, LogLayout, LogWriter, box_walls, check_output, open_log
+
+
+@pytest.mark.parametrize("compression", ["gzip", "none"])
+@pytest.mark.parametrize("stop", [0, 1, 3000, BLOCK, BLOCK + 1, 3 * BLOCK - 5])
+def test_a_log_comes_back(tmp_path, compression, stop):
+    path = write_log(tmp_path / "run.h5", stop, compression=compression)
+    with open_log(path) as log:
+        assert check(log) == stop
+        assert log.complete
+        assert not log.unclosed
+        assert log.summary == {"end_time": stop * STEP, "rows": stop}
+        assert log.end_time == stop * STEP
+
+
+@pytest.mark.parametrize("compression", ["gzip", "none"])
+def test_a_log_flushed_at_every_moment_comes_back(tmp_path, monkeypatch, compression):
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.0)
+    path = write_log(tmp_path / "run.h5", 3 * BLOCK + 100, compression=compression)
+    with open_log(path) as log:
+        assert check(log) == 3 * BLOCK + 100
+
+
+@pytest.mark.parametrize("flush_seconds", [0.0, 1.0])
+@pytest.mark.parametrize("most_rows", [1, 8192, 8193, 30_000])
+def test_a_log_of_short_chunks_takes_any_number_of_rows(tmp_path, monkeypatch, most_rows, flush_seconds):
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", flush_seconds)
+    path = write_log(tmp_path / "run.h5", 2 * BLOCK + 100, most_rows=most_rows)
+    with h5py.File(path) as file:
+        assert file["events/time"].chunks == (max(8192, 2 ** math.ceil(math.log2(most_rows))),)
+    with open_log(path) as log:
+        assert check(log) == 2 * BLOCK + 100
+        assert log.row_at(50_000 * STEP) == 50_000
+    with LogWriter.resume(path, 5) as writer:
+        write_rows(writer, 3 * BLOCK)
+    with open_log(path) as log:
+        assert check(log) == 3 * BLOCK
+
+
+def test_with_fsync(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.0)
+    synced = []
+    monkeypatch.setattr(os, "fsync", synced.append)
+    with open_log(write_log(tmp_path / "run.h5", 1000, fsync=True)) as log:
+        assert check(log) == 1000
+    assert len(synced) >= 4  # the rows before the record, and then the record, for both of its slots
+
+
+def test_flushing_a_growing_chunk_costs_no_space(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.0)
+    sizes = []
+    for batch in (BLOCK // 4, BLOCK // 64):
+        with new_writer(tmp_path / f"{batch}.h5") as writer:
+            write_rows(writer, BLOCK, [batch])
+        sizes.append(os.path.getsize(tmp_path / f"{batch}.h5"))
+    assert sizes[1] < 1.1 * sizes[0]
+
+
+def test_rows_appear_while_they_come_slowly(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.05)
+    with new_writer(tmp_path / "run.h5") as writer:
+        write_rows(writer, 100)
+        seen, deadline = 0, time.monotonic() + 30
+        while seen < 100 and time.monotonic() < deadline:
+            with open_log(tmp_path / "run.h5") as log:
+                seen = check(log)
+                assert log.unclosed
+        assert seen == 100
+
+
+def test_plain_h5py_reads_it(tmp_path):
+    path = write_log(tmp_path / "run.h5", 70_000)
+    expected = rows(0, 70_000)
+    with h5py.File(path) as file:
+        for name in EventBatch._fields[:6]:
+            assert np.array_equal(file["events"][name][:], getattr(expected, name))
+        assert h5py.check_enum_dtype(file["events/kind"].dtype) == {kind.name: kind.value for kind in Kind}
+        assert file["events/velocity"].attrs["unit"] == b"length/time"
+        assert file["runs/scene"].asstr()[0].startswith("[scene]")
+        assert list(file["walls/name"]) == [b"left", b"right", b"bottom", b"top"]
+        assert [json.loads(value) for value in file["summary/value"]] == [70_000 * STEP, 70_000]
+        assert {len(file["checkpoints"][name]) for name in file["checkpoints"]} == {len(file["checkpoints/time"])}
+
+
+def test_observables_are_h5md(tmp_path):
+    path = write_log(tmp_path / "run.h5", 1000)
+    with h5py.File(path) as file:
+        assert list(file["h5md"].attrs["version"]) == [1, 1]
+        assert {"name"} <= set(file["h5md/author"].attrs)
+        assert {"name", "version"} <= set(file["h5md/creator"].attrs)
+        energy, hits = file["observables/kinetic_energy"], file["observables/hits"]
+        assert set(energy) == set(hits) == {"step", "time", "value"}
+        assert energy["time"] == hits["time"]
+        assert len(energy["step"]) == len(energy["time"]) == len(energy["value"])
+
+
+def test_further_columns(tmp_path):
+    columns = event_columns(POSITIONS, SPINS, IMAGES)
+    arrays = (POSITION, VELOCITY, IMAGE)
+    with new_writer(tmp_path / "run.h5", checkpoint_arrays=arrays, event_columns=columns) as writer:
+        batch = writer.batch()
+        for column in filter(lambda column: column is not None, batch):
+            column[:100] = 1
+        batch.angular_velocity[:100] = np.arange(100) / 7
+        batch.image[:100] = np.arange(200).reshape(100, 2)
+        writer.write(100)
+        image = np.arange(2 * DISCS).reshape(DISCS, 2)
+        writer.checkpoint(1.0, 1, {"position": image, "velocity": image, "image": image}, {"hits": 0})
+    with open_log(tmp_path / "run.h5") as log:
+        (block,) = log.chunks()
+        assert isinstance(block, EventBatch)
+        assert np.array_equal(block.angular_velocity, np.arange(100) / 7)
+        assert np.array_equal(block.image, np.arange(200).reshape(100, 2))
+        assert log.checkpoints[0].arrays["image"].dtype == np.int32
+        assert np.array_equal(log.checkpoints[0].arrays["image"], image)
+
+
+def test_without_events(tmp_path):
+    with new_writer(tmp_path / "run.h5", event_columns=()) as writer:
+        mark(writer)
+        writer.close({"end_time": 5.0})
+    with open_log(tmp_path / "run.h5") as log:
+        assert not log.has_events
+        assert (len(log), len(log.checkpoints), log.end_time) == (0, 1, 5.0)
+        assert list(log.chunks()) == []
+        assert log.row_at(1.0) == 0
+
+
+def test_leaving_without_close_is_interrupted(tmp_path):
+    with new_writer(tmp_path / "run.h5") as writer:
+        write_rows(writer, 500)
+    with open_log(tmp_path / "run.h5") as log:
+        assert (check(log), log.complete, log.summary) == (500, False, {})
+        assert log.end_time == 499 * STEP
+
+
+def test_what_is_handed_over_may_change_afterwards(tmp_path):
+    position = np.zeros((DISCS, 2))
+    with new_writer(tmp_path / "run.h5") as writer:
+        for k in range(50):
+            position[:] = k
+            writer.checkpoint(k, k, {"position": position, "velocity": position}, {"hits": 0})
+    with open_log(tmp_path / "run.h5") as log:
+        assert all((checkpoint.position == checkpoint.epoch).all() for checkpoint in log.checkpoints)
+
+
+def test_long_texts_and_many_checkpoints(tmp_path):
+    text = "# " + "x" * 200_000
+    with new_writer(tmp_path / "run.h5", scene_text=text) as writer:
+        for k in range(1000):
+            writer.checkpoint(k, k, {"position": np.full((DISCS, 2), k), "velocity": np.zeros((DISCS, 2))}, {"hits": 0})
+    with open_log(tmp_path / "run.h5") as log:
+        assert log.scene_text == text
+        assert [checkpoint.position[3, 1] for checkpoint in log.checkpoints] == list(range(1000))
+
+
+@pytest.mark.parametrize("discs", [1, 5000])
+def test_few_and_many_discs(tmp_path, discs):
+    start = gas(discs)
+    with LogWriter(tmp_path / "run.h5", start, LogLayout(box_walls(start.box)), scene_text="", seed=2**200) as writer:
+        for k in range(3):
+            writer.checkpoint(k, k, {"position": start.position + k, "velocity": start.velocity})
+    with open_log(tmp_path / "run.h5") as log:
+        assert np.array_equal(log.checkpoints[2].position, start.position + 2)
+        assert log.attributes["seed"] == str(2**200)
+
+
+# ── refusals ──
+
+
+def test_an_existing_file_stays(tmp_path):
+    path = tmp_path / "run.h5"
+    path.write_text("precious")
+    with pytest.raises(LogError, match=r"exists already \(--force replaces it\)") as caught:
+        new_writer(path)
+    assert caught.value.exit_code == 2
+    assert path.read_text() == "precious"
+    write_log(path, 10, force=True)
+    with open_log(path) as log:
+        assert check(log) == 10
+
+
+def test_a_folder_is_no_place(tmp_path):
+    with pytest.raises(LogError, match="is a folder"):
+        check_output(tmp_path, force=True)
+    with pytest.raises(LogError, match="no folder"):
+        check_output(tmp_path / "none" / "run.h5")
+
+
+def test_an_unwritable_folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda *_: False)  # nothing is forbidden to root
+    with pytest.raises(LogError, match="cannot be written: Permission denied") as caught:
+        new_writer(tmp_path / "run.h5")
+    assert caught.value.exit_code == 1
+
+
+def test_a_disk_that_is_full_from_the_start(tmp_path, monkeypatch):
+    def fail(*_):
+        raise OSError(errno.ENOSPC, "no space")
+
+    monkeypatch.setattr(log_writer.schema, "create_tables", fail)
+    with pytest.raises(LogError, match="cannot be written: No space left on device"):
+        new_writer(tmp_path / "run.h5")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_summary_of_wrong_size(tmp_path):
+    with new_writer(tmp_path / "run.h5") as writer:
+        with pytest.raises(ValueError, match="short ones"):
+            writer.close({"x": "y" * 1000})
+        with pytest.raises(ValueError, match="at least one"):
+            writer.close({})
+
+
+# ── faults ──
+
+
+@pytest.mark.parametrize("calls", ["batches", "checkpoints"])
+def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
+    writer = new_writer(tmp_path / "run.h5")
+    write_rows(writer, 1000)
+
+    def fail(*_):
+        raise OSError(errno.ENOSPC, "no space")
+
+    monkeypatch.setattr(log_writer, "commit_tables", fail)
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.0)
+
+    def go_on():
+        for _ in range(100):
+            if calls == "batches":
+                writer.batch()
+                writer.write(10)
+            else:
+                mark(writer)
+            time.sleep(0.01)
+
+    with pytest.raises(LogError, match=r"cannot be written: No space left on device") as caught:
+        go_on()
+    assert caught.value.exit_code == 1
+    with pytest.raises(LogError, match="No space left"):
+        writer.close()
+    assert not any(thread.name == "log writer" for thread in threading.enumerate())
+
+
+FULL = """
+import resource, sys
+from pathlib import Path
+from log_samples import new_writer, write_rows
+from idealgas.log import LogError
+writer = new_writer(Path(sys.argv[1]), compression=sys.argv[2])
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000_000, resource.RLIM_INFINITY))
+try:
+    with writer:
+        write_rows(writer, 10_000_000)
+except LogError as error:
+    print(error)
+    sys.exit(error.exit_code)
+"""
+
+
+@pytest.mark.parametrize("compression", ["gzip", "none"])
+def test_rows_written_before_a_limit_are_readable(tmp_path, compression):
+    """RLIMIT_FSIZE stands for a full disk: writing fails in the middle of the run and in closing too."""
+    path = tmp_path / "run.h5"
+    tests = os.path.join(os.path.dirname(__file__), "..", "..")
+    child = subprocess.run(
+        [sys.executable, "-c", FULL, path, compression],
+        env=os.environ | {"PYTHONPATH": tests},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (child.returncode, child.stderr) == (1, "")
+    assert child.stdout == f"{path}: cannot be written: {os.strerror(errno.EFBIG)}\n"
+    with open_log(path) as log:
+        assert check(log) >= 4 * BLOCK
+        assert not log.complete

@@ -1,0 +1,187 @@
+"""Scenes with effects from end to end: what is conserved, what the log holds, how paths unwrap."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from support import ROOT
+
+from idealgas.gas.build import make_gas
+from idealgas.log import open_log
+from idealgas.run.effects import make_effects
+from idealgas.run.energy import Energy, is_conserved
+from idealgas.run.simulate import simulate
+from idealgas.scene import load_scene, parse_scene
+
+CONFIGS = ROOT / "configs"
+
+
+def run(path, scene):
+    """Summary of a run and its log, open."""
+    summary = simulate(scene, path)
+    return summary, open_log(path)
+
+
+def test_a_shipped_scene_conserves_what_it_should(shipped_scene, tmp_path):
+    """Energy less what walls gave; to 1e-12 where they give none. Momentum where all sides are periodic."""
+    scene = load_scene(shipped_scene, ["run.events=3000"])
+    summary, log = run(tmp_path / "run.h5", scene)
+    with log:
+        assert summary.completed
+        assert log.complete
+        assert json.loads(json.dumps(log.summary)) == log.summary
+        if scene.restitution:
+            assert summary.energy_drift is None
+            assert summary.energy_change < 0
+        else:
+            assert abs(summary.energy_drift) < (1e-10 if "wall_energy" in log.observables else 1e-12)
+        assert summary.deepest_overlap < 1e-12
+        if all(scene.box.periodic):
+            momentum = log.observables["momentum"][1]
+            size = (log.discs.mass * np.hypot(*log.discs.velocity.T)).sum()
+            assert np.abs(momentum - momentum[0]).max() < 1e-12 * size
+
+
+def test_walls_are_in_the_log_by_their_numbers(tmp_path):
+    _, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "effusion.toml", ["run.until=6"]))
+    with log:
+        assert [wall.name for wall in log.walls] == ["left", "right", "bottom", "top", "wall 4", "wall 5", "gate"]
+        assert (log.walls[6].start, log.walls[6].end) == ((10.0, 4.9), (10.0, 5.1))
+        partners = np.unique(np.concatenate([block.partner for block in log.chunks(("partner",))]))
+        assert {-1, -3, -4, -5, -6, -7} <= set(partners.tolist())
+
+
+def test_an_effect_adds_its_columns_and_no_others(tmp_path):
+    plain = {"time", "disc", "partner", "kind", "position", "velocity"}
+    for name, event, arrays, values in (
+        ("quickstart", set(), set(), set()),
+        ("rough", {"angular_velocity"}, {"angular_velocity"}, set()),
+        ("periodic", {"image"}, {"image"}, set()),
+        ("cooling", {"image"}, {"image", "last_collision"}, set()),
+        ("heat-bath", set(), {"emissions", "wall_energy"}, set()),
+        ("piston", set(), {"wall_energy"}, {"piston_position", "piston_velocity"}),
+    ):
+        _, log = run(tmp_path / f"{name}.h5", load_scene(CONFIGS / f"{name}.toml", ["run.events=10"]))
+        with log:
+            checkpoint = log.checkpoints[0]
+            assert set(log.columns) == plain | event
+            assert set(checkpoint.arrays) == {"position", "velocity"} | arrays
+            assert values <= set(checkpoint.values)
+            assert not {"piston_position", "piston_velocity"} - values & set(checkpoint.values)
+
+
+def test_images_unwrap_the_path_of_a_disc(tmp_path):
+    """Between two of its events a disc flies straight: the unwrapped positions differ by velocity times time."""
+    _, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "periodic.toml", ["species.count=100", "run.events=5000"]))
+    with log:
+        assert all((b.position >= 0).all() and (b.position < log.box).all() for b in log.chunks())
+        crossings = 0
+        for disc in range(100):
+            rows = list(log.events(disc=disc))
+            time, position, velocity, image = (
+                np.concatenate([getattr(b, name) for b in rows]) for name in ("time", "position", "velocity", "image")
+            )
+            flight = np.diff(position + image * log.box, axis=0)
+            assert np.abs(flight - velocity[:-1] * np.diff(time)[:, None]).max() < 1e-12
+            crossings += np.abs(np.diff(image, axis=0)).sum()
+        assert crossings > 100
+
+
+def test_what_the_walls_gave_is_what_the_discs_have_won(tmp_path):
+    """The account against the energies themselves: heat on the left and right, nothing above and below."""
+    overrides = ["box.bottom=reflecting", "box.top=reflecting", "run.until=200"]
+    summary, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "conduction.toml", overrides))
+    with log:
+        given, energy = log.observables["wall_energy"][1], log.observables["energy"][1]
+        assert given.sum(axis=1) == pytest.approx(energy - energy[0], abs=1e-10 * energy[0])
+        assert (given[:, 2:] == 0).all()
+        assert given[-1, 0] > 0 > given[-1, 1]
+        assert summary.energy_change == energy[-1] - energy[0]
+
+
+def test_the_work_of_a_piston_is_pressure_times_area(tmp_path):
+    """A piston at a given velocity does work u * Σ|Δp|: the momenta of its hits, from the log, against the account."""
+    scene = load_scene(CONFIGS / "compression.toml", ["run.until=100"])
+    _, log = run(tmp_path / "run.h5", scene)
+    with log:
+        work = log.observables["wall_energy"][1][-1, 1]
+        speed = scene.piston.velocity
+        after = np.concatenate([b.velocity[b.kind == 3, 0] for b in log.chunks()])
+        before = 2 * speed - after
+        assert len(after) > 100
+        assert work == pytest.approx(((after**2 - before**2) / 2).sum(), rel=1e-12)
+
+
+GAS = """
+box.size = [10, 10]
+run.events = 300
+species = [{ name = "gas", count = 12, radius = 0.4, temperature = 1, region = [0, 0, 7, 10] }]
+"""
+
+
+@pytest.mark.parametrize("override", ["rotation.wall_roughness=0", "restitution.wall=0.8"])
+def test_what_is_lost_at_walls_is_accounted_for(override, tmp_path):
+    scene = parse_scene(GAS, overrides=[override, "run.method=brute_force"])
+    summary, log = run(tmp_path / "run.h5", scene)
+    with log:
+        assert log.observables["wall_energy"][1][-1].sum() == pytest.approx(summary.energy_change, rel=1e-12)
+    assert summary.energy_change < -0.1
+    assert abs(summary.energy_drift) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("overrides", "conserved"),
+    [
+        ((), True),
+        (("rotation.roughness=1",), True),
+        (("rotation.roughness=0",), False),
+        (("rotation.wall_roughness=0",), True),
+        (("restitution.normal=0.8",), False),
+        (("restitution.wall=0.8",), True),
+        (("restitution.wall=0.8", "piston={ position = 8, velocity = 0.1 }"), True),
+        (("restitution.wall=0.8", "piston={ position = 8, mass = 3, pressure = 5 }"), False),
+        (("piston={ position = 8, mass = 3, pressure = 5 }",), True),
+    ],
+)
+def test_energy_is_called_conserved_where_all_of_it_is_accounted_for(overrides, conserved):
+    scene = parse_scene(GAS, overrides=[*overrides, "run.until=5"])
+    assert is_conserved(make_effects(scene, make_gas(scene))) == conserved
+
+
+def test_the_balance_of_energy():
+    energy = Energy(kinetic=3.0, rotational=1.0, potential=-2.0, piston=5.0, given=4.0)
+    assert (energy.gas, energy.balance, energy.scale) == (2.0, 3.0, 5.0)
+
+
+def test_a_bouncing_disc(tmp_path):
+    """As the comment of the scene tells it; sums of powers of two, exact to the last bit."""
+    summary, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "bounce.toml"))
+    with log:
+        (block,) = log.chunks()
+        assert block.time.tolist() == [4, 12, 15, 20, 28]
+        assert block.partner.tolist() == [-3, -3, -2, -3, -3]
+        assert block.position.tolist() == [[4, 0.5], [8, 0.5], [9.5, 8], [7, 0.5], [3, 0.5]]
+        assert block.velocity.tolist() == [[0.5, 4], [0.5, 4], [-0.5, 1], [-0.5, 4], [-0.5, 4]]
+        assert log.observables["kinetic_energy"][1].tolist() == [0.125, 0.125]
+        assert log.observables["potential_energy"][1].tolist() == [8.5, 8.5]
+    assert summary.energy_drift == 0
+
+
+def test_a_disc_in_a_wedge_bounces_on_each_wall_as_if_there_were_no_other(tmp_path):
+    _, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "wedge.toml"))
+    with log:
+        (block,) = log.chunks()
+    left, right = (block.time[block.partner == -1 - wall] for wall in (4, 5))
+    assert (len(left), len(right)) == (17, 35)
+    assert np.diff(left) == pytest.approx(np.full(16, 4 * math.sqrt(2)), abs=1e-12)
+    assert np.diff(right) == pytest.approx(np.full(34, 2 * math.sqrt(2)), abs=1e-12)
+
+
+def test_a_gate_opens_on_time(tmp_path):
+    _, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "free-expansion.toml", ["run.until=12"]))
+    with log:
+        hits = np.concatenate([b.time[b.partner == -5] for b in log.chunks()])
+        right = [int((state.position[:, 0] > 10).sum()) for state in log.frames([10.0, 12.0])]
+    assert 9.9 < hits.max() < 10
+    assert right[0] == 0 < right[1]
