@@ -1,17 +1,19 @@
 """How often discs of each species meet, how far they fly in between, and what kinetic theory says."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble
+from idealgas.analysis.core.equilibrium import Ensemble, drift
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.core.window import Window
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
+from idealgas.log import Log
 
 
 @dataclass(frozen=True)
@@ -42,29 +44,59 @@ class FreePath:
         return {"species": self.species, **values}
 
 
-def expected_rates(
-    discs: Composition,
-    box: tuple[float, float],
-    equilibrium: Ensemble,
-    periodic: tuple[bool, bool] = (False, False),
-    has_positions: bool = True,
-) -> np.ndarray:
-    """Γ_ij (S, S) by theory for all discs of a box, or of a gas without one; not a number where the fluid freezes.
+class ExpectedRates(NamedTuple):
+    """Γ_ij by theory, (S, S), not a number where it has no value; relative_error: (S, S), one standard deviation."""
 
-    periodic: which axes of the box are periodic.
+    rate: np.ndarray
+    relative_error: np.ndarray
 
-    The contacts that the pressure comes from (`hard_discs.box_compressibility`), met at relative speeds that a fixed
-    total energy makes a little larger than Maxwell and Boltzmann's.
+    def between(self, i: int, j: int) -> Theory | None:
+        """Γ_ij, None without a value."""
+        return self._theory(self.rate[i, j], self.relative_error[i, j] * self.rate[i, j])
+
+    def of(self, i: int) -> Theory | None:
+        """Collisions of a disc of species i with all discs."""
+        return self._theory(self.rate[i].sum(), (self.relative_error[i] * self.rate[i]).sum())
+
+    @staticmethod
+    def _theory(rate: float, error: float) -> Theory | None:
+        return Theory(float(rate), float(error), "kinetic theory") if np.isfinite(rate) else None
+
+
+def theory_of(log: Log, discs: Composition) -> BoxTheory:
+    """Pressure and contacts of the gas of a log, which is uniform, where theory knows them."""
+    return box_theory(discs.radius, discs.number, log.box, log.periodic, ergodic=_is_ergodic(log))
+
+
+def _is_ergodic(log: Log) -> bool:
+    """Whether two discs come everywhere that their energy allows.
+
+    Equal discs between walls that set out with opposite velocities do not: after every reflection each component of
+    one is that of the other but for its sign, which keeps the centre of the pair, reflected as they are, in its place.
     """
-    if has_positions:
-        contacts = hard_discs.box_contacts(discs.radius, discs.number, box, periodic)
-    else:
-        contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, box)
-    return contacts * hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
+    gas = log.discs
+    if len(gas) != 2 or all(log.periodic) or not log.scene.properties.isolated or np.ptp(gas.mass) > 0:
+        return True
+    speeds = np.abs(gas.velocity - drift(log))[:, ~np.array(log.periodic)]
+    return bool(np.abs(speeds[0] - speeds[1]).max() > 1e-9 * speeds.max())
+
+
+def expected_rates(
+    discs: Composition, box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None
+) -> ExpectedRates:
+    """Γ_ij by theory for all discs of a box; theory: as `theory_of` gives it, None for a gas without positions.
+
+    The contacts that the pressure comes from, met at relative speeds that a fixed total energy makes a little larger
+    than Maxwell and Boltzmann's.
+    """
+    speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
+    if theory is None:
+        return ExpectedRates(hard_discs.contacts_without_positions(discs.radius, discs.number, box) * speed, 0 * speed)
+    return ExpectedRates(theory.contacts * speed, theory.rate_error)
 
 
 def collision_rates(
-    discs: Composition, expected: np.ndarray, window: Window, impacts: Impacts
+    discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts
 ) -> tuple[CollisionRate, ...]:
     """Rates of all pairs of species. expected: as `expected_rates` gives them."""
     counts = window.of(impacts.collisions)
@@ -72,14 +104,19 @@ def collision_rates(
     def rate(i: int, j: int) -> Estimate:
         discs_per_event = 2 if i == j else 1
         series = discs_per_event * counts[:, min(i, j), max(i, j)] / discs.number[i]
-        return mean(series, theory=_known(expected[i, j]))
+        return mean(series, theory=expected.between(i, j))
 
     species = range(len(discs.name))
     return tuple(CollisionRate(discs.name[i], discs.name[j], rate(i, j)) for i in species for j in species)
 
 
 def free_paths(
-    discs: Composition, expected: np.ndarray, equilibrium: Ensemble, window: Window, moments: Moments, impacts: Impacts
+    discs: Composition,
+    expected: ExpectedRates,
+    equilibrium: Ensemble,
+    window: Window,
+    moments: Moments,
+    impacts: Impacts,
 ) -> tuple[FreePath, ...]:
     """Mean free path λ = ⟨v⟩/Γ and time 1/Γ of each species. expected: as `expected_rates` gives them."""
     counts = window.of(impacts.collisions)
@@ -88,17 +125,19 @@ def free_paths(
         own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
         speeds = window.of(moments.flights)[:, i, 0] / number
         speed = hard_discs.mean_speed(equilibrium.of_species[i], mass, equilibrium.dof)
-        free_time = np.inf if expected[i].sum() == 0 else 1 / expected[i].sum()
+        free_time = _inverse(expected.of(i))
         paths.append(
             FreePath(
                 name,
-                path=ratio(speeds, own, theory=_known(speed * free_time)),
-                time=estimate(lambda rate: 1 / rate, own, theory=_known(free_time)),
+                path=ratio(speeds, own, theory=free_time and free_time.times(speed)),
+                time=estimate(lambda rate: 1 / rate, own, theory=free_time),
                 speed=mean(speeds, theory=speed),
             )
         )
     return tuple(paths)
 
 
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def _inverse(rate: Theory | None) -> Theory | None:
+    if rate is None or rate.value == 0:
+        return None
+    return Theory(1 / rate.value, rate.error / rate.value**2, rate.source)

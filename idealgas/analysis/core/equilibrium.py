@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
 
@@ -46,7 +46,7 @@ def ensemble(log: Log) -> Ensemble:
     found = known_ensemble(log)
     if found is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
-        raise UserError(f"{log.path}: no temperature is known beforehand under {', '.join(causes)}")
+        raise NotApplicableError(f"{log.path}: no temperature is known beforehand under {', '.join(causes)}")
     return found
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
 logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
@@ -26,7 +27,7 @@ LONG_BLOCKS = 32
 """Blocks that errors of anticorrelated series are taken from."""
 
 TOLERANCE = 4.0
-"""Standard errors by which measurement and theory may differ where they are checked."""
+"""Deviation from theory that is allowed where it is checked, in errors of measurement and theory together."""
 
 
 @dataclass(frozen=True)
@@ -35,20 +36,27 @@ class Estimate:
 
     value: in the unit of the quantity. standard_error: of the value, nan if there are too few samples for one.
     independent_samples: number of them that the error comes from, inf for what is known exactly. theory: value that
-    theory expects of this gas; None where no theory applies.
+    theory expects of this gas; None where no theory applies. theory_error: of that value, one standard deviation.
     """
 
     value: float
     standard_error: float
     independent_samples: float
     theory: float | None = None
+    theory_error: float = 0.0
 
     @property
     def deviation(self) -> float | None:
-        """(value - theory) in standard errors; None without theory or without an error bar."""
+        """(value - theory)/√(standard_error² + theory_error²); None without theory or without an error bar."""
         if self.theory is None or not self.standard_error > 0:
             return None
-        return (self.value - self.theory) / self.standard_error
+        return (self.value - self.theory) / math.hypot(self.standard_error, self.theory_error)
+
+    def times(self, factor: float) -> "Estimate":
+        """Of a quantity that is so many times as large."""
+        theory, size = None if self.theory is None else self.theory * factor, abs(factor)
+        errors = self.standard_error * size, self.theory_error * size
+        return Estimate(self.value * factor, errors[0], self.independent_samples, theory, errors[1])
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval of a level, 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
@@ -64,6 +72,7 @@ class Estimate:
             math.nan if error is None else error,
             math.inf if samples is None else samples,
             found["theory"],
+            found.get("theory_error") or 0.0,  # results of before have none
         )
 
     def as_dict(self) -> dict[str, float | None]:
@@ -72,12 +81,40 @@ class Estimate:
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
 
 
-def agree(found: Iterable[Estimate]) -> bool:
-    """Whether every value is within TOLERANCE standard errors of its theory. UserError if that cannot be said."""
-    deviations = [one.deviation for one in found]
-    if any(deviation is None or not math.isfinite(deviation) for deviation in deviations):
-        raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
-    return all(abs(deviation) <= TOLERANCE for deviation in deviations if deviation is not None)
+@dataclass(frozen=True)
+class Verdict:
+    """Whether measurement and theory agree. agrees: None where theory has no value. judged: names of what was compared.
+
+    why_not: why theory has no value, as part of a sentence.
+    """
+
+    agrees: bool | None
+    judged: tuple[str, ...] = ()
+    why_not: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"agrees": self.agrees, "judged": self.judged, "no_theory": self.why_not or None}
+
+    def __str__(self) -> str:
+        """One sentence for people."""
+        if self.agrees is None:
+            return f"No theory here: {self.why_not}."
+        verdict = "agree" if self.agrees else "do not agree"
+        return f"Measurement and theory {verdict} within {TOLERANCE:g} standard errors in {'; '.join(self.judged)}."
+
+
+def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
+    """Whether every value for which there is a theory is within TOLERANCE of it. found: by name.
+
+    why_not: why there is no theory, where none of the values has one. UserError if an error bar is missing.
+    """
+    known = {name: one.deviation for name, one in found if one.theory is not None}
+    if not known:
+        return Verdict(None, why_not=why_not)
+    if any(deviation is None or not math.isfinite(deviation) for deviation in known.values()):
+        raise UserError("nothing to check: too few events for an error bar")
+    return Verdict(all(abs(deviation or 0.0) <= TOLERANCE for deviation in known.values()), tuple(known))
 
 
 def inefficiency(series: np.ndarray) -> float:
@@ -103,7 +140,7 @@ def equilibration(*series: np.ndarray) -> int:
     return start
 
 
-def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | None = None) -> Estimate:
+def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """function(mean of each series), its error by linear propagation through the series' joint fluctuations.
 
     The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is one correlated series, so that covariances need no bookkeeping: a mean is
@@ -121,7 +158,12 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | 
                 influence += slope * (column - means[k])
         value = float(function(*means))
     error, samples = _error_of_mean(influence)
-    return Estimate(value, error, samples, theory)
+    return Estimate(value, error, samples, *_said(theory))
+
+
+def _said(theory: Theory | float | None) -> tuple[float | None, float]:
+    """Value and error of a theory; a plain number has no error."""
+    return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
 def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
@@ -142,12 +184,12 @@ def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
     return error, samples
 
 
-def mean(series: np.ndarray, theory: float | None = None) -> Estimate:
+def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Mean of one series."""
     return estimate(lambda a: a, series, theory=theory)
 
 
-def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: float | None = None) -> Estimate:
+def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Ratio of two means."""
     return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
 
@@ -173,7 +215,7 @@ def bootstrap(
     *,
     seed: int = 0,
     resamples: int = 2000,
-    theory: float | None = None,
+    theory: Theory | float | None = None,
 ) -> Estimate:
     """function(replicates) with its error from resampling independent replicates (first axis) with replacement.
 
@@ -184,16 +226,19 @@ def bootstrap(
     n = len(replicates)
     picks = np.random.default_rng(seed).integers(n, size=(resamples, n))
     spread = np.std([function(replicates[pick]) for pick in picks], ddof=1)
-    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), theory)
+    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), *_said(theory))
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
     """Mean of the same quantity over independent runs: with enough of them by bootstrap, else by their own errors."""
-    values, theory = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
+    values, expected = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
+    shared = sum(r.theory_error for r in replicates) / len(replicates)  # runs have the errors of theory in common
+    theory = None if expected is None else Theory(expected, shared, "mean of runs")
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory=theory)
     error = math.sqrt(sum(r.standard_error**2 for r in replicates)) / len(values)
-    return Estimate(float(values.mean()), error, float(sum(r.independent_samples for r in replicates)), theory)
+    samples = float(sum(r.independent_samples for r in replicates))
+    return Estimate(float(values.mean()), error, samples, *_said(theory))
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:

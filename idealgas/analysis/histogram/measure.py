@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from idealgas.analysis.core.collisions import expected_rates
+from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
@@ -179,7 +179,7 @@ def _some_discs(gas: Gas, species: int) -> np.ndarray:
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
     gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
     temperature = equilibrium.temperature
-    rates = expected_rates(discs, gas.box, equilibrium, log.periodic, log.has_positions)
+    rates = expected_rates(discs, gas.box, equilibrium, theory_of(log, discs) if log.has_positions else None).rate
     rate = rates.sum(axis=1)
     if not (rate > 0).all():
         raise UserError(f"{log.path}: no law of free flights for this gas")

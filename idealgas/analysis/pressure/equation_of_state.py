@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.statistics import Estimate, agree, mean_of_replicates
+from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import NoTheoryError, fluid
 from idealgas.errors import UserError
 
 FITTED = 0.25
@@ -64,9 +65,9 @@ class EquationOfState:
     b2: Estimate | None
     b3: Estimate | None
 
-    def check(self) -> bool:
-        """Whether Z agrees with theory at every φ. UserError if that cannot be said."""
-        return agree(state.infinite for state in self.states)
+    def check(self) -> Verdict:
+        """Whether Z agrees with theory at every φ. UserError without an error bar."""
+        return judge((f"φ = {s.packing_fraction:.5g}, N = {s.number}", s.infinite) for s in self.states)
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -100,15 +101,17 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
 def _state(runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
     together = mean_of_replicates([run.compressibility for run in runs])
-    expected = together.theory or math.nan
-    endless = float(hard_discs.compressibility(phi))
-    part = endless / expected
+    try:
+        endless = fluid(phi)
+    except NoTheoryError as reason:
+        raise UserError(f"no equation of state: {reason} (got {phi:g})") from None
+    part = endless.value / (together.theory or math.nan)
     return State(
         phi,
         runs[0].number,
         n,
         together,
-        infinite=Estimate(together.value * part, together.standard_error * part, together.independent_samples, endless),
+        infinite=together.times(part),
         virial=float(hard_discs.virial_series(phi)),
         henderson=float(hard_discs.henderson_compressibility(phi)),
     )

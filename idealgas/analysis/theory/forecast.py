@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
@@ -39,7 +40,7 @@ class Forecast:
     """The gas in equilibrium: rates per time, collision_rate per disc too. Of the run: duration to bytes.
 
     None stands for what the theory of a uniform gas that keeps its energy does not know; beyond: the effects that make
-    it so.
+    it so. rough: why rates, and what follows from them, are only about right; empty where they are within 2 %.
     """
 
     number: int
@@ -54,20 +55,29 @@ class Forecast:
     rows: float | None
     bytes: float | None
     species: tuple[SpeciesForecast, ...]
+    rough: str = ""
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
 """Properties of the gases that the theory knows."""
 
 
+ROUGH = 0.02
+"""Relative error of rates from which a forecast is called rough."""
+
+
 class _Rates(NamedTuple):
-    """In equilibrium. per_disc: (species,), collisions per disc and time; pairs, hits, trials: numbers per time."""
+    """In equilibrium. per_disc: (species,), collisions per disc and time; pairs, hits, trials: numbers per time.
+
+    rough: why they are only about right.
+    """
 
     temperature: float
     per_disc: np.ndarray
     pairs: float
     hits: float
     trials: float = 0.0
+    rough: str = ""
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
@@ -96,6 +106,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         rows=rows,
         bytes=None if rows is None else rows * _bytes_a_row(scene),
         species=tuple(_species(gas, k, area, rates) for k in range(len(gas.species_names))),
+        rough=rates.rough if rates else "",
     )
 
 
@@ -128,7 +139,28 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # no disc meets itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits)
+    rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, rough=rough)
+
+
+def _why_rough(
+    gas: Gas,
+    radius: np.ndarray,
+    mass: np.ndarray,
+    number: np.ndarray,
+    temperature: float,
+    periodic: tuple[bool, bool],
+    per_disc: np.ndarray,
+) -> str:
+    """Why Enskog's rates are only about right, as part of a sentence; empty if they are within ROUGH."""
+    theory = box_theory(radius, number, gas.box, periodic)
+    if theory.why_not:
+        return theory.why_not
+    expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, mass)
+    known = expected.sum(axis=1)
+    off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # terms of 1/N too
+    relative = float((off[known > 0] / known[known > 0]).max(initial=0.0))
+    return f"Enskog's theory is off by up to {relative:.0%} for this gas and box" if relative > ROUGH else ""
 
 
 def _rates_without_positions(
