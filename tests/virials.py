@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.pressure.measure import OUTWARD
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import BOX_SIDES, empty_batch
+from idealgas.events import IMAGES, POSITIONS, empty_batch, event_columns
 from idealgas.gas.placement import insert_on_lattice, insert_randomly, make_grid
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
+from idealgas.sides import OUTWARD, SIDES
 
 
 class Virials(NamedTuple):
@@ -65,12 +65,12 @@ def _run(radius, box, periodic, random, collisions, warm_up, lattice):
     pairs = 1 + tally.pair_virial[0] / duration / (2 * n)
     axes = 2 - sum(periodic)
     walls = tally.wall_virial[0] / duration / (axes * n) if axes else math.nan
-    push = (tally.impulse[0, : len(BOX_SIDES)] * OUTWARD).sum(axis=1) / duration
+    push = (tally.impulse[0, : len(SIDES)] * np.array(OUTWARD)).sum(axis=1) / duration
     return pairs, walls, push / (box[1], box[1], box[0], box[0]) * area / n, tally.collisions[0] / duration
 
 
 def _rows(simulation, collisions, periodic):
-    batch, stop = empty_batch(4096, periodic=periodic), Stop(disc_collisions=collisions)
+    batch, stop = empty_batch(4096, event_columns(POSITIONS, *[IMAGES] * periodic)), Stop(disc_collisions=collisions)
     while not simulation.finished(stop):
         yield batch.rows(0, simulation.advance(stop, batch))
         if simulation.epoch_over and not simulation.finished(stop):

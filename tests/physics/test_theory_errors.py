@@ -90,7 +90,7 @@ def test_few_discs_in_a_long_box(periodic):
     assert compare(40, 0.3, (4.0, 1.0), periodic)
 
 
-@pytest.mark.parametrize(("ratio", "packing_fraction"), [(2, 0.3), (4, 0.5)])
+@pytest.mark.parametrize(("ratio", "packing_fraction"), [(2, 0.3), (4, 0.5), (50, 0.4)])
 @pytest.mark.parametrize("periodic", [HARD, PERIODIC], ids=["hard", "periodic"])
 def test_mixtures(ratio, packing_fraction, periodic):
     """Thirty small and thirty large discs: Z, and the rate of every pair of species."""
