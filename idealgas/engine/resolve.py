@@ -11,9 +11,9 @@ from idealgas.physics.piston import advance_piston, collide_with_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.wall import segment_normal
 from idealgas.physics.wall_collision import collide_with_wall
+from idealgas.sides import FIRST_SEGMENT
 
 U = np.uintp
-FIRST_SEGMENT = 4  # walls 0-3 are the sides of the box
 
 
 @inline

@@ -13,8 +13,8 @@ from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCas
 from idealgas.errors import UserError
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
-from idealgas.physics.effects import Effects, begin_epoch, copy_of, end_epoch, time_of_next_gate
-from idealgas.physics.periodic import Periodic, periodic_axes
+from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
+from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
 TRAJECTORY = 3
 """Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
@@ -83,11 +83,11 @@ class Simulation:
 
     def _begin(self) -> None:
         begin_epoch(self.effects, self.time)
-        until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
-        self.length = until_gate
+        until_change = next_change(self.effects, self.time) - self.time
+        self.length = until_change
         if not self.method.single_epoch:
             periodic, extra_speed = periodic_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
-            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic), until_gate)
+            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic), until_change)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind, empty_batch
+from idealgas.events import EVENT_COLUMNS, EventBatch, Kind, columns_named, empty_batch
 from idealgas.gas.state import Gas
 from idealgas.log.errors import LogError
 from idealgas.log.replay import LogState
@@ -21,9 +21,7 @@ KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
 """What the numbers in the column `kind` of events stand for."""
 
 VECTORS: dict[str, Sequence[str]] = {
-    "position": ("x", "y"),
-    "velocity": ("vx", "vy"),
-    "image": ("image_x", "image_y"),
+    **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},
     "momentum": ("momentum_x", "momentum_y"),
 }
 """Names of the columns that the components of a vector become."""
@@ -48,8 +46,7 @@ def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[
 
     names: of the log's event columns. `kind` is an index into KIND_NAMES.
     """
-    empty = empty_batch(0, "angular_velocity" in names, "image" in names, "position" not in names)
-    yield flat(empty._asdict())
+    yield flat(empty_batch(0, columns_named(names))._asdict())
     for block in blocks:
         yield flat(block._asdict())
 

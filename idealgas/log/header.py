@@ -3,6 +3,8 @@
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from idealgas.gas.state import Gas
 from idealgas.log.schema import DISC_COLUMNS, Wall
 from idealgas.log.source import Source
@@ -64,6 +66,12 @@ class LogHeader:
         """The discs at the start of the run: constants of each disc, and position and velocity at time 0."""
         columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         return Gas(box=self.box, species_names=tuple(self._source.texts("discs/species_name")), **columns)
+
+    @cached_property
+    def inertia(self) -> np.ndarray | None:
+        """(N,) moment of inertia of each disc, mass length²; None where discs do not spin."""
+        spins = "angular_velocity" in self._source.names("checkpoints")
+        return self._source.fixed("discs/inertia") if spins else None
 
     @cached_property
     def walls(self) -> list[Wall]:

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from idealgas._jit import compile_timer
 from idealgas.document.dump import dump_document
 from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
+from idealgas.events import empty_batch
 from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
-from idealgas.run.layout import restore
-from idealgas.run.simulate import TOTALS, LoggedRun, Progress, RunHistory, Summary, batch_maker, method_of, stop_of
+from idealgas.run.layout import TOTALS, restore, row_columns
+from idealgas.run.simulate import LoggedRun, Progress, RunHistory, Summary, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
 
 TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
@@ -55,7 +56,6 @@ def resume(
             path,
             None if last is None else -1,
             fsync=scene.log.fsync,
-            make_batch=batch_maker(simulation.effects, simulation.method),
             scene_text=dump_document(scene),
             command=command,
         ) as writer:
@@ -103,7 +103,7 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
 def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
     """Raise LogError unless the discs go on from the last checkpoint as they did."""
     first = 0 if last is None else last.row
-    batch = batch_maker(simulation.effects, simulation.method)(TRIAL_ROWS + 2)
+    batch = empty_batch(TRIAL_ROWS + 2, row_columns(simulation.effects, simulation.method.without_positions))
     rows = min(simulation.advance(Stop(), batch, TRIAL_ROWS), len(log) - first)
     for stored in log.chunks(None, first, first + rows):
         again, batch = batch.rows(0, len(stored.time)), batch.rows(len(stored.time), TRIAL_ROWS + 2)

@@ -5,7 +5,6 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,37 +16,16 @@ from idealgas.engine.audit import Audit
 from idealgas.engine.methods import make_method
 from idealgas.engine.records import LATEST
 from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
-from idealgas.events import BLOCK, empty_batch
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
-from idealgas.log import Column, LogWriter
-from idealgas.physics.effects import Effects
-from idealgas.run.effects import make_effects
+from idealgas.log import LogWriter
+from idealgas.run.effects.bundle import make_effects, whole_state
 from idealgas.run.energy import Energy, energy_of, is_conserved
-from idealgas.run.layout import (
-    boundary_of,
-    by_name,
-    disc_constants,
-    disc_state,
-    event_columns,
-    observed,
-    snapshot_state,
-    walls_of,
-    whole_state,
-)
+from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
-
-TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
-OBSERVABLES = (
-    Column("kinetic_energy", "f8", unit="energy"),
-    Column("momentum", "f8", (2,), "mass length/time"),
-    Column("overlap", "f8"),
-    Column("outside", "f8"),
-    *TOTALS,
-)
 
 
 @dataclass(frozen=True)
@@ -152,42 +130,18 @@ def simulate(
         with LogWriter(
             path,
             gas,
+            layout_of(scene, gas, effects, method.without_positions),
             scene_text=dump_document(scene),
             seed=scene.scene.seed,
             command=command,
             trajectory=TRAJECTORY,
-            walls=walls_of(scene),
-            boundary=boundary_of(scene),
-            gravity=scene.gravity.acceleration if scene.gravity else (0.0, 0.0),
-            events=scene.log.events,
-            compression=scene.log.compression,
             fsync=scene.log.fsync,
             force=force,
-            disc_columns=disc_constants(effects),
-            event_columns=event_columns(effects, method.without_positions),
-            make_batch=batch_maker(effects, method),
-            checkpoint_arrays=tuple(disc_state(gas, effects, method.without_positions)),
-            checkpoint_values=(*TOTALS, *whole_state(effects)),
-            observables=(*OBSERVABLES, *observed(gas, effects)),
-            snapshot_arrays=tuple(snapshot_state(gas, effects, method.without_positions))
-            if scene.log.snapshot_every
-            else (),
-            most_rows=2 * (scene.run.events or BLOCK),
         ) as log:
-            run = LoggedRun(
-                scene, Simulation(gas, method, effects), log, RunHistory(energy_of(gas, effects)), compilation
+            past = RunHistory(energy_of(gas, effects))
+            return LoggedRun(scene, Simulation(gas, method, effects), log, past, compilation).run(
+                on_progress, interrupted
             )
-            return run.run(on_progress, interrupted)
-
-
-def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
-    """`empty_batch` for a run with these effects by this method."""
-    return partial(
-        empty_batch,
-        rotating=effects.rotation is not None,
-        periodic=effects.periodic is not None,
-        without_positions=method.without_positions,
-    )
 
 
 class RunHistory(NamedTuple):

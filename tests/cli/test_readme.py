@@ -227,6 +227,7 @@ def analysis_blocks():
     return sweeps, [block for block in found if block not in sweeps]
 
 
+@pytest.mark.slow
 def test_code_of_the_analyses_runs(folder):
     printed = run_blocks(ANALYSES, analysis_blocks()[1])
     assert all(text for _, text in printed)

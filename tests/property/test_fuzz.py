@@ -37,6 +37,7 @@ from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects
 from idealgas.run.simulate import stop_of
 from idealgas.scene import Scene
+from idealgas.sides import FIRST_SEGMENT
 
 PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
 MOST_EPOCHS = 5_000  # no scene has many, but for those in which a disc goes a long way and meets nothing
@@ -73,9 +74,9 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         segments=aligned(0, SEGMENT),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
-        thermal=Thermal(np.full(4 + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
+        thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
         piston=beyond,
-        wall_energy=np.zeros(4 + walls),
+        wall_energy=np.zeros(FIRST_SEGMENT + walls),
     )
     return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
 

@@ -14,6 +14,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 
 INSTANTS = 256
 TINY = 1e-12
@@ -71,7 +72,7 @@ def effusion(
     as states are read. Raises UserError unless the scene has one gate along an axis, one species and its events in the
     log, or if the chambers are in balance.
     """
-    gates = [wall for wall in log.scene.wall if wall.opens_at is not None]
+    gates = [wall for wall in walls_inside(log.scene) if 0 < wall.absence[0] < math.inf]
     discs, equilibrium = composition(log.discs), ensemble(log)
     if len(gates) != 1 or len(discs.name) != 1 or not log.has_events:
         raise UserError(f"{log.path}: no effusion: it takes one gate, one species and the events")
@@ -81,7 +82,7 @@ def effusion(
     if np.ptp(ends[:, across]) != 0:
         raise UserError(f"{log.path}: no effusion: the gate is not along an axis")
     place, radius, number = ends[0, across], discs.radius[0], len(log.discs)
-    opening = max(gate.opens_at or 0.0, log.start_time)
+    opening = max(gate.absence[0], log.start_time)
     time = np.linspace(opening if start is None else start, log.end_time if end is None else end, INSTANTS)
     beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
     for k, state in enumerate(log.frames(time)):

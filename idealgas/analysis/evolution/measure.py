@@ -12,7 +12,7 @@ from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
-from idealgas.physics.rotation import moment_of_inertia
+from idealgas.scene.walls import walls_inside
 
 INSTANTS = 257
 
@@ -109,8 +109,7 @@ def _samples(log: Log, inside: np.ndarray) -> Course:
 
 def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> Course:
     """At even times."""
-    gas, frame, rotation, gate = log.discs, drift(log), log.scene.rotation, _gate(log)
-    inertia = moment_of_inertia(rotation.inertia, gas.mass, gas.radius) if rotation else None
+    gas, frame, inertia, gate = log.discs, drift(log), log.inertia, _gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -129,9 +128,9 @@ def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], 
 
 def _gate(log: Log) -> tuple[int, float] | None:
     """The axis that leads through the first gate along one, and its place there."""
-    for wall in log.scene.wall:
+    for wall in walls_inside(log.scene):
         for axis in range(2):
-            if np.isfinite(wall.absence[0]) and wall.start[axis] == wall.end[axis]:
+            if wall.is_gate and wall.start[axis] == wall.end[axis]:
                 return axis, wall.start[axis]
     return None
 
@@ -148,7 +147,8 @@ def _account(
     if piston and piston.mass:  # its own energy counts: what it gives is not from outside
         counted[[wall.name for wall in log.walls].index(piston.side)] = False
         pull = piston.acceleration(log.box, log.scene.gravity)
-        parts["piston"] = piston_energy(piston.mass, observed["piston_position"], observed["piston_velocity"], pull)
+        place, velocity = observed["piston_position"], observed["piston_velocity"]
+        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
     from_outside = given[:, counted].sum(axis=1)
     total = sum(parts.values()) - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))

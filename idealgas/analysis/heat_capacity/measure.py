@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import kept_momentum, wall_temperatures
+from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
@@ -85,14 +85,14 @@ def heat_capacity(
     events are read. Raises UserError if there is no equilibrium, or none known: walls of two temperatures, collisions
     that lose energy, a piston that is driven, a gas without positions.
     """
-    scene, n = log.scene, len(log.discs)
-    losing = "restitution" in scene.effects or (scene.piston and scene.piston.mass is None and scene.piston.velocity)
-    if losing or not log.has_positions or len(wall_temperatures(scene)) > 1:
+    scene, properties, n = log.scene, log.scene.properties, len(log.discs)
+    settles = properties.elastic and not properties.driven and len(properties.temperatures) <= 1
+    if not settles or not log.has_positions:
         raise UserError(f"{log.path}: no equilibrium, or none known, and so no heat capacity")
     kinds = []
-    if wall_temperatures(scene):
+    if not properties.isolated:
         kinds.append(BATH)
-    kinds += [name for name, there in ((ROUGH, scene.rotation), (GRAVITY, scene.gravity)) if there]
+    kinds += [name for name, there in ((ROUGH, properties.spins), (GRAVITY, not properties.straight_flight)) if there]
     if scene.piston and scene.piston.mass:
         kinds.append(PISTON)
     if not kinds:
@@ -101,7 +101,7 @@ def heat_capacity(
     dof = 2 * n - int(kept_momentum(log).sum())
     capacity, excess = expected_capacity(log, series)
     if BATH in kinds:
-        (bath,) = wall_temperatures(scene)
+        (bath,) = properties.temperatures
         temperature, thermometer = Estimate(bath, 0.0, math.inf), "the walls' own"
         routes = {"Var(E)/T²": _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)}
     else:
@@ -119,10 +119,10 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     1 - x² eˣ/(eˣ - 1)²; a piston Z²/(Z + φZ'), which is T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas = log.scene, log.discs
-    per_disc = 1.5 if scene.rotation else 1.0
+    per_disc = 1.5 if scene.properties.spins else 1.0
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
-    if pull.any() and (scene.piston or scene.wall or pull.all() or equilibrated):
+    if pull.any() and (scene.piston or not scene.properties.empty or pull.all() or equilibrated):
         return None, None
     if pull.any():
         axis = int(np.flatnonzero(pull)[0])

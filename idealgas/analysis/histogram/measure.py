@@ -24,10 +24,6 @@ from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
-from idealgas.scene import EFFECTS
-
-UNIFORM = ("periodic sides", "rotation", "thermal walls")
-"""Effects that leave the gas uniform, its flights straight and its laws known."""
 
 BINS = 120
 SAMPLED = 256  # discs of a species whose velocities are tested, at most
@@ -153,7 +149,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [_some_discs(gas, s) for s in range(len(thermal))]
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members))
-    window = measure(log, [tally], start, end, progress, (*UNIFORM, "wall segments"))
+    window = measure(log, [tally], start, end, progress, ("conserves_energy",))
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
@@ -202,7 +198,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     if path:
         high *= mean_speed(temperature, discs.mass)
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress, UNIFORM)
+    window = measure(log, [tally], start, end, progress, ("uniform",))
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
@@ -216,7 +212,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
 def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
     longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # rows: pairs count twice
     tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress, EFFECTS)
+    window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
     with np.errstate(invalid="ignore"):
         law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())

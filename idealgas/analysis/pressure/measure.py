@@ -20,18 +20,12 @@ from idealgas.analysis.core.statistics import Estimate, agree, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
-from idealgas.events import BOX_SIDES
 from idealgas.gas.state import Gas
 from idealgas.log import Log
-
-OUTWARD = np.array([(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)])
-"""Outward normals of the box's sides."""
+from idealgas.sides import OUTWARD, SIDES, axis_of
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
 """Names of the routes that theory is checked against."""
-
-EFFECTS = ("periodic sides", "rotation", "thermal walls")
-"""With these the gas is uniform, at a temperature known beforehand."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +97,7 @@ def pressure(
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
-    window = measure(log, [moments, impacts], start, end, progress, allowed=EFFECTS)
+    window = measure(log, [moments, impacts], start, end, progress, ("uniform",))
     gas, discs = log.discs, composition(log.discs)
     expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
     theories = hard_disc_theories(discs, gas, log.periodic)
@@ -151,14 +145,14 @@ def _routes(
     impacts: Impacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
-    sides = [k for k in range(len(BOX_SIDES)) if not periodic[k // 2]]
-    push = (window.of(impacts.impulse[:, : len(BOX_SIDES)]) * OUTWARD).sum(axis=2).T
-    length = [gas.box[1 - k // 2] for k in range(len(BOX_SIDES))]
+    sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
+    push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
+    length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall: dict[int, float] = {}
     if in_box is not None and np.ptp(discs.radius) == 0:  # walls act on centres, which reach a radius less far
-        at_wall = {k: in_box * gas.box[k // 2] / (gas.box[k // 2] - 2 * discs.radius[0]) for k in sides}
+        at_wall = {k: in_box * gas.box[axis_of(k)] / (gas.box[axis_of(k)] - 2 * discs.radius[0]) for k in sides}
     series: dict[str, tuple[np.ndarray, float | None]] = {
-        f"{BOX_SIDES[k]} wall": (push[k] / length[k], at_wall.get(k)) for k in sides
+        f"{SIDES[k]} wall": (push[k] / length[k], at_wall.get(k)) for k in sides
     }
     if sides:
         perimeter = sum(length[k] for k in sides)

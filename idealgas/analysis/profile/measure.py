@@ -14,7 +14,6 @@ from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.physics.rotation import moment_of_inertia
 
 FEWEST_FRAMES = 32
 """Frames with a disc in a strip, below which its temperature is not told."""
@@ -97,7 +96,7 @@ def profile(
     expected = expected_profile(log, axis, edges, window.start)
     names = composition(log.discs).name
     strip = float(edges[1] - edges[0]) * log.box[1 - axis]
-    spinning = log.scene.rotation is not None
+    spinning = log.inertia is not None
     species = tuple(_of_species(name, sums[first:, s], strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
     return Profile(window, axis, edges, len(times) - first, law, species, _heat(log, window))
@@ -112,8 +111,7 @@ def _collect(
     sums = np.zeros((len(times), *shape, 3))
     middle = np.empty((len(times), shape[0]))
     number = np.bincount(gas.species)
-    rotation = log.scene.rotation
-    inertia = moment_of_inertia(rotation.inertia, gas.mass, gas.radius) if rotation else np.zeros(len(gas))
+    inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
     for k, state in enumerate(log.frames(times)):
         place = state.position[:, axis]
         strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)

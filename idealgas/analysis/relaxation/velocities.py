@@ -6,15 +6,12 @@ from idealgas.analysis.core.equilibrium import Ensemble
 from idealgas.errors import UserError
 from idealgas.log import Log
 
-STEADY = ("periodic sides", "wall segments")
-"""Effects that leave every disc its energy between collisions with other discs."""
-
 
 def check_steady(log: Log) -> None:
     """UserError if there is no law of Maxwell and Boltzmann that the discs of the log tend to, or no event in it."""
     if not log.has_events:
         raise UserError(f"{log.path}: has no events (made with log.events = false)")
-    if restless := [name for name in log.scene.effects if name not in STEADY]:
+    if restless := log.scene.lacking("conserves_motion"):
         raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")

@@ -12,7 +12,6 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.log import Log
-from idealgas.scene import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -73,7 +72,7 @@ def temperature(
     events are read. Raises UserError if there are no events in the window.
     """
     moments = Moments(log.gravity)
-    window = measure(log, [moments], start, end, progress, allowed=EFFECTS)
+    window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
     equilibrium = known_ensemble(log)
     shares: list[float] | list[None] = [None] * len(discs.name)

@@ -115,7 +115,7 @@ def transport(
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
-    window = measure(log, [moments, impacts], start, end, progress, allowed=("periodic sides",))
+    window = measure(log, [moments, impacts], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
     expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
     rates = collision_rates(discs, expected, window, impacts)

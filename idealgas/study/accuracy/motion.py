@@ -12,6 +12,7 @@ from idealgas.engine.simulation import NO_STOP, Simulation
 from idealgas.events import EventBatch, Kind, empty_batch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.run.layout import row_columns
 from idealgas.study.accuracy.cases import Case, Start
 
 STARTS = 200  # at most, from which collisions are compared
@@ -79,7 +80,7 @@ def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndar
 
 def batch_for(effects: Effects) -> EventBatch:
     """A batch with the columns that the effects call for."""
-    return empty_batch(rotating=effects.rotation is not None, periodic=effects.periodic is not None)
+    return empty_batch(columns=row_columns(effects))
 
 
 def flown_through(

@@ -248,7 +248,8 @@ def _seed(seed: int, combination: int, replicate: int) -> int:
 
 def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) -> None:
     """Scale the document's box so that its discs cover a share phi of it. SceneError if that has no meaning."""
-    fixed = [name for name in ("disc", "wall", "piston") if getattr(scene, name)]
+    fixed = ["disc"] if scene.disc else []
+    fixed += [str(effect.keys[0][0]) for effect in scene.called if not effect.properties.scales]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []
     if fixed:
         allowed = "a scene in which nothing but the box has a place"

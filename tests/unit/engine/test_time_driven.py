@@ -10,7 +10,7 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven, make_nearby
 from idealgas.events import Kind
 from idealgas.physics.effects import Effects
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
 
 BOX = (10.0, 8.0)
