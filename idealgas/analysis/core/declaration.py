@@ -14,7 +14,9 @@ Results are dataclasses with `as_dict()`: plain values, ready for JSON.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import cached_property, wraps
 from importlib import import_module
+from inspect import signature
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
@@ -127,6 +129,18 @@ class Analysis:
             known[name].check(value)
         values = {name: option.default for name, option in known.items()} | options
         return self._code("measure", self.name)(log, start=start, end=end, progress=progress, **values)
+
+    @cached_property
+    def function(self) -> Callable[..., Any]:
+        """`measure` as a function that has the arguments and the docstring of the one in measure.py."""
+        own = self._code("measure", self.name)
+        arguments = signature(own)
+
+        @wraps(own)
+        def function(*given: Any, **named: Any) -> Any:
+            return self.measure(**arguments.bind(*given, **named).arguments)
+
+        return function
 
     def combine(self, results: Sequence[Any]) -> Any:
         """What tables and figure show of the results of logs, of one or, with `several`, of more."""

@@ -63,10 +63,14 @@ def effusion(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Effusion:
-    """Measure a log of two chambers and one gate, by default from its opening to the end.
+    """Measure how fast discs pass through a slit that opens between two chambers, and compare with n⟨v⟩/π.
 
-    The theory is that of a slit much narrower than the mean free path; through a wider one more discs pass.
-    UserError if there is no gate along an axis, or discs of several species.
+    n⟨v⟩/π discs per time and open length of the slit leave a gas of number density n and mean speed ⟨v⟩: that is the
+    flux of kinetic theory through a slit much narrower than the mean free path; through a wider one more discs pass.
+
+    start, end: times; by default from the opening of the slit to the end of the log. progress(done, in all) is called
+    as states are read. Raises UserError unless the scene has one gate along an axis, one species and its events in the
+    log, or if the chambers are in balance.
     """
     gates = [wall for wall in walls_inside(log.scene) if 0 < wall.absence[0] < math.inf]
     discs, equilibrium = composition(log.discs), ensemble(log)

@@ -63,7 +63,14 @@ def evolution(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Evolution:
-    """Follow a log from one time to another, by default from its start to its end. UserError if it has no samples."""
+    """Follow temperature, energies, piston and the account of the walls in time, and discs beyond a gate.
+
+    It needs no equilibrium. Theory, where there is one, is that of the temperature: in equilibrium, of a gas that cools
+    by its collisions (Haff's law), or of one that a moving piston compresses (the adiabat).
+
+    start, end: times; by default the whole log. progress(done, in all) is called as states are read. Raises UserError
+    if the log does not cover the times or has no samples of the energy.
+    """
     first, last = span(log, start, end)
     if not len(log.observables["kinetic_energy"][0]):
         raise UserError(f"{log.path}: no samples of the energy")

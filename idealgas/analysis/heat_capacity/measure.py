@@ -75,7 +75,16 @@ def heat_capacity(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Measured:
-    """All that one log tells of a heat capacity, between two times or from detected equilibrium on."""
+    """Measure the heat capacity per disc, in units of k_B, by all the routes that one log allows.
+
+    A closed box gives E/T, with T from the pressure on its walls; a heat bath Var(E)/T²; discs with spin, gravity or a
+    piston the fluctuations of the kinetic energy at fixed total energy (Lebowitz, Percus & Verlet, Phys. Rev. 153, 250,
+    1967).
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if there is no equilibrium, or none known: walls of two temperatures, collisions
+    that lose energy, a piston that is driven, a gas without positions.
+    """
     scene, properties, n = log.scene, log.scene.properties, len(log.discs)
     settles = properties.elastic and not properties.driven and len(properties.temperatures) <= 1
     if not settles or not log.has_positions:

@@ -98,9 +98,19 @@ Progress = Callable[[int, int], None] | None
 
 
 def histogram(
-    log: Log, quantity: str, start: float | None = None, end: float | None = None, progress: Progress = None
+    log: Log, quantity: str = "speed", start: float | None = None, end: float | None = None, progress: Progress = None
 ) -> Histogram:
-    """Distribution of one of QUANTITIES between two times, by default from detected equilibrium to the end."""
+    """Measure a distribution between two times of a log, species by species, and test it against its laws.
+
+    quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
+    wait, the time between two successive events of the gas. The laws of velocities are Maxwell and Boltzmann's and that
+    at fixed energy of N discs; of free flights that of a dilute gas; of waits the exponential one. The p-values are
+    those of Kolmogorov and Smirnov's test of decorrelated samples.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are too few events in the window, or for a gas with
+    effects for which there is no such law.
+    """
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     if quantity in VELOCITY_QUANTITIES:

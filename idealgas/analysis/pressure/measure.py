@@ -81,7 +81,18 @@ def pressure(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Pressure:
-    """Measure the pressure of a log between two times, by default from detected equilibrium to the end."""
+    """Measure the pressure of a gas between two times of its log, and compare Z = PA/NT with theory.
+
+    The routes: momentum given to each wall per time and length, and by Clausius's virial theorem that given to all
+    walls and that passed on in collisions of discs. Theory is that of hard discs in this box, see `hard_disc_theories`;
+    collision rates and free paths come from the same events.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read.
+
+    Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects for which the
+    virial theorem needs further terms: gravity, wall segments, a piston, collisions that lose energy.
+    """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")

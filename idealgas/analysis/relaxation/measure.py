@@ -102,11 +102,11 @@ def relaxation(
     progress: Callable[[int, int], None] | None = None,
     every: float | None = None,
 ) -> Relaxation:
-    """Follow a log from `start`, by default its own, to `end`, by default HORIZON collisions per disc later.
+    """Follow how the speeds of a gas come to Maxwell and Boltzmann's distribution, and fit the time that it takes.
 
-    every: trials of a Monte Carlo run, or time of any other, between instants whose speeds are counted; None for none.
-
-    UserError if there is nothing in between, or if the energy of the discs is not constant.
+    start, end: times; by default from the start of the log until HORIZON collisions per disc later. progress(done, in
+    all) is called as states are read. Raises UserError if no two discs collide in between, or if the energy of the
+    discs is not constant, so that there is no distribution that they tend to.
     """
     check_steady(log)
     first, last = colliding_span(log, start, end)

@@ -102,7 +102,15 @@ def transport(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Transport:
-    """Measure a log between two times, by default from detected equilibrium to the end."""
+    """Measure how discs of a gas move about between two times of its log, and compare with Enskog's theory.
+
+    Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
+    displacement, velocity autocorrelation and from the first the diffusion coefficient; pair distribution functions.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects
+    other than periodic sides.
+    """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
