@@ -29,7 +29,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 from numba.core.event import TimingListener, install_listener
 from numba.core.serialize import dumps
 from numba.core.types.containers import BaseTuple
-from numba.extending import lower_builtin, register_jitable, type_callable
+from numba.extending import lower_builtin, overload, register_jitable, type_callable
 
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as silent as compiled code
@@ -280,9 +280,17 @@ def njit(function: Callable) -> Any:
     return compiled
 
 
+_INLINE: dict[str, Any] = {"forceinline": True, "no_cfunc_wrapper": True, **_OPTIONS}
+
+
 def inline(function: Callable) -> Any:
     """A small part that LLVM pastes into the entry points that call it; called from Python it stays Python."""
-    return register_jitable(forceinline=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
+    return register_jitable(**_INLINE)(function)
+
+
+def inline_by_type(function: Callable) -> Callable:
+    """Decorate what chooses the code of such a part by the types of its arguments; `function` is what Python calls."""
+    return overload(function, jit_options=_INLINE)
 
 
 def fetch_next_line(array: Any, row: Any) -> None:

@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
+from support import record
 
 from idealgas._jit import aligned
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import empty_batch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.gravity import Gravity
@@ -16,7 +16,6 @@ from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.run.effects.wall import make_segments
-from idealgas.run.layout import row_columns
 from idealgas.sides import FIRST_SEGMENT
 
 BOX = (12.0, 9.0)
@@ -80,12 +79,5 @@ def allowed(names: set[str]) -> bool:
 
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:
     """All columns of the event log, and the state of the effects at the end."""
-    simulation = Simulation(gas, method, effects)
-    parts = []
-    while not simulation.finished(stop):
-        batch = empty_batch(rows, row_columns(effects))
-        parts.append(batch.rows(0, simulation.advance(stop, batch)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
-    return [*columns, effects.wall_energy]
+    columns = record(Simulation(gas, method, effects), stop, rows)
+    return [*(column for column in columns if column is not None), effects.wall_energy]

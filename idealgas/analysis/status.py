@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -44,7 +44,7 @@ def status(log: Log) -> Status:
     squares = mass * (state.velocity**2).sum(axis=1)
     temperature = float(squares.mean() / 2)
     edges = np.linspace(0, HIGHEST, BINS + 1)
-    speeds = np.sort(np.sqrt(squares / temperature)) if temperature > 0 else None
+    speeds = np.sqrt(squares / temperature) if temperature > 0 else None
     p, z = _pressure(log, seen)
     return Status(
         time=log.end_time,
@@ -53,7 +53,7 @@ def status(log: Log) -> Status:
         temperature=temperature,
         pressure=p,
         compressibility=z,
-        ks_distance=None if speeds is None else _ks_distance(speeds),
+        ks_distance=None if speeds is None else ks_distance(speeds, _reduced_speed_cdf),
         edges=edges,
         density=None if speeds is None else np.histogram(speeds, edges)[0] / len(speeds) / np.diff(edges),
         expected=np.diff(_reduced_speed_cdf(edges)) / np.diff(edges),
@@ -96,9 +96,3 @@ def _events(log: Log) -> int:
 
 def _reduced_speed_cdf(speed: np.ndarray) -> np.ndarray:
     return 1 - np.exp(-(speed**2) / 2)
-
-
-def _ks_distance(speeds: np.ndarray) -> float:
-    """Largest distance of the distribution function of sorted speeds from the law's."""
-    law, steps = _reduced_speed_cdf(speeds), np.arange(len(speeds) + 1) / len(speeds)
-    return float(max((law - steps[:-1]).max(), (steps[1:] - law).max()))

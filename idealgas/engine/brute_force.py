@@ -16,7 +16,7 @@ from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.effects import Effects
-from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall
+from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact
 
@@ -83,9 +83,7 @@ def pair_event(record, i, j, effects, best):
 @inline
 def image_range(periodic, along_y):
     """The images of a neighbour along an axis."""
-    if periodic is not None:
-        return (-1, 2) if (periodic.y if along_y else periodic.x) else (0, 1)
-    return 0, 1
+    return (-1, 2) if is_periodic(periodic, along_y) else (0, 1)
 
 
 @inline
@@ -138,7 +136,7 @@ def cross_boundary(periodic, i, axis, forward):
 
 
 @njit
-def advance_events(record, ids, box, effects, until, most_events, most_collisions, epoch_start, batch, counters):
+def advance_events(record, ids, box, effects, limits, epoch_start, batch, counters):
     """As `event_driven.advance_events`, for records in order of id."""
     rows = 0
     events = 0
@@ -147,9 +145,9 @@ def advance_events(record, ids, box, effects, until, most_events, most_collision
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    while events < most_events and collisions < most_collisions and rows < capacity:
+    while events < limits.events and collisions < limits.collisions and rows < capacity:
         time, what, i, partner, image_x, image_y = next_event(record, box, effects)
-        if time > until:
+        if time > limits.until:
             reached = True
             break
         if what == BOUNDARY_CROSSING:
@@ -198,7 +196,7 @@ class BruteForce:
     ) -> tuple[int, bool]:
         """See `advance_events`."""
         record, ids, box = self.discs
-        return advance_events(record, ids, box, self._effects, *limits[:3], epoch_start, batch, counters)
+        return advance_events(record, ids, box, self._effects, limits, epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from idealgas.gas.state import Gas
+from idealgas.physics.contact_value import contact_value
 from idealgas.physics.effects import Effects
 
 EVENTS_PER_DISC = 64  # at most; half of it at least
@@ -23,8 +24,7 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
     largest_radius = float(gas.radius.max())
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
     phi = min(math.pi * math.fsum((gas.radius**2).tolist()) / gas.area, 0.9)
-    contact_value = (1.0 - 7.0 * phi / 16.0) / (1.0 - phi) ** 2
-    pairs = math.sqrt(2.0) * mean_diameter * (n - 1) / gas.area * contact_value
+    pairs = math.sqrt(2.0) * mean_diameter * (n - 1) / gas.area * contact_value(phi)
     room = [length - 2.0 * largest_radius for length in gas.box]
     far = [
         way if way > 2.0 * largest_radius else length * on

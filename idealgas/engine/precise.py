@@ -1,13 +1,12 @@
 """The brute-force method in numbers of any length, for smooth elastic discs in a reflecting box.
 
-The laws and the rule for ties are those of `brute_force`, written in the arithmetic of `physics.arithmetic` and
-compiled for each type of number. All pairs are asked for the next event; as an answer follows from the two records
+The laws are those of every method, compiled for each type of number of `physics.arithmetic`; the rule for ties is that
+of `brute_force`. All pairs are asked for the next event; as an answer follows from the two records
 alone, it is asked for anew only when one of them has changed. Local times count from the start of the run: one epoch is
 all.
 """
 
-import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,10 +16,16 @@ from idealgas.engine.records import Limits, add_to_counters, check_clock, make_d
 from idealgas.engine.rows import batch_capacity, write_pair, write_side_hit
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
-from idealgas.physics.arithmetic import add, divide, less, load, multiply, number, root, rounded, store, subtract
+from idealgas.physics.arithmetic import load, number, rounded, store
+from idealgas.physics.box_side import side_contact
+from idealgas.physics.constants import NEVER
+from idealgas.physics.disc_disc import contact_time, velocities_after
 from idealgas.physics.effects import Effects
+from idealgas.physics.motion import position_after
+from idealgas.physics.periodic import NO_IMAGES
 
 NOBODY = -5  # beyond the sides, which are -1 to -4
+ELASTIC = 2.0  # 1 + the coefficient of restitution
 
 
 class Columns(NamedTuple):
@@ -34,6 +39,18 @@ class Columns(NamedTuple):
     r: np.ndarray
     m: np.ndarray
     box: np.ndarray
+
+
+class Disc(NamedTuple):
+    """One disc: position, velocity, time of the record, radius and mass, as numbers of one length."""
+
+    x: Any
+    y: Any
+    vx: Any
+    vy: Any
+    t: Any
+    r: Any
+    m: Any
 
 
 class Next(NamedTuple):
@@ -59,105 +76,36 @@ def make_columns(gas: Gas, precision: str) -> Columns:
 
 
 @inline
-def position_at(c, i, time):
-    """Where disc i is at a time not before its record's."""
-    dt = subtract(time, load(c.t, i))
-    return (
-        add(load(c.x, i), multiply(load(c.vx, i), dt)),
-        add(load(c.y, i), multiply(load(c.vy, i), dt)),
-    )
-
-
-@inline
-def relative_motion(c, i, j):
-    """As `disc_disc.relative_motion`."""
-    i_time, j_time = load(c.t, i), load(c.t, j)
-    time = i_time if less(j_time, i_time) else j_time
-    i_dt, j_dt = subtract(time, i_time), subtract(time, j_time)
-    i_vx, i_vy, j_vx, j_vy = load(c.vx, i), load(c.vy, i), load(c.vx, j), load(c.vy, j)
-    x = subtract(load(c.x, i), load(c.x, j))
-    y = subtract(load(c.y, i), load(c.y, j))
-    x = add(x, subtract(multiply(i_vx, i_dt), multiply(j_vx, j_dt)))
-    y = add(y, subtract(multiply(i_vy, i_dt), multiply(j_vy, j_dt)))
-    return time, x, y, subtract(i_vx, j_vx), subtract(i_vy, j_vy)
-
-
-@inline
-def dot(ax, ay, bx, by):
-    """Scalar product."""
-    return add(multiply(ax, bx), multiply(ay, by))
-
-
-@inline
-def velocities_after(c, i, j, x, y, vx, vy):
-    """Of discs i and j after they met with this relative motion."""
-    i_mass, j_mass = load(c.m, i), load(c.m, j)
-    impulse = multiply(number(2.0, x), dot(x, y, vx, vy))
-    k = divide(impulse, multiply(dot(x, y, x, y), add(i_mass, j_mass)))
-    i_k, j_k = multiply(k, j_mass), multiply(k, i_mass)
-    return (
-        subtract(load(c.vx, i), multiply(i_k, x)),
-        subtract(load(c.vy, i), multiply(i_k, y)),
-        add(load(c.vx, j), multiply(j_k, x)),
-        add(load(c.vy, j), multiply(j_k, y)),
-    )
+def disc_at(c, i):
+    """Disc i as the laws take it."""
+    return Disc(load(c.x, i), load(c.y, i), load(c.vx, i), load(c.vy, i), load(c.t, i), load(c.r, i), load(c.m, i))
 
 
 @inline
 def pair_time(c, i, j):
-    """As `disc_disc.contact_time`; infinite if there is none."""
-    time, x, y, vx, vy = relative_motion(c, i, j)
-    never, zero = number(math.inf, time), number(0.0, time)
-    approach = dot(x, y, vx, vy)
-    if not less(approach, zero):
-        return never
-    reach = add(load(c.r, i), load(c.r, j))
-    square = multiply(reach, reach)
-    gap = subtract(dot(x, y, x, y), square)
-    touch = time
-    if less(zero, gap):
-        cross = subtract(multiply(vx, y), multiply(vy, x))
-        discriminant = subtract(multiply(dot(vx, vy, vx, vy), square), multiply(cross, cross))
-        if not less(zero, discriminant):
-            return never
-        touch = add(time, divide(gap, subtract(root(discriminant), approach)))
-    if not less(time, touch):
-        before = load(c.vx, i), load(c.vy, i), load(c.vx, j), load(c.vy, j)
-        if velocities_after(c, i, j, x, y, vx, vy) == before:
-            return never
-    return touch
+    """Time of the next collision of discs i and j; NEVER if there is none."""
+    return contact_time(disc_at(c, i), disc_at(c, j), i, j, None, None, None, NO_IMAGES)
 
 
 @inline
 def side_time(c, i, side):
-    """As `box_side.side_contact`; infinite if there is none."""
-    if side < 2:
-        position, velocity = load(c.x, i), load(c.vx, i)
-    else:
-        position, velocity = load(c.y, i), load(c.vy, i)
-    zero = number(0.0, position)
-    upper = side & 1
-    if not (less(zero, velocity) if upper else less(velocity, zero)):
-        return number(math.inf, position)
-    radius = load(c.r, i)
-    target = subtract(load(c.box, side >> 1), radius) if upper else radius
-    delay = divide(subtract(target, position), velocity)
-    return add(load(c.t, i), zero if less(delay, zero) else delay)
+    """Time at which disc i meets a side of the box; NEVER if it does not."""
+    return side_contact(disc_at(c, i), side, load(c.box, side >> 1), None)
 
 
 @inline
 def find_next(c, coming, i):
     """Ask all sides and discs for the next event of disc i, walls first, then by id."""
-    best = number(math.inf, load(c.t, i))
+    best = number(NEVER, load(c.t, i))
     partner = NOBODY
     for side in range(4):
         time = side_time(c, i, side)
-        if less(time, best):
+        if time < best:
             best, partner = time, -1 - side
     for j in range(c.t.shape[0]):
         if j != i:
             time = pair_time(c, i, j)
-            if less(time, best):
+            if time < best:
                 best, partner = time, j
     store(coming.time, i, best)
     coming.partner[i] = partner
@@ -167,7 +115,7 @@ def find_next(c, coming, i):
 def offer(c, coming, i, j):
     """Disc j has a new record: whether it meets disc i before all others."""
     time, best = pair_time(c, i, j), load(coming.time, i)
-    if less(time, best) or (j < coming.partner[i] and not less(best, time)):
+    if time < best or (j < coming.partner[i] and time <= best):
         store(coming.time, i, time)
         coming.partner[i] = j
 
@@ -195,19 +143,24 @@ def find_again(c, coming, i, j):
 @inline
 def move(c, i, time):
     """Bring disc i to a time."""
-    x, y = position_at(c, i, time)
-    store(c.x, i, x)
-    store(c.y, i, y)
+    delay = time - load(c.t, i)
+    store(c.x, i, position_after(load(c.x, i), load(c.vx, i), None, delay))
+    store(c.y, i, position_after(load(c.y, i), load(c.vy, i), None, delay))
     store(c.t, i, time)
+
+
+@inline
+def turn(velocity, i):
+    """Reverse a component of disc i's velocity."""
+    speed = load(velocity, i)
+    store(velocity, i, number(0.0, speed) - speed)
 
 
 @inline
 def resolve_side(c, i, side, time):
     """Disc i meets a side of the box."""
     move(c, i, time)
-    velocity = c.vx if side < 2 else c.vy
-    speed = load(velocity, i)
-    store(velocity, i, subtract(number(0.0, speed), speed))
+    turn(c.vx if side < 2 else c.vy, i)
 
 
 @inline
@@ -215,12 +168,12 @@ def resolve_pair(c, i, j, time):
     """Discs i and j meet."""
     move(c, i, time)
     move(c, j, time)
-    _, x, y, vx, vy = relative_motion(c, i, j)
-    i_vx, i_vy, j_vx, j_vy = velocities_after(c, i, j, x, y, vx, vy)
-    store(c.vx, i, i_vx)
-    store(c.vy, i, i_vy)
-    store(c.vx, j, j_vx)
-    store(c.vy, j, j_vy)
+    a, b = disc_at(c, i), disc_at(c, j)
+    a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy, ELASTIC)
+    store(c.vx, i, a_vx)
+    store(c.vy, i, a_vy)
+    store(c.vx, j, b_vx)
+    store(c.vy, j, b_vy)
 
 
 @inline
@@ -234,9 +187,7 @@ def write_record(c, i, disc):
 
 
 @njit
-def advance_precisely(
-    c, coming, record, ids, effects, until, most_events, most_collisions, epoch_start, batch, counters
-):
+def advance_precisely(c, coming, record, ids, effects, limits, epoch_start, batch, counters):
     """As `brute_force.advance_events`; record: the discs rounded, kept so."""
     rows = 0
     events = 0
@@ -245,14 +196,14 @@ def advance_precisely(
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    while events < most_events and collisions < most_collisions and rows < capacity:
+    while events < limits.events and collisions < limits.collisions and rows < capacity:
         i = 0
         time = load(coming.time, 0)
         for k in range(1, record.shape[0]):
-            if less(load(coming.time, k), time):
+            if load(coming.time, k) < time:
                 i, time = k, load(coming.time, k)
         clock = rounded(time)
-        if clock > until:
+        if clock > limits.until:
             reached = True
             break
         j = np.int64(coming.partner[i])
@@ -278,12 +229,11 @@ def advance_precisely(
 def turn_back(c, time):
     """Bring all discs to a local time, reverse their velocities and count time from there."""
     end = number(time, load(c.t, 0))
-    zero = number(0.0, end)
     for i in range(c.t.shape[0]):
         move(c, i, end)
-        store(c.vx, i, subtract(zero, load(c.vx, i)))
-        store(c.vy, i, subtract(zero, load(c.vy, i)))
-        store(c.t, i, zero)
+        turn(c.vx, i)
+        turn(c.vy, i)
+        store(c.t, i, number(0.0, end))
 
 
 class PreciseBruteForce:
@@ -311,7 +261,7 @@ class PreciseBruteForce:
         """See `advance_precisely`."""
         record, ids, _ = self.discs
         return advance_precisely(
-            self.columns, self._coming, record, ids, self._effects, *limits[:3], epoch_start, batch, counters
+            self.columns, self._coming, record, ids, self._effects, limits, epoch_start, batch, counters
         )
 
     def deepest_overlap(self) -> float:

@@ -1,6 +1,7 @@
 """A gas on its way through the epochs of its run."""
 
 import copy
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
@@ -46,6 +47,9 @@ class Stop(NamedTuple):
     events: int = UNLIMITED
     disc_collisions: int = UNLIMITED
     trials: int = UNLIMITED
+
+
+NO_STOP = Stop()
 
 
 @dataclass
@@ -113,6 +117,24 @@ class Simulation:
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0]["time"])
         return rows
+
+    def slices(
+        self, stop: Stop, batch: EventBatch | None = None, events: int = UNLIMITED, pause: float = LATEST
+    ) -> Iterator[int]:
+        """Advance to the stop or the pause through as many epochs as it takes; yield after each call of `advance` the
+        rows it filled, from the first row of the batch.
+        """
+        while not self.finished(stop):
+            yield self.advance(stop, batch, events, pause)
+            if self.paused:
+                return
+            if self.epoch_over and not self.finished(stop):
+                self.next_epoch()
+
+    def run(self, stop: Stop = NO_STOP, pause: float = LATEST) -> None:
+        """Advance to the stop or the pause through as many epochs as it takes, without rows."""
+        for _ in self.slices(stop, pause=pause):
+            pass
 
     def finished(self, stop: Stop) -> bool:
         """Whether the stop is reached."""

@@ -19,7 +19,7 @@ from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.motion import advance
-from idealgas.physics.periodic import NO_IMAGES, separation, wrap
+from idealgas.physics.periodic import is_periodic, nearest_images, periodic_axes, separation, wrap
 
 U = np.uintp
 NEAR = 3.0  # mean number of discs within reach: that was fastest
@@ -65,24 +65,6 @@ def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
     cell, order = np.empty((2, n), np.int32)
     pairs, first = np.empty((4 * n, 2), np.int32), np.empty(columns * rows + 1, np.int32)
     return Nearby(pairs, cell, order, first, columns, rows, skin)
-
-
-@inline
-def nearest(x, y, periodic):
-    """Box lengths from one disc to the nearest image of another, which is (x, y) away."""
-    if periodic is not None:
-        images_x = np.int64(round(x / periodic.Lx)) if periodic.x else 0
-        images_y = np.int64(round(y / periodic.Ly)) if periodic.y else 0
-        return images_x, images_y
-    return NO_IMAGES
-
-
-@inline
-def is_periodic(periodic, along_y):
-    """Whether the sides across an axis are."""
-    if periodic is not None:
-        return periodic.y if along_y else periodic.x
-    return False
 
 
 @inline
@@ -207,17 +189,16 @@ def advance_steps(
     dt,
     deepest,
     effects,
-    until,
-    most_events,
-    most_collisions,
+    limits,
     epoch_start,
     batch,
     counters,
 ):
-    """Take steps up to local time `until`, or to a limit, or until the batch or the list of pairs is full.
+    """Take steps up to the limits, or until the batch or the list of pairs is full.
 
-    Return the number of rows written, and whether everything up to `until` has happened. A limit may be reached in the
-    middle of a step; it goes on from there. deepest: (1,) f8, overlap at a collision, of the sum of the radii.
+    Return the number of rows written, and whether everything up to the limit of time has happened. A limit may be
+    reached in the middle of a step; it goes on from there. deepest: (1,) f8, overlap at a collision, of the sum of the
+    radii.
     """
     s = step[0]
     number = record.shape[0]
@@ -225,9 +206,9 @@ def advance_steps(
     rows = events = collisions = 0
     now = counters[0].time
     reached = False
-    while events < most_events and collisions < most_collisions and rows < capacity:
+    while events < limits.events and collisions < limits.collisions and rows < capacity:
         time = s.number * dt - epoch_start
-        if time > until:
+        if time > limits.until:
             reached = True
             break
         if s.cursor < number:
@@ -255,7 +236,8 @@ def advance_steps(
         j = near.pairs[U(s.cursor - number), 1]
         a = record[U(i)]
         b = record[U(j)]
-        resolve_pair(a, b, ids[U(i)], ids[U(j)], time, nearest(a.x - b.x, a.y - b.y, effects.periodic), effects)
+        images = nearest_images(a.x - b.x, a.y - b.y, effects.periodic)
+        resolve_pair(a, b, ids[U(i)], ids[U(j)], time, images, effects)
         rows += write_pair(batch, rows, epoch_start + time, record, ids, i, j, effects)
         deepest[0] = max(deepest[0], depth)
         events += 1
@@ -277,8 +259,7 @@ class TimeDriven:
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch, which may cut a step in two: discs fly on as they did."""
-        periodic = (effects.periodic.x, effects.periodic.y) if effects.periodic else (False, False)
-        self._near = make_nearby(gas, periodic)
+        self._near = make_nearby(gas, periodic_axes(effects.periodic))
         self.discs = make_discs(gas, np.arange(len(gas)))
         list_pairs(*self.discs, self._near, effects.periodic)
         self.discs = make_discs(gas, self._near.order.copy())
@@ -297,7 +278,7 @@ class TimeDriven:
         if step.pairs > len(self._near.pairs):
             self._near = self._near._replace(pairs=np.empty((2 * step.pairs, 2), np.int32))
         return advance_steps(
-            record, ids, box, self._near, self._step, self._dt, self._deepest, self._effects, *limits[:3],
+            record, ids, box, self._near, self._step, self._dt, self._deepest, self._effects, limits,
             epoch_start, batch, counters,
         )  # fmt: skip
 

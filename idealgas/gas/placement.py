@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import inline, njit
+from idealgas.physics.periodic import nearest_image
 
 PATIENCE = 3_000
 """Refusals a disc, on the average, after which random placement gives up..."""
@@ -108,12 +109,6 @@ def _around(index, count, period):
 
 
 @inline
-def _distance(a, b, period):
-    """Difference of two coordinates, through joined sides if that is shorter."""
-    return a - b - period * round((a - b) / period) if period > 0.0 else a - b
-
-
-@inline
 def _is_free(grid, position, radius, x, y, reach, i):
     """Whether a disc of radius `reach` at (x, y) would overlap no wall and, but for disc i, none of the grid."""
     columns, rows = grid.first.shape
@@ -122,8 +117,8 @@ def _is_free(grid, position, radius, x, y, reach, i):
         for r in range(*_around(row, rows, grid.period[1])):
             k = grid.first[c % columns, r % rows]
             while k >= 0:
-                dx = _distance(x, position[k, 0], grid.period[0])
-                dy = _distance(y, position[k, 1], grid.period[1])
+                dx = nearest_image(x - position[k, 0], grid.period[0], grid.period[0] > 0.0)
+                dy = nearest_image(y - position[k, 1], grid.period[1], grid.period[1] > 0.0)
                 contact = reach + radius[k]
                 if k != i and dx * dx + dy * dy < contact * contact:
                     return False

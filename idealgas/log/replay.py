@@ -7,13 +7,16 @@ import numpy as np
 
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.source import Source
+from idealgas.physics.motion import position_after, velocity_after
+from idealgas.physics.periodic import wrapped
 
 
 class LogState(NamedTuple):
     """All discs at one time, in order of id.
 
-    position, velocity: (N, 2); positions that nobody knows are not numbers. image: (N, 2), how many boxes to add to a
-    position to unwrap it; angular_velocity: (N,); None without periodic sides, or rotation.
+    position: (N, 2), length; nan in a gas without positions. velocity: (N, 2), length/time. image: (N, 2), number of
+    box lengths to add to a position to unwrap it; None without periodic sides. angular_velocity: (N,), 1/time; None
+    without rotation.
     """
 
     time: float
@@ -109,14 +112,14 @@ class Replay:
         """All discs in free flight to a time between this row and the next."""
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]
-        dt = time - self._time
-        for axis, pull in enumerate(self._gravity):  # in the order in which the engine moves a disc
-            position[:, axis] += velocity[:, axis] * dt
-            if any(self._gravity):
-                position[:, axis] += 0.5 * pull * dt * dt
-                velocity[:, axis] += pull * dt
+        delay = time - self._time
+        for axis, pull in enumerate(self._gravity):
+            falls = any(self._gravity)
+            place = position_after(position[:, axis], velocity[:, axis], pull if falls else None, delay)
+            if falls:
+                velocity[:, axis] = velocity_after(velocity[:, axis], pull, delay)
             if self._periodic[axis]:
-                boxes = np.floor(position[:, axis] / self._box[axis])
-                position[:, axis] -= boxes * self._box[axis]
+                place, boxes = wrapped(place, self._box[axis])
                 now["image"][:, axis] += boxes.astype(np.int32)
+            position[:, axis] = place
         return LogState(time, **now)

@@ -1,94 +1,151 @@
-"""Arithmetic by type: one source of an algorithm serves floats of any length, and pairs of them with twice the digits.
+"""Numbers of several lengths: a law written with operators serves floats, and pairs of floats with twice the digits.
 
-`add(a, b)` and the others are `a + b` for floats and `double_double.add(a, b)` for pairs, decided when the caller is
-compiled. A column of numbers is an array (n,) of floats, or (n, 2) of pairs.
+`Pair` is a number type for compiled code too, with the arithmetic of `double_double`. A law that takes numbers of any
+length writes `number(0.0, x)` where 0.0 would turn a float32 into a float64, and `root(x)` for √x. A column of numbers
+is an array (n,) of floats, or (n, 2) of pairs.
 """
 
 import math
+import operator
 from typing import Any
 
 import numpy as np
-from numba import types
-from numba.extending import overload
+from numba.core import cgutils, types
+from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
 
-from idealgas.physics import double_double as pairs
-
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "forceinline": True}
-
-
-def _is_pair(a: Any) -> bool:
-    return isinstance(a, tuple | types.BaseTuple)
+from idealgas._jit import inline, inline_by_type
+from idealgas.physics import double_double
 
 
-def add(a, b):
-    """a + b."""
-    return pairs.add(a, b) if _is_pair(a) else a + b
+class Pair:
+    """The number high + low, high being the float nearest to it."""
+
+    __slots__ = ("high", "low")
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, high: float, low: float) -> None:
+        self.high, self.low = high, low
+
+    def __add__(self, other: "Pair") -> "Pair":
+        return Pair(*double_double.add(parts(self), parts(other)))
+
+    def __sub__(self, other: "Pair") -> "Pair":
+        return Pair(*double_double.subtract(parts(self), parts(other)))
+
+    def __mul__(self, other: "Pair") -> "Pair":
+        return Pair(*double_double.multiply(parts(self), parts(other)))
+
+    def __truediv__(self, other: "Pair") -> "Pair":
+        return Pair(*double_double.divide(parts(self), parts(other)))
+
+    def __lt__(self, other: "Pair") -> bool:
+        return double_double.less(parts(self), parts(other))
+
+    def __le__(self, other: "Pair") -> bool:
+        return not double_double.less(parts(other), parts(self))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Pair) and parts(self) == parts(other)
 
 
-@overload(add, jit_options=_OPTIONS)
-def _add(a, b):
-    return (lambda a, b: pairs.add(a, b)) if _is_pair(a) else (lambda a, b: a + b)
+@inline
+def parts(a):
+    """The two floats of a pair."""
+    return a.high, a.low
 
 
-def subtract(a, b):
-    """a - b."""
-    return pairs.subtract(a, b) if _is_pair(a) else a - b
+class PairType(types.Type):
+    """`Pair` in compiled code."""
+
+    def __init__(self) -> None:
+        super().__init__("Pair")
 
 
-@overload(subtract, jit_options=_OPTIONS)
-def _subtract(a, b):
-    return (lambda a, b: pairs.subtract(a, b)) if _is_pair(a) else (lambda a, b: a - b)
+PAIR = PairType()
 
 
-def multiply(a, b):
-    """a * b."""
-    return pairs.multiply(a, b) if _is_pair(a) else a * b
+@register_model(PairType)
+class _Model(models.StructModel):
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, [("high", types.float64), ("low", types.float64)])
 
 
-@overload(multiply, jit_options=_OPTIONS)
-def _multiply(a, b):
-    return (lambda a, b: pairs.multiply(a, b)) if _is_pair(a) else (lambda a, b: a * b)
+make_attribute_wrapper(PairType, "high", "high")
+make_attribute_wrapper(PairType, "low", "low")
 
 
-def divide(a, b):
-    """a / b."""
-    return pairs.divide(a, b) if _is_pair(a) else a / b
+@type_callable(Pair)
+def _type_of_pair(context: Any) -> Any:
+    return lambda high, low: PAIR
 
 
-@overload(divide, jit_options=_OPTIONS)
-def _divide(a, b):
-    return (lambda a, b: pairs.divide(a, b)) if _is_pair(a) else (lambda a, b: a / b)
+@lower_builtin(Pair, types.float64, types.float64)
+def _code_of_pair(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    pair = cgutils.create_struct_proxy(PAIR)(context, builder)
+    pair.high, pair.low = arguments
+    return pair._getvalue()
+
+
+def _operate(sign: Any, operation: Any) -> None:
+    """Give pairs an operator that makes a pair of two."""
+
+    @inline_by_type(sign)
+    def choose(a, b):
+        if a is PAIR and b is PAIR:
+
+            def operate(a, b):
+                high, low = operation(parts(a), parts(b))
+                return Pair(high, low)
+
+            return operate
+
+
+_operate(operator.add, double_double.add)
+_operate(operator.sub, double_double.subtract)
+_operate(operator.mul, double_double.multiply)
+_operate(operator.truediv, double_double.divide)
+
+
+def _compare(sign: Any, operate: Any) -> None:
+    """Give pairs an operator of another kind, written for two of them."""
+    inline_by_type(sign)(lambda a, b: operate if a is PAIR and b is PAIR else None)
+
+
+_compare(operator.lt, lambda a, b: double_double.less(parts(a), parts(b)))
+_compare(operator.gt, lambda a, b: double_double.less(parts(b), parts(a)))
+_compare(operator.le, lambda a, b: not double_double.less(parts(b), parts(a)))
+_compare(operator.eq, lambda a, b: (a.high == b.high) & (a.low == b.low))
+_compare(max, lambda a, b: b if a < b else a)
 
 
 def root(a):
     """√a."""
-    return pairs.root(a) if _is_pair(a) else type(a)(math.sqrt(a))
+    return Pair(*double_double.root(parts(a))) if isinstance(a, Pair) else type(a)(math.sqrt(a))
 
 
-@overload(root, jit_options=_OPTIONS)
+@inline_by_type(root)
 def _root(a):
-    return (lambda a: pairs.root(a)) if _is_pair(a) else (lambda a: math.sqrt(a))
+    if a is PAIR:
 
+        def operate(a):
+            high, low = double_double.root(parts(a))
+            return Pair(high, low)
 
-def less(a, b):
-    """a < b."""
-    return pairs.less(a, b) if _is_pair(a) else a < b
-
-
-@overload(less, jit_options=_OPTIONS)
-def _less(a, b):
-    return (lambda a, b: pairs.less(a, b)) if _is_pair(a) else (lambda a, b: a < b)
+        return operate
+    return lambda a: math.sqrt(a)
 
 
 def number(value, like):
     """A float as a number of the type of another."""
-    return (value, 0.0) if _is_pair(like) else type(like)(value)
+    if isinstance(like, Pair):
+        return Pair(value, 0.0)
+    return np.float32(value) if isinstance(like, np.float32) else value
 
 
-@overload(number, jit_options=_OPTIONS)
+@inline_by_type(number)
 def _number(value, like):
-    if _is_pair(like):
-        return lambda value, like: (value, 0.0)
+    if like is PAIR:
+        return lambda value, like: Pair(value, 0.0)
     if like == types.float32:
         return lambda value, like: np.float32(value)
     return lambda value, like: value
@@ -96,30 +153,30 @@ def _number(value, like):
 
 def rounded(a):
     """The float64 nearest to a number."""
-    return a[0] if _is_pair(a) else np.float64(a)
+    return a.high if isinstance(a, Pair) else np.float64(a)
 
 
-@overload(rounded, jit_options=_OPTIONS)
+@inline_by_type(rounded)
 def _rounded(a):
-    return (lambda a: a[0]) if _is_pair(a) else (lambda a: np.float64(a))
+    return (lambda a: a.high) if a is PAIR else (lambda a: np.float64(a))
 
 
 def load(column, i):
     """Number i of a column."""
-    return (column[i, 0], column[i, 1]) if column.ndim == 2 else column[i]
+    return Pair(column[i, 0], column[i, 1]) if column.ndim == 2 else column[i]
 
 
-@overload(load, jit_options=_OPTIONS)
+@inline_by_type(load)
 def _load(column, i):
-    return (lambda column, i: (column[i, 0], column[i, 1])) if column.ndim == 2 else (lambda column, i: column[i])
+    return (lambda column, i: Pair(column[i, 0], column[i, 1])) if column.ndim == 2 else (lambda column, i: column[i])
 
 
 def store(column, i, value):
     """Set number i of a column."""
-    column[i] = value
+    column[i] = parts(value) if isinstance(value, Pair) else value
 
 
-@overload(store, jit_options=_OPTIONS)
+@inline_by_type(store)
 def _store(column, i, value):
     if column.ndim == 1:
 
@@ -128,7 +185,7 @@ def _store(column, i, value):
     else:
 
         def put(column, i, value):
-            column[i, 0] = value[0]
-            column[i, 1] = value[1]
+            column[i, 0] = value.high
+            column[i, 1] = value.low
 
     return put

@@ -1,6 +1,7 @@
-"""A disc and the sides of the box: left 0, right 1, bottom 2, top 3."""
+"""A disc and the sides of the box: left 0, right 1, bottom 2, top 3. In straight flight for numbers of any length."""
 
 from idealgas._jit import inline
+from idealgas.physics.arithmetic import number
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
 from idealgas.physics.gravity import acceleration_along
@@ -9,8 +10,9 @@ from idealgas.physics.gravity import acceleration_along
 @inline
 def arrival_delay(position, velocity, target):
     """Delay until a coordinate reaches the target it moves to; none if it is there or, by rounding, beyond."""
-    delay = max((target - position) / velocity, 0.0)
-    return NEVER if velocity == 0.0 else delay
+    zero = number(0.0, velocity)
+    delay = max((target - position) / velocity, zero)
+    return number(NEVER, velocity) if velocity == zero else delay
 
 
 @inline
@@ -32,6 +34,7 @@ def side_contact(disc, side, length, gravity):
     low, high = centre_range(length, disc.r)
     position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
     upper = side & 1
+    zero, never = number(0.0, velocity), number(NEVER, velocity)
     if gravity is not None:
         pull = acceleration_along(gravity, side >= 2)
         if upper:
@@ -39,7 +42,7 @@ def side_contact(disc, side, length, gravity):
         else:
             delay = time_to_plane(position - low, velocity, pull)
     elif upper:
-        delay = arrival_delay(position, velocity, high) if velocity > 0.0 else NEVER
+        delay = arrival_delay(position, velocity, high) if velocity > zero else never
     else:
-        delay = arrival_delay(position, velocity, low) if velocity < 0.0 else NEVER
-    return disc.t + delay if delay < NEVER else NEVER
+        delay = arrival_delay(position, velocity, low) if velocity < zero else never
+    return disc.t + delay if delay < never else never

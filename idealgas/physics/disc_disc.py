@@ -1,11 +1,11 @@
 """Two discs: when they touch and how they part.
 
-Both laws are symmetric to the last bit under exchange of the discs: every difference only changes its sign.
+Both laws are symmetric to the last bit under exchange of the discs: every difference only changes its sign. For smooth
+elastic discs they serve numbers of any length, see `arithmetic`; a record is anything with x, y, vx, vy, t, r and m.
 """
 
-import math
-
 from idealgas._jit import inline
+from idealgas.physics.arithmetic import number, root
 from idealgas.physics.constants import NEVER
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.restitution import rebound
@@ -43,12 +43,13 @@ def touch(x, y, vx, vy, reach):
     digits in a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). D = 0 is no contact: it would change
     nothing, and of discs that slide off each other rounding would say c/|b|, any time at all. Free of branches.
     """
+    zero = number(0.0, x)
     approach = x * vx + y * vy
     gap = x * x + y * y - reach * reach
     cross = vx * y - vy * x
     discriminant = (vx * vx + vy * vy) * (reach * reach) - cross * cross
-    delay = max(gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) - approach)
-    return (approach < 0.0) & ((discriminant > 0.0) | (gap <= 0.0)), delay
+    delay = max(gap, zero) / (root(max(discriminant, zero)) - approach)
+    return (approach < zero) & ((discriminant > zero) | (gap <= zero)), delay
 
 
 @inline
@@ -56,7 +57,7 @@ def first_touch(a, b, gravity, periodic, images):
     """Time at which approaching discs touch, or of the later record if they touch or overlap by then; else NEVER."""
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     meets, delay = touch(x, y, vx, vy, a.r + b.r)
-    return time + delay if meets else NEVER
+    return time + delay if meets else number(NEVER, time)
 
 
 @inline
@@ -69,22 +70,21 @@ def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
     touch = first_touch(a, b, gravity, periodic, images)
     if touch == max(a.t, b.t):
         _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-        k = normal_impulse(x, y, vx, vy, a.m + b.m, rebound(restitution, a_id, b_id, touch))
-        unchanged = (
-            (a.vx - k * b.m * x == a.vx)
-            & (a.vy - k * b.m * y == a.vy)
-            & (b.vx + k * a.m * x == b.vx)
-            & (b.vy + k * a.m * y == b.vy)
-        )
-        if unchanged:
-            return NEVER
+        factor = rebound(restitution, a_id, b_id, touch)
+        a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, x, y, vx, vy, factor)
+        if (a_vx == a.vx) & (a_vy == a.vy) & (b_vx == b.vx) & (b_vy == b.vy):
+            return number(NEVER, touch)
     return touch
 
 
 @inline
-def normal_impulse(x, y, vx, vy, total_mass, factor):
-    """What times the other's mass and (x, y) a disc's velocity loses: factor is 1 + the coefficient of restitution."""
-    return factor * (x * vx + y * vy) / ((x * x + y * y) * total_mass)
+def velocities_after(a, b, x, y, vx, vy, factor):
+    """Velocities of a and b after the normal impulse of a collision.
+
+    x, y, vx, vy: position and velocity of a relative to b. factor: 1 + the coefficient of restitution.
+    """
+    k = number(factor, x) * (x * vx + y * vy) / ((x * x + y * y) * (a.m + b.m))
+    return a.vx - k * b.m * x, a.vy - k * b.m * y, b.vx + k * a.m * x, b.vy + k * a.m * y
 
 
 @inline
@@ -93,8 +93,5 @@ def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
     x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)
-    k = normal_impulse(x, y, a.vx - b.vx, a.vy - b.vy, a.m + b.m, rebound(restitution, a_id, b_id, a.t))
-    a.vx -= k * b.m * x
-    a.vy -= k * b.m * y
-    b.vx += k * a.m * x
-    b.vy += k * a.m * y
+    factor = rebound(restitution, a_id, b_id, a.t)
+    a.vx, a.vy, b.vx, b.vy = velocities_after(a, b, x, y, a.vx - b.vx, a.vy - b.vy, factor)

@@ -1,6 +1,5 @@
 """Periodic sides: where a disc that went through one comes back, and in which image it meets another."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -73,9 +72,33 @@ def shift_by_images(x, y, periodic, images):
 
 
 @inline
+def is_periodic(periodic, along_y):
+    """Whether the sides across an axis are joined."""
+    if periodic is not None:
+        return periodic.y if along_y else periodic.x
+    return False
+
+
+@inline
+def boxes_to_nearest(distance, length):
+    """How many box lengths to take from a coordinate difference to make it the nearest image's."""
+    return round(distance / length)
+
+
+@inline
 def nearest_image(distance, length, is_periodic):
     """A coordinate difference, through joined sides if that is shorter."""
-    return distance - length * round(distance / length) if is_periodic else distance
+    return distance - length * boxes_to_nearest(distance, length) if is_periodic else distance
+
+
+@inline
+def nearest_images(x, y, periodic):
+    """Box lengths from one disc to the nearest image of another, which is (x, y) away."""
+    if periodic is not None:
+        images_x = np.int64(boxes_to_nearest(x, periodic.Lx)) if periodic.x else 0
+        images_y = np.int64(boxes_to_nearest(y, periodic.Ly)) if periodic.y else 0
+        return images_x, images_y
+    return NO_IMAGES
 
 
 @inline
@@ -90,17 +113,22 @@ def separation(a, b, periodic):
 
 
 @inline
+def wrapped(position, length):
+    """A coordinate put back between joined sides, and the box lengths taken from it. Numbers or arrays."""
+    boxes = np.floor(position / length)
+    return position - boxes * length, boxes
+
+
+@inline
 def wrap(disc, own, periodic):
     """Put a record's position back into the box and keep count."""
     if periodic is not None:
         if periodic.x:
-            boxes = math.floor(disc.x / periodic.Lx)
-            disc.x -= boxes * periodic.Lx
+            disc.x, boxes = wrapped(disc.x, periodic.Lx)
             periodic.image[U(own), 0] += np.int32(boxes)
             periodic.boundary_crossings[U(own), 0] -= np.int32(boxes)
         if periodic.y:
-            boxes = math.floor(disc.y / periodic.Ly)
-            disc.y -= boxes * periodic.Ly
+            disc.y, boxes = wrapped(disc.y, periodic.Ly)
             periodic.image[U(own), 1] += np.int32(boxes)
             periodic.boundary_crossings[U(own), 1] -= np.int32(boxes)
 

@@ -9,6 +9,7 @@ from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
 from idealgas.physics.gravity import acceleration_along
+from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.restitution import wall_rebound
 
 PISTON = np.dtype(
@@ -32,16 +33,8 @@ def outward(piston):
 @inline
 def piston_motion(piston, time):
     """Position and velocity of a piston at a later local time, if it meets nothing until then."""
-    dt = time - piston.t
-    return piston.x + piston.v * dt + 0.5 * piston.a * dt * dt, piston.v + piston.a * dt
-
-
-def piston_energy(mass, position, velocity, acceleration):
-    """Energy of a piston by its motion and by its place, where the outer pressure and gravity act on it.
-
-    acceleration: along its way, between hits. Numbers or arrays of one shape.
-    """
-    return mass * (0.5 * velocity**2 - acceleration * position)
+    delay = time - piston.t
+    return position_after(piston.x, piston.v, piston.a, delay), velocity_after(piston.v, piston.a, delay)
 
 
 def end_epoch(piston: np.ndarray, length: float) -> None:
@@ -59,8 +52,8 @@ def piston_contact(disc, piston, gravity):
     d_dt = time - disc.t
     pull = acceleration_along(gravity, along_y)
     place, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
-    d_place = place + velocity * d_dt + 0.5 * pull * d_dt * d_dt
-    d_velocity = velocity + pull * d_dt
+    d_place = position_after(place, velocity, pull, d_dt)
+    d_velocity = velocity_after(velocity, pull, d_dt)
     p_place, p_velocity = piston_motion(piston, time)
     height = sign * (p_place - d_place) - disc.r
     delay = time_to_plane(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
@@ -81,10 +74,18 @@ def advance_piston(piston, time):
 
     The way is summed before it is added, other than in `piston_motion`: events on record depend on its last digit.
     """
-    dt = time - piston.t
-    piston.x += piston.v * dt + 0.5 * piston.a * dt * dt
-    piston.v += piston.a * dt
+    delay = time - piston.t
+    piston.x += position_after(0.0, piston.v, piston.a, delay)
+    piston.v = velocity_after(piston.v, piston.a, delay)
     piston.t = time
+
+
+def piston_energy(mass, position, velocity, acceleration):
+    """Energy of motion and place of a piston with a mass, m (V²/2 - A X), constant between hits. Numbers or arrays.
+
+    acceleration: along its way between hits, by the outer pressure and gravity.
+    """
+    return mass * (0.5 * velocity**2 - acceleration * position)
 
 
 @inline

@@ -15,6 +15,12 @@ def cubic(b, c, d, e, t):
 
 
 @inline
+def parabola(x, v, a, t):
+    """x + v t + ½ a t²; as x + (v + ½ a t) t it keeps more digits near a return to x than summed term by term."""
+    return x + (v + 0.5 * a * t) * t
+
+
+@inline
 def bisect(b, c, d, e, low, high):
     """The point of [low, high] where the cubic changes sign, to the last bit; the signs at the ends differ."""
     rising = cubic(b, c, d, e, low) < cubic(b, c, d, e, high)
@@ -78,8 +84,8 @@ def gap(x, y, vx, vy, gx, gy, r, t):
     """Square of the distance from the origin at time t on a parabola, less r²: from the place, so that no digit is lost
     where r is small.
     """
-    there_x = x + t * (vx + 0.5 * gx * t)
-    there_y = y + t * (vy + 0.5 * gy * t)
+    there_x = parabola(x, vx, gx, t)
+    there_y = parabola(y, vy, gy, t)
     return there_x * there_x + there_y * there_y - r * r
 
 

@@ -9,11 +9,7 @@ at the rate of the fastest pair there may be, and accepted in the ratio of the r
 import math
 
 from idealgas._jit import inline
-
-
-def contact_value(packing_fraction: float) -> float:
-    """χ = (1 - 7φ/16)/(1 - φ)²: Henderson, Mol. Phys. 30, 971 (1975)."""
-    return (1.0 - 7.0 * packing_fraction / 16.0) / (1.0 - packing_fraction) ** 2
+from idealgas.physics.contact_value import contact_value
 
 
 def mean_trial_time(number: int, area: float, packing_fraction: float, largest_reach: float, v_ref: float) -> float:

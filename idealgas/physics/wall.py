@@ -7,9 +7,10 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import touch
+from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
-from idealgas.physics.polynomial import first_descent
-from idealgas.physics.restitution import wall_rebound
+from idealgas.physics.polynomial import first_descent, parabola
+from idealgas.physics.wall_collision import reflection_factor
 
 SEGMENT = np.dtype(
     [
@@ -80,7 +81,7 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
                 delay = NEVER
         else:  # on the other side: may come round an end and meet this face on its way back
             delay = (speed + root) / -pull if speed > 0.0 and pull < 0.0 and discriminant >= 0.0 else NEVER
-        if delay < best and foot_inside(s + vt * delay + 0.5 * at * delay * delay, length):
+        if delay < best and foot_inside(position_after(s, vt, at, delay), length):
             best = delay
     return best
 
@@ -98,14 +99,15 @@ def moves_off(delay, far, d, s, vn, vt, an, at, length):
 
     Only a disc that a gate closed over comes to an end from within.
     """
-    foot = s + (vt + 0.5 * at * delay) * delay
-    height = d + (vn + 0.5 * an * delay) * delay
-    speed = vn + an * delay
+    foot = parabola(s, vt, at, delay)
+    height = parabola(d, vn, an, delay)
+    speed = velocity_after(vn, an, delay)
+    along = velocity_after(vt, at, delay)
     if foot_inside(foot, length):
         return (speed >= 0.0) if height > 0.0 else (speed <= 0.0)
     if far:
-        return (foot <= 0.0) & (foot * (vt + at * delay) + height * speed >= 0.0)
-    return (foot >= length) & ((foot - length) * (vt + at * delay) + height * speed >= 0.0)
+        return (foot <= 0.0) & (foot * along + height * speed >= 0.0)
+    return (foot >= length) & ((foot - length) * along + height * speed >= 0.0)
 
 
 @inline
@@ -141,8 +143,7 @@ def segment_normal(disc, segment, periodic, images):
 @inline
 def reflection_changes(disc, own, nx, ny, restitution):
     """Whether a reflection would change any digit; if not, it counts as done."""
-    speed = disc.vx * nx + disc.vy * ny
-    k = wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
+    k = reflection_factor(disc, own, nx, ny, restitution)
     return (disc.vx - k * nx != disc.vx) | (disc.vy - k * ny != disc.vy)
 
 

@@ -7,6 +7,13 @@ from idealgas.physics.thermal import emit, is_thermal
 
 
 @inline
+def reflection_factor(disc, own, nx, ny, restitution):
+    """What times (nx, ny) a disc's velocity loses at a wall; exact though the normal is a unit to rounding only."""
+    speed = disc.vx * nx + disc.vy * ny
+    return wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
+
+
+@inline
 def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
     """Change a disc's velocity at wall number `wall`, which is at rest; (nx, ny): its unit normal towards the disc."""
     if is_thermal(thermal, wall):
@@ -14,9 +21,6 @@ def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
         return
     if rotation is not None:
         tangential_impulse_at_wall(disc, own, nx, ny, rotation)
-    speed = disc.vx * nx + disc.vy * ny
-    k = (
-        wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
-    )  # exact though n is a unit to rounding only
+    k = reflection_factor(disc, own, nx, ny, restitution)
     disc.vx -= k * nx
     disc.vy -= k * ny

@@ -1,11 +1,11 @@
-"""From a scene to a run: the discs, the method, the log, and where it stops."""
+"""Running a scene: places the discs, lets them move by the scene's method, and writes every event into a log."""
 
 import math
 import os
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.core.event import TimingListener
@@ -30,13 +30,19 @@ SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock 
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run came to.
+    """What a run came to, all of the log included if it was resumed.
 
-    completed: whether it reached its end. end_time: time. trials: of pairs, by Monte Carlo. energy_change: of the
-    discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
-    discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
-    starts of epochs and at the end; in time steps the overlap is that of any collision, each of which has one).
-    seconds: wall time, start-up and compilation not counted.
+    completed: whether the run reached the end that its scene asks for. end_time: time at which it ended. events: number
+    of events, the sum of disc_collisions (of two discs) and wall_hits (of discs with walls and the piston). trials:
+    number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision. epochs: number of them.
+
+    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston less
+    what walls gave, relative to the energy: rounding errors only; None where collisions between discs lose energy.
+    deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
+    in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
+    the overlap is that of all collisions, each of which has one.
+
+    seconds: wall time of this run without start-up and compilation; compile_seconds: that of compilation.
     """
 
     completed: bool
@@ -54,10 +60,14 @@ class Summary:
     seconds: float
     compile_seconds: float
 
+    def as_dict(self) -> dict[str, Any]:
+        """The fields by name, ready for JSON."""
+        return asdict(self)
+
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is. share: of the way to its end, 0 to 1. time: simulated time of the last event. events: so far."""
+    """Where a run is. share: of the way to its end, 0 to 1. time: of the last event. events: number of them so far."""
 
     share: float
     time: float
@@ -101,11 +111,17 @@ def simulate(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Run a scene and write its log.
+    """Run a scene to the end that its table [run] asks for, and write its log.
 
-    force: replace an existing file. command: stored in the log. interrupted: asked several times a second; once true,
-    the run ends at its last event, with a readable log. Raises SceneError if the discs do not fit, LogError if the log
-    cannot be written.
+    scene: from `load_scene` or `parse_scene`. path: of the log to write, an HDF5 file that `open_log` reads. force:
+    replace an existing file. command: text to keep in the log as the command of the run. on_progress: called several
+    times a second with the `Progress` of the run. interrupted: asked as often; once it says True, the run ends after
+    its last event and the summary says that it is not completed. After that, as after Ctrl-C (KeyboardInterrupt), the
+    log can be read and resumed.
+
+    The first run with a set of effects compiles its machine code, which takes some seconds and is kept on disk.
+
+    Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written.
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)
@@ -152,6 +168,7 @@ class LoggedRun:
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
 
     def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
+        """Go on to the stop, or until `interrupted` says True, and close the log."""
         simulation, stop = self._simulation, self._stop
         if not self._begun:
             if self._scene.log.snapshot_every:
@@ -177,7 +194,7 @@ class LoggedRun:
             elif taken > LONGEST_SLICE:
                 slice_events = max(slice_events // 2, 1)
         summary = self._finish(time.perf_counter() - started)
-        self._log.close(asdict(summary) if summary.completed else None)
+        self._log.close(summary.as_dict() if summary.completed else None)
         return summary
 
     def _slice(self, events: int) -> None:

@@ -60,9 +60,7 @@ def expected_rates(
         contacts = hard_discs.box_contacts(discs.radius, discs.number, box, periodic)
     else:
         contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, box)
-    reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
-    speed = np.sqrt(np.pi * equilibrium.temperature / (2 * reduced)) * hard_discs.finite_speed_factor(equilibrium.dof)
-    return contacts * speed
+    return contacts * hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
 
 
 def collision_rates(

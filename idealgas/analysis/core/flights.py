@@ -8,6 +8,7 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.analysis.core.stream import block_at, block_back
 from idealgas.gas.state import Gas
+from idealgas.physics.motion import velocity_after
 
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
 
@@ -57,8 +58,8 @@ def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
     while True:
         stop = until if k == block else edges[k + 1]
         weight = stop - since
-        vx = track[VX] + gravity[0] * (since - track[T])
-        vy = track[VY] + gravity[1] * (since - track[T])
+        vx = velocity_after(track[VX], gravity[0], since - track[T])
+        vy = velocity_after(track[VY], gravity[1], since - track[T])
         sums = flights[k, species]
         if falls:
             _add_fall(sums, mass, vx, vy, gravity[0], gravity[1], weight)

@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas._jit import njit
 from idealgas.analysis.core.stream import block_at
 from idealgas.gas.state import Gas
+from idealgas.physics.periodic import nearest_image
 from idealgas.sides import SIDES
 
 X, Y, VX, VY = range(4)  # columns of a track: the disc at its last event
@@ -35,7 +36,7 @@ class Impacts:
         self.impulse = np.zeros((blocks, self.walls, 2))
         self.hits = np.zeros((blocks, self.walls), np.int64)
         self._middle = np.array(gas.box) / 2
-        self._turn = np.where(self.periodic, gas.box, np.inf)  # a separation of half of it is the nearest image's
+        self._box = gas.box
         self._species, self._mass = gas.species, gas.mass
         self._tracks = np.column_stack((gas.position, gas.velocity))
         self._block = 0
@@ -43,7 +44,7 @@ class Impacts:
     def add(self, rows: Any) -> None:
         self._block = _add_impacts(
             rows.time, rows.disc, rows.partner, rows.position, rows.velocity,
-            self._middle, self._turn, self._species, self._mass, self._tracks, self.edges, self._block,
+            self._middle, self._box, self.periodic, self._species, self._mass, self._tracks, self.edges, self._block,
             self.pair_virial, self.wall_virial, self.collisions, self.impulse, self.hits,
         )  # fmt: skip
 
@@ -51,17 +52,9 @@ class Impacts:
         """Flights add nothing."""
 
 
-@inline
-def nearest(separation, turn):
-    """The shortest of the separations that are whole turns apart; turn: box length, infinite without joined sides."""
-    if abs(separation) > 0.5 * turn:
-        return separation - turn * round(separation / turn)
-    return separation
-
-
 @njit
 def _add_impacts(
-    time, disc, partner, position, velocity, middle, turn, species, mass, tracks, edges, block,
+    time, disc, partner, position, velocity, middle, box, periodic, species, mass, tracks, edges, block,
     pair_virial, wall_virial, collisions, impulse, hits,
 ):  # fmt: skip
     for row in range(time.shape[0]):
@@ -83,6 +76,8 @@ def _add_impacts(
             wall_virial[block] -= (x - middle[0]) * px + (y - middle[1]) * py
         elif disc[row] > partner[row]:  # second row of a pair: the partner's track is at the contact too
             j = np.uintp(partner[row])
-            pair_virial[block] += nearest(x - tracks[j][X], turn[0]) * px + nearest(y - tracks[j][Y], turn[1]) * py
+            apart_x = nearest_image(x - tracks[j][X], box[0], periodic[0])
+            apart_y = nearest_image(y - tracks[j][Y], box[1], periodic[1])
+            pair_virial[block] += apart_x * px + apart_y * py
             collisions[block, min(species[i], species[j]), max(species[i], species[j])] += 1
     return block

@@ -18,21 +18,12 @@ from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogra
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.theory import distributions
+from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
-
-QUANTITIES = {
-    "speed": "length/time",
-    "vx": "length/time",
-    "vy": "length/time",
-    "energy": "energy",
-    "free-path": "length",
-    "free-time": "time",
-    "wait": "time",
-}
-"""What there are distributions of, and its unit."""
 
 BINS = 120
 SAMPLED = 256  # discs of a species whose velocities are tested, at most
@@ -107,9 +98,19 @@ Progress = Callable[[int, int], None] | None
 
 
 def histogram(
-    log: Log, quantity: str, start: float | None = None, end: float | None = None, progress: Progress = None
+    log: Log, quantity: str = "speed", start: float | None = None, end: float | None = None, progress: Progress = None
 ) -> Histogram:
-    """Distribution of one of QUANTITIES between two times, by default from detected equilibrium to the end."""
+    """Measure a distribution between two times of a log, species by species, and test it against its laws.
+
+    quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
+    wait, the time between two successive events of the gas. The laws of velocities are Maxwell and Boltzmann's and that
+    at fixed energy of N discs; of free flights that of a dilute gas; of waits the exponential one. The p-values are
+    those of Kolmogorov and Smirnov's test of decorrelated samples.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are too few events in the window, or for a gas with
+    effects for which there is no such law.
+    """
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     if quantity in VELOCITY_QUANTITIES:
@@ -195,7 +196,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     path = quantity == "free-path"
     high = 10 / rate
     if path:
-        high *= np.sqrt(np.pi * temperature / (2 * discs.mass))
+        high *= mean_speed(temperature, discs.mass)
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress, ("uniform",))
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))

@@ -10,11 +10,10 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.statistics import Estimate, equilibration, mean, ratio
 from idealgas.analysis.core.window import Window, block_edges
+from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.errors import UserError
 from idealgas.log import Log
-
-BINS = 20
 
 FEWEST_FRAMES = 32
 """Frames with a disc in a strip, below which its temperature is not told."""
@@ -77,10 +76,14 @@ def profile(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Profile:
-    """Measure a log in strips of equal width over all that centres reach, by default from detected equilibrium on.
+    """Measure density and temperature in strips across an axis, and the heat that walls give, between two times.
 
-    along: "x" or "y"; by default the axis along which something changes. Frames are as far apart as the events of a
-    disc, or farther. UserError without events or positions, or if the window is empty.
+    along: "x" or "y"; by default the axis along which something changes. bins: number of strips, of equal width, over
+    all that centres of discs reach. Averages are taken over states at least as far apart as the events of a disc.
+    Theory, where there is one: a uniform gas, the barometric law, or Fourier's law between two thermal walls.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    states are read. Raises UserError without events or positions, or if the window is empty.
     """
     if not log.has_positions:
         raise UserError(f"{log.path}: discs of this method have no positions")

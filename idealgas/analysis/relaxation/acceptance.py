@@ -84,8 +84,7 @@ def equilibrium_acceptance(log: Log, temperature: float, dof: float = math.inf) 
     """Mean of S |v| over all pairs, in units of the largest: √(π/2)/5 for equal discs if v_ref is 5 times the rms."""
     discs = composition(log.discs)
     sigma = discs.radius[:, None] + discs.radius
-    reduced = discs.mass[:, None] * discs.mass / (discs.mass[:, None] + discs.mass)
-    speed = np.sqrt(np.pi * temperature / (2 * reduced)) * hard_discs.finite_speed_factor(dof)
+    speed = hard_discs.mean_relative_speeds(temperature, discs.mass, dof)
     pairs = discs.number[:, None] * (discs.number - np.eye(len(discs.number)))
     return float((pairs * sigma * speed).sum() / pairs.sum() / largest_product(log))
 

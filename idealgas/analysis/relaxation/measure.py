@@ -13,9 +13,17 @@ from typing import Any
 import numpy as np
 from scipy import optimize
 
-from idealgas.analysis.core.equilibrium import Ensemble, ensemble
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
+from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
+from idealgas.analysis.relaxation.speeds import SpeedDistributions, speed_distributions
+from idealgas.analysis.relaxation.velocities import (
+    check_steady,
+    collisions_per_disc,
+    reduced_energy,
+    reduced_energy_cdf,
+)
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -44,8 +52,8 @@ class Relaxation:
     kurtosis, distance, entropy: (K,), entropy being H - H_eq per disc. equilibrium_kurtosis: of N discs.
     critical_distance: what one in twenty gases of N discs in equilibrium exceeds. in_time, in_collisions: the fitted
     relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium.
-    first_indistinguishable: index of the
-    first instant at which the distance is below the critical one; None if it never is.
+    first_indistinguishable: index of the first instant at which the distance is below the critical one; None if it
+    never is. acceptance: of the trials; None for a method that makes none. speeds: at instants, if they were asked for.
     """
 
     path: str
@@ -60,6 +68,8 @@ class Relaxation:
     in_time: Estimate | None
     in_collisions: Estimate | None
     first_indistinguishable: int | None
+    acceptance: Acceptance | None
+    speeds: SpeedDistributions | None
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -80,6 +90,8 @@ class Relaxation:
             "kurtosis": self.kurtosis.tolist(),
             "distance": self.distance.tolist(),
             "entropy": self.entropy.tolist(),
+            "acceptance": self.acceptance and self.acceptance.as_dict(),
+            "speed_distributions": self.speeds and self.speeds.as_dict(),
         }
 
 
@@ -88,10 +100,13 @@ def relaxation(
     start: float | None = None,
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
+    every: float | None = None,
 ) -> Relaxation:
-    """Follow a log from `start`, by default its own, to `end`, by default HORIZON collisions per disc later.
+    """Follow how the speeds of a gas come to Maxwell and Boltzmann's distribution, and fit the time that it takes.
 
-    UserError if there is nothing in between, or if the energy of the discs is not constant.
+    start, end: times; by default from the start of the log until HORIZON collisions per disc later. progress(done, in
+    all) is called as states are read. Raises UserError if no two discs collide in between, or if the energy of the
+    discs is not constant, so that there is no distribution that they tend to.
     """
     check_steady(log)
     first, last = colliding_span(log, start, end)
@@ -103,7 +118,7 @@ def relaxation(
     sums = np.empty((2, len(time), groups.max() + 1))
     for k, state in enumerate(log.frames(time)):
         energy = reduced_energy(log, state.velocity, equilibrium)
-        distance[k], entropy[k] = ks_distance(energy), relative_entropy(energy)
+        distance[k], entropy[k] = ks_distance(energy, reduced_energy_cdf), relative_entropy(energy)
         sums[:, k] = np.bincount(groups, energy), np.bincount(groups, energy**2)
         if progress is not None:
             progress(k + 1, len(time))
@@ -125,17 +140,9 @@ def relaxation(
         in_time=_fit(time - first, sums, members, target),
         in_collisions=_fit(collisions, sums, members, target),
         first_indistinguishable=int(told[0]) if len(told) else None,
+        acceptance=acceptance(log),
+        speeds=None if every is None else speed_distributions(log, every, start, end),
     )
-
-
-def check_steady(log: Log) -> None:
-    """UserError if there is no law of Maxwell and Boltzmann that the discs of the log tend to, or no event in it."""
-    if not log.has_events:
-        raise UserError(f"{log.path}: has no events (made with log.events = false)")
-    if restless := log.scene.lacking("conserves_motion"):
-        raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
-    if not log.discs.temperature > 0:
-        raise UserError(f"{log.path}: no disc moves")
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
@@ -153,29 +160,6 @@ def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[fl
     return first, last
 
 
-def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """(K,) collisions that a disc had on average from time[0] up to each of the times; a collision counts for both."""
-    rows_until = np.zeros(len(time))
-    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
-        place = np.searchsorted(time, rows.time[rows.partner >= 0])
-        rows_until += np.bincount(place, minlength=len(time))
-    return np.cumsum(rows_until) / len(log.discs)
-
-
-def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
-    """m v²/2T of every disc, with the T that it tends to."""
-    gas = log.discs
-    square = ((velocity - equilibrium.drift) ** 2).sum(axis=1)
-    return gas.mass * square / (2 * equilibrium.of_species[gas.species])
-
-
-def ks_distance(energy: np.ndarray) -> float:
-    """Largest distance between the distribution function of reduced energies and 1 - exp(-x)."""
-    n = len(energy)
-    law = -np.expm1(-np.sort(energy))
-    return float(max((np.arange(1, n + 1) / n - law).max(), (law - np.arange(n) / n).max()))
-
-
 def relative_entropy(energy: np.ndarray) -> float:
     """∫ p ln(p/e^(-x)) dx from reduced energies, by cells of equal probability; less the bias (cells - 1)/2N.
 
@@ -183,7 +167,7 @@ def relative_entropy(energy: np.ndarray) -> float:
     """
     n = len(energy)
     cells = max(2, min(CELLS, n // 5))
-    place = np.minimum((-np.expm1(-energy) * cells).astype(int), cells - 1)
+    place = np.minimum((reduced_energy_cdf(energy) * cells).astype(int), cells - 1)
     share = np.bincount(place, minlength=cells) / n
     seen = share[share > 0]
     return float((seen * np.log(seen * cells)).sum() - (cells - 1) / (2 * n))
@@ -212,18 +196,20 @@ def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float)
     whole = _kurtosis(sums.sum(axis=2), members.sum())
     if abs(whole[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(members.sum()):
         return None
-    value = _decay_time(time, whole, target)
+    value = decay_time(time, whole, target)
     less = _kurtosis(sums.sum(axis=2)[..., None] - sums, members.sum() - members)
     groups = len(members)
     if groups < 2:
         return Estimate(value, math.nan, 1.0)
-    parts = np.array([_decay_time(time, less[:, g], target) for g in range(groups)])
+    parts = np.array([decay_time(time, less[:, g], target) for g in range(groups)])
     error = math.sqrt((groups - 1) / groups * ((parts - parts.mean()) ** 2).sum())
     return Estimate(value, error, float(groups))
 
 
-def _decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """τ of target + (series[0] - target) exp(-time/τ) that is nearest to the series."""
+def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
+    """The τ whose target + (series[0] - target) exp(-time/τ) is nearest to the series, by least squares; in its unit of
+    time. time, series: (S,).
+    """
 
     def misfit(logarithm: float) -> float:
         model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))

@@ -8,9 +8,15 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import last_trial
-from idealgas.analysis.relaxation.measure import check_steady, collisions_per_disc, ks_distance, reduced_energy
+from idealgas.analysis.relaxation.velocities import (
+    check_steady,
+    collisions_per_disc,
+    reduced_energy,
+    reduced_energy_cdf,
+)
 from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -72,7 +78,7 @@ def speed_distributions(
     for state in log.frames(time):
         speed = np.hypot(*(state.velocity - equilibrium.drift).T)
         counts.append(np.histogram(speed, [*edges, math.inf])[0])
-        distance.append(ks_distance(reduced_energy(log, state.velocity, equilibrium)))
+        distance.append(ks_distance(reduced_energy(log, state.velocity, equilibrium), reduced_energy_cdf))
     species = zip(equilibrium.of_species, range(len(gas.species_names)), strict=True)
     expected = np.zeros(len(edges))
     for temperature, s in species:

@@ -63,7 +63,14 @@ def temperature(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Temperature:
-    """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
+    """Measure the temperature of every direction of motion, species by species, between two times of a log.
+
+    By equipartition all are the same in equilibrium: m⟨vx²⟩ = m⟨vy²⟩ = m⟨v²⟩/2 = T, with k_B = 1, less what a conserved
+    momentum takes away in a finite gas.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if there are no events in the window.
+    """
     moments = Moments(log.gravity)
     window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)

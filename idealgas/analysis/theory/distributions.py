@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from scipy import special
 
-from idealgas.analysis.theory.hard_discs import finite_speed_factor
+from idealgas.analysis.theory.hard_discs import mean_speed
 
 
 class Law(Protocol):
@@ -65,7 +65,7 @@ class SpeedLaw:
 
     @property
     def mean(self) -> float:
-        return math.sqrt(math.pi * self.temperature / (2 * self.mass)) * finite_speed_factor(self.dof)
+        return mean_speed(self.temperature, self.mass, self.dof)
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         speed = np.maximum(x, 0.0)
@@ -109,7 +109,7 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
     """
     x = mass * np.asarray(speed) ** 2 / (2 * temperature)
     bessel = (1 + x) * special.i0e(x / 2) + x * special.i1e(x / 2)
-    return math.sqrt(math.pi * temperature / (2 * mass)) * bessel
+    return mean_speed(temperature, mass) * bessel
 
 
 @dataclass(frozen=True)
@@ -135,8 +135,7 @@ class _FlightLaw(ABC):
         speed = y * math.sqrt(2 * self.temperature / self.mass)
         rate = np.zeros_like(speed)
         for other, mean_rate in zip(self.masses, self.rates, strict=True):
-            reduced = self.mass * other / (self.mass + other)
-            mean = math.sqrt(math.pi * self.temperature / (2 * reduced))
+            mean = mean_speed(self.temperature, self.mass * other / (self.mass + other))
             rate += mean_rate * mean_relative_speed_at(speed, self.temperature, other) / mean
         return speed, weight * 2 * y * np.exp(-(y**2)) * rate / sum(self.rates), rate
 

@@ -9,6 +9,7 @@ import numpy as np
 from idealgas.analysis.theory import hard_discs
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
+from idealgas.physics.random_pair import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
@@ -134,12 +135,11 @@ def _rates_without_positions(
     scene: Scene, gas: Gas, temperature: float, radius: np.ndarray, mass: np.ndarray, number: np.ndarray
 ) -> _Rates:
     """Of a gas without positions, whose pairs are tried at the rate of the fastest there may be."""
-    reduced = mass[:, None] * mass / (mass[:, None] + mass)
     contacts = hard_discs.contacts_without_positions(radius, number, gas.box)
-    per_disc = (contacts * np.sqrt(np.pi * temperature / (2 * reduced))).sum(axis=1)
+    per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
-    largest = np.sort(gas.radius)[-2:].sum() * v_ref * float(hard_discs.contact_value(gas.packing_fraction))
-    trials = len(gas) * (len(gas) - 1) * largest / gas.area
+    reach = float(np.sort(gas.radius)[-2:].sum())
+    trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials)
 
 

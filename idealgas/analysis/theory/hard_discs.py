@@ -5,10 +5,13 @@ freedom D (2N discs between reflecting walls; momentum is not conserved there).
 """
 
 import math
+from typing import overload
 
 import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
+
+from idealgas.physics.contact_value import contact_value
 
 VIRIAL = (1.0, 1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114873, 0.064993, 0.036219, 0.019954)
 """B_k/B_2^(k-1) for k = 1 … 10: Clisby & McCoy, J. Stat. Phys. 122, 15 (2006)."""
@@ -51,10 +54,9 @@ def henderson_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
     return (1 + phi**2 / 8) / (1 - phi) ** 2
 
 
-def contact_value(packing_fraction: ArrayLike) -> np.ndarray:
-    """Pair distribution at contact χ = (1 - 7φ/16)/(1 - φ)²: Henderson, Mol. Phys. 30, 971 (1975)."""
-    phi = np.asarray(packing_fraction, float)
-    return (1 - 7 * phi / 16) / (1 - phi) ** 2
+def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:
+    """χ = (Z - 1)/2φ of equal discs, by the resummed virial series; number: of the discs of a closed system."""
+    return float((compressibility(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
 def mixture_contact_value(radius: ArrayLike, number: ArrayLike, area: float) -> np.ndarray:
@@ -117,7 +119,7 @@ def box_contacts(
         return np.full((len(radius), len(radius)), math.nan)
     sigma = radius[:, None] + radius
     if len(radius) == 1:
-        chi = (compressibility(phi, number[0]) - 1) / (2 * phi)
+        chi = fluid_contact_value(phi, number[0])
         return 2 * sigma * number / area * chi * confinement(radius, box, periodic)
     contacts = 2 * sigma * number / area * mixture_contact_value(radius, number, area)
     return (contacts - np.diag(np.diag(contacts) / number)) * confinement(radius, box, periodic)
@@ -153,14 +155,24 @@ def finite_speed_factor(dof: float) -> float:
     return math.sqrt(dof / 2) * math.exp(math.lgamma(dof / 2) - math.lgamma(dof / 2 + 0.5))
 
 
-def mean_speed(temperature: float, mass: float, dof: float = math.inf) -> float:
-    """⟨v⟩ = √(πT/2m)."""
-    return math.sqrt(math.pi * temperature / (2 * mass)) * finite_speed_factor(dof)
+@overload
+def mean_speed(temperature: float, mass: float, dof: float = math.inf) -> float: ...
+@overload
+def mean_speed(temperature: float, mass: np.ndarray, dof: float = math.inf) -> np.ndarray: ...
+def mean_speed(temperature, mass, dof=math.inf):
+    """⟨v⟩ = √(πT/2m) of discs of a mass, or of each of an array of masses; of a reduced mass a mean relative speed."""
+    return np.sqrt(math.pi * temperature / (2 * mass)) * finite_speed_factor(dof)
 
 
 def mean_relative_speed(temperature: float, mass: float, dof: float = math.inf) -> float:
-    """⟨|v₁ - v₂|⟩ = √(πT/m)."""
-    return math.sqrt(2) * mean_speed(temperature, mass, dof)
+    """⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass."""
+    return math.sqrt(2) * float(mean_speed(temperature, mass, dof))
+
+
+def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.inf) -> np.ndarray:
+    """⟨|v_i - v_j|⟩ = √(πT/2μ_ij), shape (S, S), with the reduced mass μ_ij. mass: (S,)."""
+    mass = np.asarray(mass, float)
+    return mean_speed(temperature, mass[:, None] * mass / (mass[:, None] + mass), dof)
 
 
 def collision_rate(
@@ -178,10 +190,8 @@ def mixture_collision_rate(
 
     Γ_ij = 2σ_ij n_j χ_ij √(πT/2μ_ij) with the reduced mass μ_ij. radius, mass, number: (S,).
     """
-    radius, mass, number = (np.asarray(values, float) for values in (radius, mass, number))
-    sigma = radius[:, None] + radius
-    reduced_mass = mass[:, None] * mass / (mass[:, None] + mass)
-    speed = np.sqrt(math.pi * temperature / (2 * reduced_mass))
+    radius, number = (np.asarray(values, float) for values in (radius, number))
+    sigma, speed = radius[:, None] + radius, mean_relative_speeds(temperature, mass)
     return 2 * sigma * (number / area) * mixture_contact_value(radius, number, area) * speed
 
 

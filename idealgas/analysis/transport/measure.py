@@ -102,7 +102,15 @@ def transport(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Transport:
-    """Measure a log between two times, by default from detected equilibrium to the end."""
+    """Measure how discs of a gas move about between two times of its log, and compare with Enskog's theory.
+
+    Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
+    displacement, velocity autocorrelation and from the first the diffusion coefficient; pair distribution functions.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects
+    other than periodic sides.
+    """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
@@ -127,12 +135,10 @@ def _contacts(
 ) -> tuple[Contact, ...]:
     """Γ_ij over what it would be if discs did not crowd each other. No disc meets itself."""
     contacts = []
+    speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
     for k, found in enumerate(rates):
         i, j = divmod(k, len(discs.name))
-        reduced = discs.mass[i] * discs.mass[j] / (discs.mass[i] + discs.mass[j])
-        speed = math.sqrt(math.pi * equilibrium.temperature / (2 * reduced))
-        speed *= hard_discs.finite_speed_factor(equilibrium.dof)
-        alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed
+        alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed[i, j]
         if j < i or alone == 0:
             continue
         rate, known = found.rate, np.isfinite(expected[i, j])
@@ -178,7 +184,7 @@ def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float,
     if gas.packing_fraction > hard_discs.FREEZING:
         return None
     density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
-    chi = float((hard_discs.compressibility(gas.packing_fraction) - 1) / (2 * gas.packing_fraction))
+    chi = hard_discs.fluid_contact_value(gas.packing_fraction)
     state = (sigma, density, equilibrium.temperature, discs.mass[0], chi)
     viscosity = hard_discs.enskog_viscosity(*state) / (density * discs.mass[0])
     return density, hard_discs.enskog_diffusion(*state), viscosity
@@ -188,9 +194,9 @@ def _of_species(
     name: str, lag: np.ndarray, places: np.ndarray, velocities: np.ndarray, enskog: tuple[float, float, float] | None
 ) -> Diffusion:
     """places, velocities: (segments, L, discs, 2)."""
-    correlation = _autocorrelation(velocities)
+    correlation = autocorrelation(velocities)
     square = correlation[:, 0].mean()
-    displacement = _mean_square_displacement(places)
+    displacement = mean_square_displacement(places)
     late = slice(int(FITTED_FROM * LAGS), None)
     slope = np.polyfit(lag[late], displacement[:, late].T, 1)[0] / 4
     correlation_time = np.trapezoid(correlation, lag, axis=1) / square
@@ -208,20 +214,27 @@ def _of_species(
     )
 
 
-def _autocorrelation(velocities: np.ndarray) -> np.ndarray:
-    """(segments, L), ⟨v(t)·v(t + lag)⟩ over discs and over the times t of each segment."""
+def autocorrelation(velocities: np.ndarray) -> np.ndarray:
+    """(segments, L): ⟨v(t)·v(t + lag)⟩ over discs and over the times t of each segment.
+
+    velocities: (segments, L, discs, 2), at equal steps.
+    """
     length = velocities.shape[1]
     spectrum = np.fft.rfft(velocities, 2 * length, axis=1)
     raw = np.fft.irfft((np.abs(spectrum) ** 2).sum(axis=3).mean(axis=2), 2 * length, axis=1)[:, :length]
     return raw / np.arange(length, 0, -1)
 
 
-def _mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """(segments, L), by Σ r² and the autocorrelation of places: Calandrini et al., Collection SFN 12, 201 (2011)."""
+def mean_square_displacement(places: np.ndarray) -> np.ndarray:
+    """(segments, L): ⟨|r(t + lag) - r(t)|²⟩ over discs and over the times t of each segment.
+
+    places: (segments, L, discs, 2), at equal steps. By Σ r² and the autocorrelation of places: Calandrini et al.,
+    Collection SFN 12, 201 (2011).
+    """
     length = places.shape[1]
     places = places - places[:, :1]  # keeps the digits
     square = (places**2).sum(axis=3).mean(axis=2)
     both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
     steps = np.arange(length)
     first, last = both[:, length - steps], both[:, -1:] - both[:, steps]
-    return (first + last) / (length - steps) - 2 * _autocorrelation(places)
+    return (first + last) / (length - steps) - 2 * autocorrelation(places)

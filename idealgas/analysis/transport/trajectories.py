@@ -4,6 +4,7 @@ import numpy as np
 
 from idealgas._jit import njit
 from idealgas.log import Log
+from idealgas.physics.motion import position_after
 
 
 def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -52,6 +53,6 @@ def _finish(tracks, reached, times, places, velocities):
 def _put(track, k, reached, times, places, velocities):
     g = reached[k]
     for axis in range(2):
-        places[g, k, axis] = track[1 + axis] + track[3 + axis] * (times[g] - track[0])
+        places[g, k, axis] = position_after(track[1 + axis], track[3 + axis], None, times[g] - track[0])
         velocities[g, k, axis] = track[3 + axis]
     reached[k] += 1

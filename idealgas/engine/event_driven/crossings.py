@@ -9,6 +9,7 @@ from idealgas.physics.box_side import arrival_delay, centre_range
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
 from idealgas.physics.gravity import acceleration_along
+from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along
 from idealgas.physics.piston import is_piston_side
 
@@ -37,8 +38,8 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
     """The same on a parabola. Cell edges are seen from now, when the disc is in its cell; sides from its record."""
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     dt = max(now - disc.t, 0.0)
-    here = position + velocity * dt + 0.5 * pull * dt * dt - boundary_crossings * length
-    speed = velocity + pull * dt
+    here = position_after(position, velocity, pull, dt) - boundary_crossings * length
+    speed = velocity_after(velocity, pull, dt)
     first = (cell == 1) & (not is_periodic)
     last = (cell == cells_across - 2) & (not is_periodic)
     low, high = centre_range(length, disc.r)

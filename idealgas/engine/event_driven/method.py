@@ -71,10 +71,10 @@ def rebuild(record, ids, state, effects):
 
 
 @njit
-def advance_events(record, ids, state, effects, until, most_events, most_collisions, epoch_start, batch, counters):
-    """Process events up to local time `until`, or to a limit, or until the batch is full.
+def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters):
+    """Process events up to the limits, or until the batch is full.
 
-    Return the number of rows written and whether everything up to `until` has happened.
+    Return the number of rows written and whether everything up to the limit of time has happened.
 
     batch: None where no log is kept. counters: (1,) COUNTERS, updated.
     """
@@ -87,12 +87,12 @@ def advance_events(record, ids, state, effects, until, most_events, most_collisi
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    while events < most_events and collisions < most_collisions and rows < capacity:
+    while events < limits.events and collisions < limits.collisions and rows < capacity:
         i = next_disc(state.tree)
         prediction = state.prediction[U(i)]
         at_contact = contact_is_next(prediction, ids, i)
         time = prediction.contact if at_contact else prediction.crossing
-        if time > until:
+        if time > limits.until:
             reached = True
             break
         other = np.int64(-1)
@@ -179,7 +179,7 @@ class EventDriven:
     ) -> tuple[int, bool]:
         """See `advance_events`."""
         record, ids, _ = self.discs
-        return advance_events(record, ids, self._state, self._effects, *limits[:3], epoch_start, batch, counters)
+        return advance_events(record, ids, self._state, self._effects, limits, epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch; call it before `advance`."""
