@@ -6,11 +6,10 @@ from itertools import combinations
 
 import pytest
 
-from idealgas.engine.rows import FIRST_SEGMENT
 from idealgas.physics.box_side import inward_normal
 from idealgas.scene import EFFECTS, parse_scene
 from idealgas.scene.properties import Properties
-from idealgas.sides import OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
+from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
 
 PLAIN = """
 box.size = [20, 10]
