@@ -68,11 +68,11 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """(N, 2): explicit discs, then lattices, one for all species of the same region, then discs at random."""
     from idealgas.gas import placement  # compiled code, which a reader of logs does not need
 
-    box = scene.box
+    box, periodic = scene.box, scene.properties.periodic
     space = scene.room
     walls = np.array([(*w.start, *w.end) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 4)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    grid = placement.make_grid(box.size, radius, box.periodic, walls)
+    grid = placement.make_grid(box.size, radius, periodic, walls)
     random = stream(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
     if scene.disc:
@@ -87,7 +87,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
             lattices.setdefault(region, []).append(k)
         else:
             at_random.append(k)
-            for axis in (a for a in range(2) if box.periodic[a] and s.region is None):
+            for axis in (a for a in range(2) if periodic[a] and s.region is None):
                 bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
     for members in lattices.values():
         chosen = np.concatenate([ids[k + 1] for k in members])

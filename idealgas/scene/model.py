@@ -10,8 +10,8 @@ from idealgas.document.error import Issue
 from idealgas.document.origin import Origin
 from idealgas.document.table import Table
 from idealgas.scene.checks.issues import issues
-from idealgas.scene.defaults import contact_duration
 from idealgas.scene.tables.document import Document
+from idealgas.scene.tables.restitution import contact_duration
 
 
 class Scene(Document):

@@ -1,6 +1,5 @@
 """What a gas conserves, and how the energy is shared out under that: the ensemble its equilibrium belongs to."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,11 +61,9 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
+    temperature = min(properties.temperatures, default=energy / dof)
     share = 1 - kept.mean() * mass / gas.mass.sum()
-    if properties.isolated:
-        return Ensemble(frame, dof, energy / dof, energy / dof * share)
-    (temperature,) = properties.temperatures
-    return Ensemble(frame, math.inf, temperature, temperature * share)
+    return Ensemble(frame, dof, temperature, temperature * share)
 
 
 def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:

@@ -122,7 +122,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     per_disc = 1.5 if scene.properties.spins else 1.0
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
-    if pull.any() and (scene.piston or not scene.properties.empty or pull.all() or equilibrated):
+    if pull.any() and (not (scene.properties.fixed_walls and scene.properties.empty) or pull.all() or equilibrated):
         return None, None
     if pull.any():
         axis = int(np.flatnonzero(pull)[0])

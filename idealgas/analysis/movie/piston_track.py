@@ -10,13 +10,17 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way."""
+    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way.
+
+    outward: +1 if the gas is below it on this axis, -1 if above.
+    """
 
     axis: int
     time: np.ndarray
     place: np.ndarray
     pull: float
     limits: tuple[float, float]
+    outward: float
 
     def at(self, time: float) -> float:
         """Coordinate at a time: on the parabola through the knots before and after it, if no end stop is in its way."""
@@ -45,4 +49,5 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
     if len(time) < 2:
         return None
     pull = piston.acceleration(log.box, log.scene.gravity)
-    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, (0.0, log.box[piston.axis]))
+    limits = (0.0, log.box[piston.axis])
+    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward)

@@ -88,11 +88,11 @@ def player(log: Log, start: float | None = None) -> Player | None:
 def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
     """Where it begins and ends, and how it falls in between; the events of the page tell where discs hit it."""
     track = piston_track(log, first, last)
-    if track is None or log.scene.piston is None:
+    if track is None:
         return None
     return {
         "axis": track.axis,
-        "outward": log.scene.piston.outward,
+        "outward": track.outward,
         "pull": track.pull,
         "limits": track.limits,
         "ends": [track.at(first), track.at(last)],

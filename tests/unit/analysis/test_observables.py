@@ -25,6 +25,7 @@ from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
+from idealgas.scene.properties import Effect, Properties
 
 SCENE = """
 [scene]
@@ -102,8 +103,8 @@ def test_log_without_events_is_refused(tmp_path):
 
 
 def test_effects_are_not_ignored(log, monkeypatch):
-    monkeypatch.setattr(Scene, "effects", ("gravity",))
-    with pytest.raises(UserError, match="no answer for a gas with gravity"):
+    monkeypatch.setattr(Scene, "called", (Effect("magnets", (), Properties(uniform=False)),))
+    with pytest.raises(UserError, match="no answer for a gas with magnets"):
         pressure(log)
 
 
