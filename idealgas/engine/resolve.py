@@ -3,6 +3,7 @@
 import numpy as np
 
 from idealgas._jit import inline
+from idealgas.engine.order import FIRST_SEGMENT
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.motion import advance
@@ -13,7 +14,6 @@ from idealgas.physics.wall import segment_normal
 from idealgas.physics.wall_collision import collide_with_wall
 
 U = np.uintp
-FIRST_SEGMENT = 4  # walls 0-3 are the sides of the box
 
 
 @inline

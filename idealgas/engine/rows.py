@@ -3,7 +3,7 @@
 import numpy as np
 
 from idealgas._jit import fetch_next_line, inline
-from idealgas.engine.resolve import FIRST_SEGMENT
+from idealgas.engine.order import FIRST_SEGMENT
 from idealgas.events import Kind
 
 DISC, WALL, WALL_END, PISTON = int(Kind.DISC), int(Kind.WALL), int(Kind.WALL_END), int(Kind.PISTON)

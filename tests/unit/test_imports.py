@@ -46,7 +46,7 @@ FROM_ANALYSES = {
     },
 }
 
-COMPUTES = {"idealgas", "math", "typing", "collections", "enum", "numpy", "numba"}
+COMPUTES = {"idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
 """All that the laws of physics need."""
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import aligned, inline
-from idealgas.engine.order import precedes, wall_rank
+from idealgas.engine.order import FIRST_SEGMENT, precedes, wall_rank
 from idealgas.physics.constants import NEVER
 
 PREDICTION = np.dtype(
@@ -28,7 +28,6 @@ PREDICTION = np.dtype(
     align=True,
 )
 SIDE_OF_BOX = 4
-SEGMENT_WALL = 4  # walls 0-3 are the sides of the box
 
 NO_CONTACT = 0.5 * NEVER  # before NEVER, so that a miss never ties with "none yet"
 NO_CONTACT_KEY = int(np.float64(NO_CONTACT).view(np.int64))
@@ -94,7 +93,7 @@ def partner_rank(ids, partner):
     """A partner's place in the order of simultaneous events."""
     if partner >= 0:
         return np.int64(ids[U(partner)])
-    return np.int64(wall_rank(SEGMENT_WALL + segment_of(partner)))
+    return np.int64(wall_rank(FIRST_SEGMENT + segment_of(partner)))
 
 
 @inline
