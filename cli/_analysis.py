@@ -1,5 +1,6 @@
-"""What the commands that analyse a log share: arguments, a progress bar, and how estimates are printed."""
+"""What commands that read a log share, and the commands that analyse one, made from the registry of analyses."""
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -9,13 +10,11 @@ import click
 from idealgas.errors import UserError
 
 from ._options import json_option
+from ._tables import print_tables
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.statistics import Estimate
-    from idealgas.analysis.core.window import Window
+    from idealgas.analysis.core.declaration import Analysis, Option
     from idealgas.log import Log
-
-PICTURES = (".png", ".pdf", ".svg")
 
 
 def log_argument(command: Callable) -> Callable:
@@ -32,28 +31,6 @@ def open_log(path: str) -> "Log":
         state = "is being written" if opened.live else "its writer died; `idealgas resume` would go on with it"
         click.echo(f"{path}: {state}; read up to t = {opened.end_time:g}, {len(opened):,} event rows", err=True)
     return opened
-
-
-def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-    if value is not None and not value.lower().endswith(PICTURES):
-        raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
-    return value
-
-
-plot_option = click.option(
-    "--plot", metavar="FILE.png", callback=_check_ending, help="Draw a picture (.png, .pdf or .svg)."
-)
-
-
-def analysis_options(command: Callable) -> Callable:
-    """`--from T --to T --plot FILE.png --json` as `start`, `end`, `plot` and `as_json`."""
-    end = click.option(
-        "--to", "end", type=float, metavar="T", help="End of the window, time.  [default: the log's end]"
-    )
-    start = click.option(
-        "--from", "start", type=float, metavar="T", help="Start of the window, time.  [default: detected equilibrium]"
-    )
-    return start(end(plot_option(json_option(command))))
 
 
 @contextmanager
@@ -75,31 +52,122 @@ def print_json(result: dict[str, Any]) -> None:
     click.echo(json.dumps(result, indent=2, allow_nan=False))
 
 
-def describe(window: "Window") -> str:
-    """One line on the window that was used."""
-    how = "from detected equilibrium" if window.detected else "as asked"
-    return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"
+# ── one command an analysis ──
 
 
-ESTIMATE_HEADS = ("value", "± s.e.", "samples", "theory", "dev./s.e.")
+def analysis_command(analysis: "Analysis") -> click.Command:
+    """The command of an analysis: its logs, its own options, and those that all analyses have."""
+
+    def command(**arguments: Any) -> None:
+        _analyse(analysis, **arguments)
+
+    decorators = [_logs(analysis), *map(_option, analysis.options), *_common_options(analysis)]
+    for decorate in reversed(decorators):
+        command = decorate(command)
+    return click.command(name=analysis.key, help=analysis.help)(command)
 
 
-def cells(estimate: "Estimate") -> tuple[str, ...]:
-    """An estimate under ESTIMATE_HEADS."""
-    theory = "" if estimate.theory is None else f"{estimate.theory:.6g}"
-    deviation = "" if estimate.deviation is None else f"{estimate.deviation:+.2f}"
-    samples = f"{estimate.independent_samples:.0f}"
-    return f"{estimate.value:.6g}", f"{estimate.standard_error:.2g}", samples, theory, deviation
+def _logs(analysis: "Analysis") -> Callable:
+    if not analysis.several:
+        return click.argument("paths", metavar="RUN.h5", callback=lambda _, __, path: (path,))
+    metavar = "RUN.h5|DIR..." if analysis.folders else "RUN.h5..."
+    return click.argument("paths", metavar=metavar, nargs=-1, required=True)
 
 
-def print_estimates(title: str, rows: "list[tuple[str, Estimate]]") -> None:
-    """A table of named estimates."""
-    from rich.console import Console
-    from rich.table import Table
+def _option(option: "Option") -> Callable:
+    """One of an analysis' own options."""
+    kind: Any = option.kind
+    if option.choices:
+        kind = click.Choice(option.choices)
+    elif option.positive:
+        kind = click.FloatRange(min=0, min_open=True)
+    elif option.least is not None or option.most is not None:
+        bounds: Any = click.IntRange if option.kind is int else click.FloatRange
+        kind = bounds(option.least, option.most)
+    return click.option(
+        f"--{option.name.replace('_', '-')}", option.name, type=kind, default=option.default, help=option.help,
+        show_default=option.default is not None, metavar=option.metavar,
+    )  # fmt: skip
 
-    table = Table("", title=title, title_justify="left")
-    for head in ESTIMATE_HEADS:
-        table.add_column(head, justify="right")
-    for name, estimate in rows:
-        table.add_row(name, *cells(estimate))
-    Console().print(table)
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+    if value is not None and not value.lower().endswith(PICTURES):
+        raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
+    return value
+
+
+def _common_options(analysis: "Analysis") -> Iterator[Callable]:
+    for name, variable, where, default in (
+        ("--from", "start", "Start", analysis.start), ("--to", "end", "End", analysis.end),
+    ):  # fmt: skip
+        words = f"{where} of the window, time.  [default: {default}]"
+        yield click.option(name, variable, type=float, metavar="T", help=words)
+    words = "Draw a picture (.png, .pdf or .svg)."
+    yield click.option("--plot", metavar="FILE.png", callback=_check_ending, help=words)
+    yield json_option
+    words = "Print the rows of the tables as CSV instead, with all digits."
+    yield click.option("--csv", "as_csv", is_flag=True, help=words)
+    if analysis.checked:
+        words = "Exit with 1 unless measurement and theory agree within 4 s.e."
+        yield click.option("--check", is_flag=True, help=words)
+
+
+def _analyse(
+    analysis: "Analysis",
+    paths: tuple[str, ...],
+    start: float | None,
+    end: float | None,
+    plot: str | None,
+    as_json: bool,
+    as_csv: bool,
+    check: bool = False,
+    **options: Any,
+) -> None:
+    """Analyse logs and print or draw what is asked for."""
+    if as_json and as_csv:
+        raise UserError("--csv: not together with --json")
+    with reading(analysis.reads) as progress:
+        results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
+    result = analysis.combine(results)
+    agrees = result.check() if check else None
+    if plot:
+        from idealgas.analysis.core.style import save
+
+        save(analysis.figure(result), plot)
+    if as_json:
+        print_json(result.as_dict() | ({"agrees": agrees} if analysis.checked else {}))
+    elif as_csv:
+        from idealgas.analysis.core import tables
+
+        click.echo(tables.as_csv(analysis.tables(result)), nl=False)
+    else:
+        print_tables(analysis.tables(result))
+        if agrees is not None:
+            from idealgas.analysis.core.statistics import TOLERANCE
+
+            verdict = "agree" if agrees else "do not agree"
+            click.echo(f"Measurement and theory {verdict} within {TOLERANCE:g} standard errors.")
+    if agrees is False:
+        raise SystemExit(1)
+
+
+def _results(
+    analysis: "Analysis",
+    path: str,
+    start: float | None,
+    end: float | None,
+    progress: Callable[[int, int], None],
+    options: dict[str, Any],
+) -> Iterator[Any]:
+    """The result of a log, or those of a sweep's points from its folder."""
+    if analysis.folders and os.path.isdir(path):
+        from idealgas.study.sweep.results import stored
+
+        for label, found in stored(path, analysis.key):
+            yield analysis.restore(found, label)
+        return
+    with open_log(path) as log:
+        yield analysis.measure(log, start, end, progress, **options)

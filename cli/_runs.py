@@ -18,7 +18,6 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
     import shlex
     import signal
     import sys
-    from dataclasses import asdict
 
     from ._progress import progress_bar
 
@@ -28,7 +27,7 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
         command = shlex.join(["idealgas", *sys.argv[1:]])
         summary = simulate(command=command, on_progress=show, interrupted=lambda: bool(asked_to_stop))
     if as_json:
-        click.echo(json.dumps(asdict(summary), indent=2))
+        click.echo(json.dumps(summary.as_dict(), indent=2))
     else:
         _print(summary, path, from_start)
     if asked_to_stop:

@@ -1,6 +1,7 @@
-"""The command `idealgas`: command NAME is the function NAME of the module NAME here, imported when it is called for.
+"""The command `idealgas`: one command for each module here and for each analysis of the registry.
 
-Modules whose name starts with an underscore, and this one, are no commands.
+Command NAME is the function NAME of the module NAME, imported when it is called for; modules whose name starts with an
+underscore, and this one, are no commands. Those that analyse a log are made from what the analyses say of themselves.
 """
 
 from importlib import import_module
@@ -10,21 +11,26 @@ from typing import Any
 import click
 
 from idealgas import __version__
+from idealgas.analysis import registry
 from idealgas.errors import UserError
 
 from . import __path__ as folder
+from ._analysis import analysis_command
 
 
 class Commands(click.Group):
-    """Finds commands among the modules of this folder; prints a user's errors as plain lines."""
+    """Finds commands among the modules of this folder and the analyses; prints a user's errors as plain lines."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         names = (module.name for module in iter_modules(folder))
-        return sorted(name.replace("_", "-") for name in names if name != "main" and not name.startswith("_"))
+        modules = (name.replace("_", "-") for name in names if name != "main" and not name.startswith("_"))
+        return sorted([*modules, *registry.commands()])
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in self.list_commands(ctx):
             return None
+        if name in registry.commands():
+            return analysis_command(registry.find(name))
         module = name.replace("-", "_")
         return getattr(import_module(f".{module}", __package__), module)
 

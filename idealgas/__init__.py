@@ -1,19 +1,108 @@
-"""Exact event-driven simulation of a two-dimensional gas of hard discs, with every event on record."""
+"""Exact event-driven simulation of a two-dimensional gas of hard discs, with every event on record.
 
+    import idealgas
+
+    scene = idealgas.load_scene("configs/quickstart.toml", ["run.until=20"])
+    summary = idealgas.simulate(scene, "run.h5")
+    print(summary.events, summary.energy_drift)
+    with idealgas.open_log("run.h5") as log:
+        found = idealgas.pressure(log)  # or analyse(log, "pressure")
+        for route in found.routes:
+            print(route.name, route.compressibility.value, route.compressibility.standard_error)
+        print(log.to_pandas("events", disc=0))
+
+`load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` goes on with a run; both
+return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
+it. Results are dataclasses with `as_dict()`, which gives plain values for JSON; a measured number is an `Estimate`, a
+value with its standard error. An error that a user can mend is a `UserError`, in one plain line; `SceneError` and
+`LogError` are kinds of it.
+
+Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
+used, so that `import idealgas` itself is quick.
+"""
+
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from idealgas._version import __version__
 
 if TYPE_CHECKING:
-    from idealgas.log import open_log
+    from idealgas.analysis.core.statistics import Estimate
+    from idealgas.analysis.effusion.measure import effusion
+    from idealgas.analysis.evolution.measure import evolution
+    from idealgas.analysis.heat_capacity.measure import heat_capacity
+    from idealgas.analysis.histogram.measure import histogram
+    from idealgas.analysis.pressure.measure import pressure
+    from idealgas.analysis.profile.measure import profile
+    from idealgas.analysis.registry import analyse
+    from idealgas.analysis.relaxation.measure import relaxation
+    from idealgas.analysis.temperature.measure import temperature
+    from idealgas.analysis.transport.measure import transport
+    from idealgas.errors import UserError
+    from idealgas.events import EventBatch, Kind
+    from idealgas.log import Log, LogError, LogState, open_log
+    from idealgas.run.resume import resume
+    from idealgas.run.simulate import Progress, Summary, simulate
+    from idealgas.scene import Scene, SceneError, load_scene, parse_scene
 
-__all__ = ["__version__", "open_log"]
+_HOMES = {
+    "idealgas.analysis.core.statistics": ("Estimate",),
+    "idealgas.analysis.registry": ("analyse",),
+    "idealgas.errors": ("UserError",),
+    "idealgas.events": ("EventBatch", "Kind"),
+    "idealgas.log": ("Log", "LogError", "LogState", "open_log"),
+    "idealgas.run.resume": ("resume",),
+    "idealgas.run.simulate": ("Progress", "Summary", "simulate"),
+    "idealgas.scene": ("Scene", "SceneError", "load_scene", "parse_scene"),
+}
+"""Where the names lie that are no analysis; the analyses are those of the registry."""
 
+__all__ = [
+    "Estimate",
+    "EventBatch",
+    "Kind",
+    "Log",
+    "LogError",
+    "LogState",
+    "Progress",
+    "Scene",
+    "SceneError",
+    "Summary",
+    "UserError",
+    "__version__",
+    "analyse",
+    "effusion",
+    "evolution",
+    "heat_capacity",
+    "histogram",
+    "load_scene",
+    "open_log",
+    "parse_scene",
+    "pressure",
+    "profile",
+    "relaxation",
+    "resume",
+    "simulate",
+    "temperature",
+    "transport",
+]
 
-def __getattr__(name: str) -> Any:
-    """`open_log`, imported when it is asked for: HDF5 takes its time."""
-    if name == "open_log":
-        from idealgas.log import open_log
+if not TYPE_CHECKING:  # which knows all names from above, so that it can tell those that are wrong
 
-        return open_log
-    raise AttributeError(f"module {__name__} has no attribute {name}")
+    def __getattr__(name: str) -> Any:
+        """What has one of the names above or that of an analysis, imported at its first use (PEP 562)."""
+        for home, names in _HOMES.items():
+            if name in names:
+                globals()[name] = value = getattr(import_module(home), name)
+                return value
+        from idealgas.analysis import registry
+
+        if name not in registry.NAMES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return registry.find(name).function
+
+    def __dir__() -> list[str]:
+        """All names of the interface, those of analyses as the registry has them."""
+        from idealgas.analysis import registry
+
+        return sorted({*__all__, *registry.NAMES})

@@ -3,19 +3,20 @@
 import math
 
 import numpy as np
+from support import record
 
 from idealgas._jit import aligned
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import empty_batch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
-from idealgas.run.effects import make_segments
+from idealgas.run.effects.wall import make_segments
+from idealgas.sides import FIRST_SEGMENT
 
 BOX = (12.0, 9.0)
 
@@ -51,7 +52,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         walls += [(8.6, 4.5, 8.6, 8.8, 3.0, 7.0), (0.5, 8.6, 3.5, 8.6, 0.0, 4.0)]
     table = np.array(walls).reshape(-1, 6)
     inertia = 0.5 * gas.mass * gas.radius**2
-    temperature = np.full(4 + len(walls), -1.0)
+    temperature = np.full(FIRST_SEGMENT + len(walls), -1.0)
     temperature[2] = 1.5
     piston = aligned(1, PISTON)
     piston[0].x, piston[0].a, piston[0].m, piston[0].stop, piston[0].side = 11.5, -0.8, 20.0, 12.0, 1
@@ -67,7 +68,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
         thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
         piston=piston if "piston" in names else None,
-        wall_energy=np.zeros(4 + len(walls)),
+        wall_energy=np.zeros(FIRST_SEGMENT + len(walls)),
     )
 
 
@@ -78,12 +79,5 @@ def allowed(names: set[str]) -> bool:
 
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:
     """All columns of the event log, and the state of the effects at the end."""
-    simulation = Simulation(gas, method, effects)
-    parts = []
-    while not simulation.finished(stop):
-        batch = empty_batch(rows, effects.rotation is not None, effects.periodic is not None)
-        parts.append(batch.rows(0, simulation.advance(stop, batch)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
-    return [*columns, effects.wall_energy]
+    columns = record(Simulation(gas, method, effects), stop, rows)
+    return [*(column for column in columns if column is not None), effects.wall_energy]

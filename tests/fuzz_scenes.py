@@ -18,7 +18,7 @@ from idealgas.document.dump import toml_value
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
 from idealgas.scene import Scene, SceneError, parse_scene
-from idealgas.scene.tables.box import SIDES
+from idealgas.sides import SIDES
 
 EFFECTS = ("periodic x", "periodic y", "walls", "gravity", "rotation", "restitution", "thermal", "piston")
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)

@@ -18,10 +18,11 @@ from idealgas.engine.simulation import Simulation
 from idealgas.events import EventBatch, Kind
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.run.effects import wall_temperatures
-from idealgas.run.energy import energy_of, is_conserved, piston_motion
+from idealgas.physics.piston import piston_motion
+from idealgas.run.effects.thermal import temperature_of_walls
+from idealgas.run.energy import energy_of, is_conserved
 from idealgas.scene import Scene
-from idealgas.scene.tables.box import SIDES
+from idealgas.sides import SIDES
 
 U = 2.0**-53
 FEW = 16.0
@@ -49,7 +50,7 @@ class InvariantChecker:
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
         self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
-        self.temperature = wall_temperatures(scene)
+        self.temperature = temperature_of_walls(scene)
         self.piston = scene.piston
         self.push = abs(scene.piston.acceleration(gas.box, scene.gravity)) if scene.piston else 0.0
         self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
@@ -63,7 +64,7 @@ class InvariantChecker:
         across, along = ((-1, 0, 1) if periodic else (0,) for periodic in self.periodic)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.known, self.epochs, self.events, self.fastest = 0.0, 0.0, 0, 0, 0.0
-        self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston, 0.0)[1])
+        self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston[0], 0.0)[1])
         self.conserved = is_conserved(effects)
         self.start = energy_of(gas, effects)
         self.lowest, self.scale = self.start.balance, self.start.scale
@@ -132,7 +133,7 @@ class InvariantChecker:
         self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
         if self.piston is not None:
             before = self.pace  # after the last event: a light piston may give all of it to the disc that it meets
-            self.pace = abs(piston_motion(simulation.effects.piston, time - simulation.time)[1])
+            self.pace = abs(piston_motion(simulation.effects.piston[0], time - simulation.time)[1])
             self.fastest += max(before, self.pace) + self.push * (time - self.now)
         self.fastest = max(self.fastest, earlier)
         self.known = max(self.known, FEW * self.resolution(time))  # a place keeps its error
@@ -341,7 +342,7 @@ class InvariantChecker:
 
     def behind_piston(self, place: np.ndarray, piston: np.ndarray, local_time: float) -> None:
         """The piston is between all discs and its end stop."""
-        edge, _ = piston_motion(piston, local_time)
+        edge, _ = piston_motion(piston[0], local_time)
         outward, axis = self.piston.outward, self.piston.axis
         assert (outward * (edge - place[:, axis]) >= self.gas.radius - self.known).all(), "beyond the piston"
         assert outward * (self.piston.stop(self.gas.box) - edge) >= -self.known, "piston beyond its stop"

@@ -5,6 +5,7 @@ log_samples.py PATH gzip|none [ROWS A BATCH]
 
 import sys
 import time
+from dataclasses import fields
 from functools import lru_cache
 from itertools import count
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 import idealgas.log.writer as log_writer
 from idealgas.events import BLOCK, EventBatch, Kind
 from idealgas.gas.state import Gas
-from idealgas.log import Column, Log, LogWriter, box_walls
+from idealgas.log import Column, Log, LogLayout, LogWriter, box_walls
 
 DISCS = 25
 STEP = 2.0**-10
@@ -52,8 +53,12 @@ def rows(start: int, stop: int) -> EventBatch:
 
 
 def new_writer(path: Path, **options) -> LogWriter:
-    given = {"scene_text": "[scene]\ntitle = 'ü'\n", "seed": 7, "walls": box_walls((10.0, 5.0)), "command": "test"}
-    return LogWriter(path, gas(), **(given | {"checkpoint_values": VALUES, "observables": OBSERVABLES} | options))
+    """options: of the layout and of the writer."""
+    room = {"walls": box_walls((10.0, 5.0)), "checkpoint_values": VALUES, "observables": OBSERVABLES}
+    names = {field.name for field in fields(LogLayout)}
+    layout = LogLayout(**(room | {name: value for name, value in options.items() if name in names}))
+    given = {"scene_text": "[scene]\ntitle = 'ü'\n", "seed": 7, "command": "test"}
+    return LogWriter(path, gas(), layout, **(given | {n: v for n, v in options.items() if n not in names}))
 
 
 def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) -> None:

@@ -1,18 +1,23 @@
 """What several tests need: gases made by hand, whole event logs in memory, and the command `idealgas`."""
 
+import contextlib
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from idealgas_cli.main import main
 
+from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import BLOCK, EventBatch, empty_batch
 from idealgas.gas.state import Gas
+from idealgas.run.layout import row_columns
 
 ROOT = Path(__file__).parent.parent
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
@@ -45,19 +50,27 @@ def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
     )
 
 
-def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> Iterator[EventBatch]:
-    """Run to the stop and yield the event rows, at most `rows` at a time."""
-    while not simulation.finished(stop):
-        batch = empty_batch(rows)
-        yield batch.rows(0, simulation.advance(stop, batch))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
+def batch_for(simulation: Simulation, rows: int) -> EventBatch:
+    """An empty batch with the columns that the simulation fills."""
+    return empty_batch(rows, row_columns(simulation.effects, simulation.method.without_positions))
 
 
-def record(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
-    """Run to the stop and return all event rows."""
-    columns = zip(*batches(simulation, stop, rows), strict=True)
-    return EventBatch(*(None if parts[0] is None else np.concatenate(parts) for parts in columns))
+def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = UNLIMITED) -> Iterator[EventBatch]:
+    """Run to the stop and yield the event rows, at most so many rows and events at a time."""
+    batch = batch_for(simulation, rows)
+    for count in simulation.slices(stop, batch, events):
+        yield EventBatch(*(None if column is None else column[:count].copy() for column in batch))
+
+
+def joined(parts: Iterable[EventBatch]) -> EventBatch:
+    """The rows of all parts, one after the other."""
+    columns = zip(*parts, strict=True)
+    return EventBatch(*(None if column[0] is None else np.concatenate(column) for column in columns))
+
+
+def record(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = UNLIMITED) -> EventBatch:
+    """Run to the stop, at most so many rows and events at a time, and return all event rows."""
+    return joined(batches(simulation, stop, rows, events))
 
 
 def same_rows(a: EventBatch, b: EventBatch) -> bool:
@@ -81,3 +94,13 @@ def idealgas(*arguments: object, folder: Path | None = None, **environment: str)
         env=os.environ | environment,
         stdin=subprocess.DEVNULL,
     )
+
+
+def called(*arguments: object, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """The same within this process, which saves the time in which Python and its packages start."""
+    words = [str(argument) for argument in arguments]
+    with contextlib.chdir(folder or Path.cwd()):
+        done = CliRunner().invoke(main, words)
+    if done.exception is not None and not isinstance(done.exception, SystemExit):
+        raise done.exception
+    return subprocess.CompletedProcess(words, done.exit_code, done.stdout, done.stderr)

@@ -9,7 +9,6 @@ The rule uses ids only, never places in memory, so every method and every renumb
 from idealgas._jit import inline
 
 FIRST_WALL = -(1 << 31)
-FIRST_SEGMENT = 4  # walls 0-3 are the sides of the box
 
 
 @inline

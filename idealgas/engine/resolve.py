@@ -3,7 +3,6 @@
 import numpy as np
 
 from idealgas._jit import inline
-from idealgas.engine.order import FIRST_SEGMENT
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.motion import advance
@@ -12,6 +11,7 @@ from idealgas.physics.piston import advance_piston, collide_with_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.wall import segment_normal
 from idealgas.physics.wall_collision import collide_with_wall
+from idealgas.sides import FIRST_SEGMENT
 
 U = np.uintp
 

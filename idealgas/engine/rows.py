@@ -3,8 +3,8 @@
 import numpy as np
 
 from idealgas._jit import fetch_next_line, inline
-from idealgas.engine.order import FIRST_SEGMENT
 from idealgas.events import Kind
+from idealgas.sides import FIRST_SEGMENT
 
 DISC, WALL, WALL_END, PISTON = int(Kind.DISC), int(Kind.WALL), int(Kind.WALL_END), int(Kind.PISTON)
 NO_END = 1 << 62

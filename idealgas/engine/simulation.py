@@ -1,6 +1,7 @@
 """A gas on its way through the epochs of its run."""
 
 import copy
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
@@ -12,8 +13,8 @@ from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCas
 from idealgas.errors import UserError
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
-from idealgas.physics.effects import Effects, begin_epoch, copy_of, end_epoch, time_of_next_gate
-from idealgas.physics.periodic import Periodic, periodic_axes
+from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
+from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
 TRAJECTORY = 3
 """Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
@@ -48,6 +49,9 @@ class Stop(NamedTuple):
     trials: int = UNLIMITED
 
 
+NO_STOP = Stop()
+
+
 @dataclass
 class Totals:
     """What happened since time 0, up to the start of the epoch. trials: of pairs, by Monte Carlo."""
@@ -79,11 +83,11 @@ class Simulation:
 
     def _begin(self) -> None:
         begin_epoch(self.effects, self.time)
-        until_gate = time_of_next_gate(self.effects.segments, self.time) - self.time
-        self.length = until_gate
+        until_change = next_change(self.effects, self.time) - self.time
+        self.length = until_change
         if not self.method.single_epoch:
             periodic, extra_speed = periodic_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
-            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic), until_gate)
+            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic), until_change)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
@@ -113,6 +117,24 @@ class Simulation:
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0]["time"])
         return rows
+
+    def slices(
+        self, stop: Stop, batch: EventBatch | None = None, events: int = UNLIMITED, pause: float = LATEST
+    ) -> Iterator[int]:
+        """Advance to the stop or the pause through as many epochs as it takes; yield after each call of `advance` the
+        rows it filled, from the first row of the batch.
+        """
+        while not self.finished(stop):
+            yield self.advance(stop, batch, events, pause)
+            if self.paused:
+                return
+            if self.epoch_over and not self.finished(stop):
+                self.next_epoch()
+
+    def run(self, stop: Stop = NO_STOP, pause: float = LATEST) -> None:
+        """Advance to the stop or the pause through as many epochs as it takes, without rows."""
+        for _ in self.slices(stop, pause=pause):
+            pass
 
     def finished(self, stop: Stop) -> bool:
         """Whether the stop is reached."""

@@ -6,7 +6,7 @@ from idealgas.document.error import Issue
 from idealgas.gas.contacts import static_contact_issues
 from idealgas.gas.state import Gas
 from idealgas.scene import Scene, SceneError, Species
-from idealgas.scene.geometry import room
+from idealgas.scene.walls import walls_inside
 
 
 def make_gas(scene: Scene) -> Gas:
@@ -69,8 +69,8 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
     from idealgas.gas import placement  # compiled code, which a reader of logs does not need
 
     box = scene.box
-    space = room(box, scene.piston)
-    walls = np.array([(*w.start, *w.end) for w in scene.wall if w.there_at_start]).reshape(-1, 4)
+    space = scene.room
+    walls = np.array([(*w.start, *w.end) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 4)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     grid = placement.make_grid(box.size, radius, box.periodic, walls)
     random = stream(scene.scene.seed, "placement")

@@ -12,7 +12,8 @@ import numpy as np
 
 from idealgas.document.error import Issue, Key
 from idealgas.scene import Scene
-from idealgas.scene.tables.box import SIDES
+from idealgas.scene.walls import walls_inside
+from idealgas.sides import OUTWARD, SIDES, axis_of, is_upper
 
 if TYPE_CHECKING:
     from idealgas.gas.state import Gas
@@ -32,17 +33,16 @@ def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     """Name of each thing that something may be pressed to, and the mask (N,) of the discs that rest on it."""
-    pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
+    pull = np.array(scene.properties.acceleration)
     for side, name in enumerate(SIDES):
-        axis, upper = divmod(side, 2)
-        inward = -1.0 if upper else 1.0
-        if pull[axis] * inward < 0 and not (scene.piston and scene.piston.side == name):
+        axis = axis_of(side)
+        if pull @ OUTWARD[side] > 0 and not (scene.piston and scene.piston.side == name):
             place = gas.position[:, axis]
-            touches = place >= gas.box[axis] - gas.radius if upper else place <= gas.radius
+            touches = place >= gas.box[axis] - gas.radius if is_upper(side) else place <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
     if pull.any():
-        for k, wall in enumerate(scene.wall):
-            if wall.there_at_start:
+        for k, wall in enumerate(walls_inside(scene)):
+            if wall.is_there(0.0):
                 start, along = np.array(wall.start), np.array(wall.end) - wall.start
                 share = np.clip((gas.position - start) @ along / (along @ along), 0.0, 1.0)
                 normal = gas.position - start - share[:, None] * along

@@ -7,10 +7,10 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Gas:
-    """Discs at one instant, in order of id.
+    """All discs at one instant, in order of id. len(gas): their number N.
 
-    position, velocity: (N, 2) f8, length and length/time. radius, mass: (N,) f8. species: (N,) u2, index into
-    species_names. box: (Lx, Ly); the corner at the lower left is the origin.
+    box: (Lx, Ly), length; the origin is its lower left corner. position: (N, 2) f8, length. velocity: (N, 2) f8,
+    length/time. radius: (N,) f8, length. mass: (N,) f8. species: (N,) u2, index into species_names.
     """
 
     box: tuple[float, float]
@@ -26,20 +26,20 @@ class Gas:
 
     @property
     def area(self) -> float:
-        """Box area."""
+        """Area of the box, length²."""
         return self.box[0] * self.box[1]
 
     @property
     def packing_fraction(self) -> float:
-        """Share of the box covered by discs."""
+        """Share of the box that discs cover."""
         return float(np.pi * (self.radius**2).sum() / self.area)
 
     @property
     def kinetic_energy(self) -> float:
-        """Sum of m v²/2."""
+        """Sum of m v²/2 over the discs, mass length²/time²."""
         return float((0.5 * self.mass * (self.velocity**2).sum(axis=1)).sum())
 
     @property
     def temperature(self) -> float:
-        """Kinetic temperature E/N (two degrees of freedom a disc, k_B = 1)."""
+        """Kinetic temperature E/N, mass length²/time², as a disc has two degrees of freedom and k_B = 1."""
         return self.kinetic_energy / len(self)

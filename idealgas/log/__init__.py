@@ -1,10 +1,11 @@
 """The event log: one HDF5 file that survives its writer, and the exact state of the gas at any time from it."""
 
+from idealgas.events import Column
 from idealgas.log.errors import LogError, check_output
 from idealgas.log.reader import Log, open_log
 from idealgas.log.recovery import recover
 from idealgas.log.replay import Checkpoint, LogState
-from idealgas.log.schema import Column, Wall, box_walls
+from idealgas.log.schema import LogLayout, Wall, box_walls
 from idealgas.log.writer import LogWriter
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "Column",
     "Log",
     "LogError",
+    "LogLayout",
     "LogState",
     "LogWriter",
     "Wall",

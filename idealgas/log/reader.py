@@ -1,5 +1,9 @@
-"""Reading a log: whole chunks, in bounded memory, whether its writer ended, died or still lives.
+"""Reading a log: its events, the states of the gas at any time, and what the run told of itself.
 
+A log can be read whether its run came to its end, was killed or still goes on. Events are read in blocks, so that logs
+may be larger than memory.
+
+    import numpy as np
     from idealgas import open_log
 
     with open_log("run.h5") as log:
@@ -32,24 +36,28 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, partial
 from pathlib import Path
 from time import sleep
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, overload
 
 import numpy as np
 
 from idealgas.events import EventBatch, Kind
-from idealgas.gas.state import Gas
 from idealgas.log.errors import LogError
+from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
 from idealgas.log.hdf5.superblock import is_locked
+from idealgas.log.header import LogHeader
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
-from idealgas.log.schema import DISC_COLUMNS, Wall
 from idealgas.log.source import ATTEMPTS, PAUSE, Source
 
 if TYPE_CHECKING:
-    from idealgas.scene import Scene
+    from pandas import DataFrame
 
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
-    """Open a log for reading. Raises LogError if it is not one or is damaged, and so do all of its methods."""
+    """Open the log of a run for reading; use it in a `with` statement, or call its `close`.
+
+    Raises LogError if there is no such file, or if it is not a log of idealgas or is damaged; so do all methods of
+    `Log`, since most of the file is read only when it is asked for.
+    """
     for _ in range(ATTEMPTS):
         try:
             return Log(Source(Path(path)))
@@ -60,32 +68,31 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
     return Log(Source(Path(path)))
 
 
-class Log:
-    """A log open for reading; a context manager.
+class Log(LogHeader):
+    """The log of a run, open for reading; a context manager that closes the file. `open_log` makes it.
 
-    path: the file. unclosed: its writer died or still lives. complete: the run came to its end. has_events: events were
-    kept. box: (Lx, Ly). gravity: length/time². periodic: which axes are periodic. start_time. len() is the number of
-    event rows that hold, at a whole event.
+    path: the file. complete: whether the run came to its end. unclosed: whether its writer died or is still at work
+    (`live` tells which). has_events: whether the run kept its events. box: (Lx, Ly), length; the origin is its lower
+    left corner. periodic: whether the box is periodic along x and along y. gravity: (gx, gy), length/time².
+    start_time: 0. len(log): number of event rows, two for a collision of two discs and one for any other event.
+
+    Energies and temperatures are in units of mass length²/time², with Boltzmann's constant 1. Every method and property
+    that reads the file raises LogError if what it needs is damaged.
     """
 
     start_time = 0.0
 
     def __init__(self, source: Source) -> None:
-        self._source = source
-        self.path = source.path
-        self.unclosed = source.unclosed
-        self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
-        self.gravity: tuple[float, float] = tuple(source.fixed("gravity").tolist())
-        self.periodic = tuple(word == b"periodic" for word in source.attribute("box", "boundary").tolist())
+        super().__init__(source)
         self._update()
 
     @property
     def live(self) -> bool:
-        """Whether another process is writing the log now."""
+        """Whether another process is writing this log now."""
         return self.unclosed and is_locked(self.path)
 
     def refresh(self) -> None:
-        """See what a living writer has stored meanwhile."""
+        """Take in what the run has stored since the log was opened or last refreshed."""
         self._source.refresh()
         self._update()
 
@@ -120,63 +127,20 @@ class Log:
     def __len__(self) -> int:
         return self._rows
 
-    # ── what was known before the run ──
-
-    @cached_property
-    def runs(self) -> list[tuple[str, str]]:
-        """Scene (resolved, TOML) and command of each run that wrote into the file; they differ in where it ends."""
-        texts = (
-            [text.decode() for text in self._source.column(f"runs/{name}").tolist()] for name in ("scene", "command")
-        )
-        return list(zip(*texts, strict=True))
-
-    @property
-    def scene_text(self) -> str:
-        """The resolved scene of the last run, TOML."""
-        return self.runs[-1][0]
-
-    @cached_property
-    def scene(self) -> "Scene":
-        """The resolved scene."""
-        from idealgas.scene import parse_scene
-
-        return parse_scene(self.scene_text, name=f"{self.path}: scene")
-
-    @property
-    def command(self) -> str:
-        """The command of the last run."""
-        return self.runs[-1][1]
-
-    @cached_property
-    def attributes(self) -> dict[str, Any]:
-        """format, format_version, seed, created (UTC), and the versions of the programs that made it.
-
-        trajectory: version of the laws that moved the discs.
-        """
-        return self._source.attributes("/") | self._source.attributes("versions")
-
-    @cached_property
-    def discs(self) -> Gas:
-        """The start state."""
-        columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
-        return Gas(box=self.box, species_names=tuple(self._source.texts("discs/species_name")), **columns)
-
-    @cached_property
-    def walls(self) -> list[Wall]:
-        """Wall k is the partner -1 - k of events."""
-        ends = self._source.fixed("walls/endpoints").tolist()
-        return [Wall(name, *map(tuple, end)) for name, end in zip(self._source.texts("walls/name"), ends, strict=True)]
-
-    # ── what the run stored ──
-
     @cached_property
     def checkpoints(self) -> Checkpoints:
-        """States that the run can go on from."""
+        """States at the starts of epochs, from which the run can be resumed; read when they are indexed."""
         return Checkpoints(self._source, len(self))
 
     @cached_property
     def observables(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Times and values of each observable, by name."""
+        """Samples that the run took as it went: times (P,) and values (P,) or (P, components), by name.
+
+        Always there: kinetic_energy, momentum, energy (of the discs), overlap (deepest, in units of the sum of two
+        radii), outside (farthest reach out of the box, in diameters), and the numbers of events, disc_collisions,
+        wall_hits and trials so far. With the effect: rotational_energy, potential_energy, piston_position,
+        piston_velocity, wall_energy (given to the discs since the start, one column a wall).
+        """
         names = [name.partition("/")[0] for name in self._source.names("observables") if name.endswith("/value")]
         times = next((name for name in self._source.names("observables") if name.endswith("/time")), "")
         return {
@@ -186,19 +150,19 @@ class Log:
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
-        """Times of the snapshots, which lie as H5MD in `particles/discs`."""
+        """(S,) times of the snapshots asked for by `log.snapshot_every`; they lie in the file as H5MD."""
         times = next((name for name in self._source.names("particles") if name.endswith("/time")), None)
         return self._source.column(f"particles/{times}") if times else np.empty(0)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """What the run told of itself at its end; empty if it did not come there."""
+        """The fields of the run's `Summary` by name; empty if the run did not come to its end."""
         names, values = (self._source.column(f"summary/{name}").tolist() for name in ("name", "value"))
         return {name.decode(): json.loads(value) for name, value in zip(names, values, strict=True)}
 
     @cached_property
     def end_time(self) -> float:
-        """Time up to which the log is complete."""
+        """Time up to which the log covers the motion of the gas."""
         if "end_time" in self.summary:
             return self.summary["end_time"]
         last = [self.start_time]
@@ -210,18 +174,23 @@ class Log:
 
     @property
     def has_positions(self) -> bool:
-        """Whether the method knows where the discs are; their positions in `frames` are not numbers if it does not."""
+        """Whether the discs have positions: not in the Monte Carlo method, whose states have nan for them."""
         return "position" in self._source.names("checkpoints")
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the event columns."""
+        """Names of the event columns, those of `EventBatch` that this log has; empty if events were not kept."""
         return tuple(self._source.names("events"))
 
+    @overload
+    def chunks(self, columns: None = None, start: int = 0, stop: int | None = None) -> Iterator[EventBatch]: ...
+    @overload
+    def chunks(self, columns: Sequence[str], start: int = 0, stop: int | None = None) -> Iterator[Any]: ...
     def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
-        """Event rows from `start` up to `stop`, in blocks that are whole chunks, of at most 65 536, or parts of them.
+        """Event rows `start` to `stop` (not included, by default all), in blocks of at most 65 536 rows.
 
-        A block is an EventBatch, or a named tuple of the columns asked for. Raises LogError for one that is not there.
+        columns: names of those to read; each block is then a named tuple of arrays, (n,) or (n, 2). Without them it is
+        an `EventBatch`, which says what the columns are. Raises LogError if the log does not have a column.
         """
         block: Any = partial(EventBatch, position=None) if columns is None else namedtuple("Rows", columns)
         names = self.columns if columns is None else columns
@@ -233,7 +202,7 @@ class Log:
             yield block(**{name: self._source.chunk(f"events/{name}", first)[some] for name in names})
 
     def row_at(self, time: float, side: str = "left") -> int:
-        """The first event row at `time` or later; with side "right", later than `time`. Reads O(log n) chunks."""
+        """Number of the first event row at `time` or later; with side "right", of the first one later than `time`."""
         low, high = 0, -(-len(self) // self._block)  # the row lies in one of these chunks, or just behind the last
         while high - low > 1:
             middle = (low + high) // 2
@@ -247,8 +216,11 @@ class Log:
         times = self._times(low * self._block) if len(self) else np.empty(0)
         return low * self._block + int(times.searchsorted(time, side))  # type: ignore[call-overload]
 
-    def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[Any]:
-        """Event rows of one disc or all, from time `t0` until before `t1`, in blocks as `chunks` gives them."""
+    def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[EventBatch]:
+        """Event rows of one disc (by its id) or of all, at times t0 ≤ t < t1, in blocks (`EventBatch`) of any length.
+
+        By default from the start to the end of the log.
+        """
         start = 0 if t0 is None else self.row_at(t0)
         stop = len(self) if t1 is None else self.row_at(t1)
         if disc is None:
@@ -258,15 +230,19 @@ class Log:
         for ids in self.chunks(("disc",), start, stop):
             own = np.flatnonzero(ids.disc == disc)
             for block in self.chunks(None, row, row + len(ids.disc)) if len(own) else ():
-                yield block._make(None if column is None else column[own] for column in block)
+                yield EventBatch._make(None if column is None else column[own] for column in block)
             row += len(ids.disc)
 
     def state_at(self, time: float) -> LogState:
-        """All discs at a time; at the time of events, after them."""
+        """All discs at one time, exactly; at the time of an event, after it. Raises LogError as `frames` does."""
         return next(self.frames([time]))
 
     def frames(self, times: Iterable[float]) -> Iterator[LogState]:
-        """All discs at times that do not decrease, in one pass. Raises LogError at one that the log does not cover."""
+        """All discs at each of the times, which must not decrease, in one pass over the log.
+
+        The states are exact: those of the last event of every disc, moved on in free flight. A log without events has
+        states only at its checkpoints. Raises LogError at a time that the log does not cover or that is out of order.
+        """
         replay: Replay | None = None
         base = -1
         earliest = self.start_time
@@ -283,21 +259,54 @@ class Log:
                 replay.follow(block)
             yield replay.at(time)
 
+    def to_pandas(
+        self,
+        what: Literal["events", "discs", "observables"] = "events",
+        *,
+        disc: int | None = None,
+        t0: float | None = None,
+        t1: float | None = None,
+        times: Iterable[float] | None = None,
+    ) -> "DataFrame":
+        """A part of the log as a pandas DataFrame, which lies in memory as a whole.
+
+        "events": one row for each event row at times t0 ≤ t < t1, of one disc (by its id) or of all: time, disc,
+        partner, kind (disc, wall, wall_end or piston), then after the event x, y, vx, vy, and with the effect
+        angular_velocity, image_x, image_y. "discs": one row for each disc at each of `times`, or at the start: time,
+        disc, species, radius, mass, then as above. "observables": one row for each sample at times t0 ≤ t < t1, columns
+        as in `observables`, one for each component.
+
+        Needs pandas: pip install 'idealgas[notebook]'. Raises LogError without it, if the log has no events, if it does
+        not cover a time, or if an argument is of no use with `what`.
+        """
+        check_choice(self.path, what, {"disc": disc, "t0": t0, "t1": t1, "times": times})
+        if what == "events":
+            if not self.has_events:
+                raise LogError(f"{self.path}: has no events (made with log.events = false)")
+            return data_frame(flat_events(self.events(disc, t0, t1), self.columns), {"kind": KIND_NAMES})
+        if what == "discs":
+            states = [LogState(self.start_time, **self._start_arrays())] if times is None else self.frames(times)
+            return data_frame(flat_discs(self.discs, states, disc), {"species": self.discs.species_names})
+        return data_frame([flat_samples(self.observables, self.walls, t0, t1)], {})
+
     def _replay(self, checkpoint: int) -> Replay:
-        start = self.checkpoints[checkpoint] if checkpoint >= 0 else self._start
+        if checkpoint >= 0:
+            start = self.checkpoints[checkpoint]
+        else:
+            start = Checkpoint(self.start_time, 0, 0, self._start_arrays(), {})
         return Replay(start, self.columns, self.box, self.periodic, self.gravity)
 
-    @property
-    def _start(self) -> Checkpoint:
-        """The start state, as a checkpoint would have it."""
-        arrays = {"velocity": self.discs.velocity}
-        if self.has_positions:
-            arrays["position"] = self.discs.position
-        if "image" in self.columns:
+    def _start_arrays(self) -> dict[str, np.ndarray]:
+        """The discs at the start, as a checkpoint has them."""
+        kept = self._source.names("checkpoints")
+        arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
+        if not self.has_positions:
+            arrays["position"] = np.full_like(self.discs.position, np.nan)
+        if "image" in kept:
             arrays["image"] = np.zeros((len(self.discs), 2), np.int32)
-        if "angular_velocity" in self.columns:
+        if "angular_velocity" in kept:
             arrays["angular_velocity"] = self._source.fixed("discs/angular_velocity")
-        return Checkpoint(self.start_time, 0, 0, arrays, {})
+        return arrays
 
     def _times(self, first: int) -> np.ndarray:
         return self._source.chunk("events/time", first)[: len(self) - first]

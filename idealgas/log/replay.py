@@ -14,8 +14,9 @@ from idealgas.physics.periodic import wrapped
 class LogState(NamedTuple):
     """All discs at one time, in order of id.
 
-    position, velocity: (N, 2); positions that nobody knows are not numbers. image: (N, 2), how many boxes to add to a
-    position to unwrap it; angular_velocity: (N,); None without periodic sides, or rotation.
+    position: (N, 2), length; nan in a gas without positions. velocity: (N, 2), length/time. image: (N, 2), number of
+    box lengths to add to a position to unwrap it; None without periodic sides. angular_velocity: (N,), 1/time; None
+    without rotation.
     """
 
     time: float

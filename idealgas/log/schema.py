@@ -8,6 +8,7 @@ and how. How many rows of each hold is in the commit record (`commit.py`), nowhe
 import importlib.metadata
 import platform
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache
 from typing import Any, NamedTuple
@@ -16,10 +17,11 @@ import h5py
 import numpy as np
 
 from idealgas._version import __version__
-from idealgas.events import BLOCK, BOX_SIDES, COLUMN_UNITS, Kind
+from idealgas.events import BLOCK, PLAIN_COLUMNS, POSITION, VELOCITY, Column, Kind
 from idealgas.gas.state import Gas
 from idealgas.log.hdf5.commit import Commit
 from idealgas.log.hdf5.objects import Objects, set_attributes
+from idealgas.sides import SIDES, side_ends
 
 FORMAT = "idealgas log"
 VERSION = 1
@@ -27,15 +29,6 @@ H5MD_VERSION = (1, 1)
 FILE_OPTIONS: dict = {"libver": ("v110", "v110")}
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
 """Small blocks never lie across two pages of the file, so that a process cannot die between two halves of one."""
-
-
-class Column(NamedTuple):
-    """One column of a table: `shape` is that of a row's entry, `dtype` and `unit` those of its numbers."""
-
-    name: str
-    dtype: str
-    shape: tuple[int, ...] = ()
-    unit: str = ""
 
 
 class Wall(NamedTuple):
@@ -46,25 +39,17 @@ class Wall(NamedTuple):
     end: tuple[float, float]
 
 
-EVENT_COLUMNS = (
-    Column("time", "f8", (), COLUMN_UNITS["time"]),
-    Column("disc", "u4", (), COLUMN_UNITS["disc"]),
-    Column("partner", "i4", (), COLUMN_UNITS["partner"]),
-    Column("kind", "u1", (), COLUMN_UNITS["kind"]),
-    Column("position", "f8", (2,), COLUMN_UNITS["position"]),
-    Column("velocity", "f8", (2,), COLUMN_UNITS["velocity"]),
-)
 CHECKPOINT_COLUMNS = (Column("time", "f8", (), "time"), Column("row", "i8"), Column("epoch", "i8"))
 """What every checkpoint has: its time, the event rows before it, and the number of epochs before it."""
-CHECKPOINT_ARRAYS = (Column("position", "f8", (2,), "length"), Column("velocity", "f8", (2,), "length/time"))
+CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
 """What a checkpoint has of each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
 """Shared by all observables, whose step is the number of epochs, and by all that snapshots have of a disc."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """One row for each thing that a run tells of itself at its end; the values are JSON."""
 DISC_COLUMNS = (
-    Column("position", "f8", (2,), "length"),
-    Column("velocity", "f8", (2,), "length/time"),
+    POSITION,
+    VELOCITY,
     Column("radius", "f8", (), "length"),
     Column("mass", "f8", (), "mass"),
     Column("species", "u2"),
@@ -83,31 +68,37 @@ COMMAND_SIZE = 1024
 
 
 def box_walls(box: tuple[float, float]) -> list[Wall]:
-    """The four sides of the box, in the order of `BOX_SIDES`."""
-    width, height = box
-    ends = [((0, 0), (0, height)), ((width, 0), (width, height)), ((0, 0), (width, 0)), ((0, height), (width, height))]
-    return [Wall(name, *end) for name, end in zip(BOX_SIDES, ends, strict=True)]
+    """The four sides of the box."""
+    return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
 
 
-class Surroundings(NamedTuple):
-    """What a disc flies in. boundary: of each axis, "none" or "periodic". gravity: length/time²."""
+@dataclass(frozen=True)
+class LogLayout:
+    """What a log has room for, and what a disc flies in, as both are known before the run.
+
+    walls: wall k of the events. boundary: of each axis, "none" or "periodic". gravity: acceleration between events,
+    length/time². disc_columns: (N,) further constants and start values. event_columns: of an event's row; without any
+    no events are kept. checkpoint_arrays, checkpoint_values: what a checkpoint has of each disc, and of the whole.
+    observables: of a sample. snapshot_arrays: what a snapshot has of each disc; without any there are none. most_rows:
+    how many event rows the run may have, if that is less than a full chunk. compression: "gzip" or "none".
+    """
 
     walls: Sequence[Wall]
     boundary: tuple[str, str] = ("none", "none")
     gravity: tuple[float, float] = (0.0, 0.0)
+    disc_columns: Mapping[Column, np.ndarray] = field(default_factory=dict)
+    event_columns: Sequence[Column] = PLAIN_COLUMNS
+    checkpoint_arrays: Sequence[Column] = CHECKPOINT_ARRAYS
+    checkpoint_values: Sequence[Column] = ()
+    observables: Sequence[Column] = ()
+    snapshot_arrays: Sequence[Column] = ()
+    most_rows: int = BLOCK
+    compression: str = "gzip"
 
 
-def write_header(
-    file: h5py.File,
-    gas: Gas,
-    surroundings: Surroundings,
-    disc_columns: Mapping[Column, np.ndarray],
-    seed: int,
-    trajectory: int,
-    compression: str,
-) -> None:
+def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajectory: int) -> None:
     """What is known before the run: versions, box, discs and walls."""
-    objects = Objects(file.id, compression)
+    objects = Objects(file.id, layout.compression)
     set_attributes(
         file.id,
         format=np.bytes_(FORMAT),
@@ -119,12 +110,12 @@ def write_header(
     set_attributes(objects.group("h5md"), version=H5MD_VERSION)
     set_attributes(objects.group("h5md/author"), name=np.bytes_("unknown"))
     set_attributes(objects.group("h5md/creator"), name=np.bytes_("idealgas"), version=np.bytes_(__version__))
-    walls, store = surroundings.walls, objects.constant
+    walls, store = layout.walls, objects.constant
     box = store("box", np.array(gas.box, "f8"), "length")
-    set_attributes(box, boundary=np.array(surroundings.boundary, "S"))
-    store("gravity", np.array(surroundings.gravity, "f8"), "length/time^2")
+    set_attributes(box, boundary=np.array(layout.boundary, "S"))
+    store("gravity", np.array(layout.gravity, "f8"), "length/time^2")
     store("discs/id", np.arange(len(gas), dtype="u4"))
-    given = {column: getattr(gas, column.name) for column in DISC_COLUMNS} | dict(disc_columns)
+    given = {column: getattr(gas, column.name) for column in DISC_COLUMNS} | dict(layout.disc_columns)
     for column, values in given.items():
         store(f"discs/{column.name}", np.asarray(values, column.dtype), column.unit)
     store("discs/species_name", _text(gas.species_names))
@@ -132,23 +123,12 @@ def write_header(
     store("walls/endpoints", np.array([(wall.start, wall.end) for wall in walls], "f8").reshape(-1, 2, 2), "length")
 
 
-def create_tables(
-    file: h5py.File,
-    discs: int,
-    event_columns: Sequence[Column],
-    checkpoint_arrays: Sequence[Column],
-    checkpoint_values: Sequence[Column],
-    observables: Sequence[Column],
-    snapshot_arrays: Sequence[Column],
-    text_sizes: Mapping[str, int],
-    most_rows: int,
-    compression: str,
-) -> None:
+def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:
     """Empty tables and the commit record, which lists the tables' datasets. A table without columns does not exist.
 
-    text_sizes: bytes of each text in a row of `runs`. most_rows: of events.
+    text_sizes: bytes of each text in a row of `runs`.
     """
-    objects = Objects(file.id, compression)
+    objects = Objects(file.id, layout.compression)
     paths: list[str] = []
 
     def add(path: str, column: Column, rows: int) -> None:
@@ -173,18 +153,18 @@ def create_tables(
 
     for name in text_sizes:
         add(f"runs/{name}", Column(name, "S"), 1)
-    event_rows = max(SHORTEST_CHUNK, min(BLOCK, 1 << (most_rows - 1).bit_length()))
-    for column in event_columns:
+    event_rows = max(SHORTEST_CHUNK, min(BLOCK, 1 << (layout.most_rows - 1).bit_length()))
+    for column in layout.event_columns:
         add(f"events/{column.name}", column, event_rows)
     some = max(1, DISC_RECORDS // discs)
-    for column in (*CHECKPOINT_COLUMNS, *checkpoint_values):
+    for column in (*CHECKPOINT_COLUMNS, *layout.checkpoint_values):
         add(f"checkpoints/{column.name}", column, some)
-    for column in checkpoint_arrays:
+    for column in layout.checkpoint_arrays:
         add(f"checkpoints/{column.name}", column._replace(shape=(discs, *column.shape)), some)
-    if observables:
-        add_elements("observables", observables, SAMPLES)
-    if snapshot_arrays:
-        arrays = [column._replace(shape=(discs, *column.shape)) for column in snapshot_arrays]
+    if layout.observables:
+        add_elements("observables", layout.observables, SAMPLES)
+    if layout.snapshot_arrays:
+        arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.snapshot_arrays]
         add_elements("particles/discs", arrays, some)
         _describe_particles(file, objects)
     for column in SUMMARY_COLUMNS:

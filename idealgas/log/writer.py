@@ -6,21 +6,21 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import h5py
 import numpy as np
 
-from idealgas.events import BLOCK, EventBatch, empty_batch
+from idealgas.events import BLOCK, EventBatch, columns_named, empty_batch
 from idealgas.gas.state import Gas
 from idealgas.log import schema
 from idealgas.log.errors import LogError, check_output, give_name, storage_error
 from idealgas.log.hdf5.commit import Commit
 from idealgas.log.hdf5.superblock import abandon, lock
 from idealgas.log.hdf5.table import Table, commit_tables, open_tables
-from idealgas.log.schema import Column, Wall
+from idealgas.log.schema import LogLayout
 
 BUFFERS = 4
 FLUSH_ROWS = 4 * BLOCK
@@ -52,50 +52,31 @@ class LogWriter:
         self,
         path: str | os.PathLike[str],
         gas: Gas,
+        layout: LogLayout,
         *,
         scene_text: str,
         seed: int,
-        walls: Sequence[Wall],
-        boundary: tuple[str, str] = ("none", "none"),
-        gravity: tuple[float, float] = (0.0, 0.0),
         command: str = "",
         trajectory: int = 0,
-        events: bool = True,
-        compression: str = "gzip",
         fsync: bool = False,
         force: bool = False,
-        disc_columns: Mapping[Column, np.ndarray] | None = None,
-        event_columns: Sequence[Column] = schema.EVENT_COLUMNS,
-        make_batch: Callable[[int], Any] = empty_batch,
-        checkpoint_arrays: Sequence[Column] = schema.CHECKPOINT_ARRAYS,
-        checkpoint_values: Sequence[Column] = (),
-        observables: Sequence[Column] = (),
-        snapshot_arrays: Sequence[Column] = (),
-        most_rows: int = BLOCK,
     ) -> None:
         """Make the file with all its datasets. An existing one is replaced only with `force`.
 
-        gas: the start state. walls: wall k of the events. boundary: "none" or "periodic" along x and y. gravity:
-        length/time². trajectory: version of the laws that move the discs. events: whether event rows are kept.
-        disc_columns: (N,) further constants and start values. make_batch: a buffer of so many rows with the event
-        columns by name. checkpoint_arrays, checkpoint_values: what a checkpoint has of each disc, and of the whole.
-        snapshot_arrays: what a snapshot has of each disc; without any there are none. most_rows: how many event rows
-        the run may have, if that is less than a full chunk.
+        gas: the start state. scene_text: the resolved scene, TOML. trajectory: version of the laws that move the discs.
         """
         check_output(path, force)
         path = Path(path)
         part = path.with_name(f".{path.name}.{os.getpid()}")
-        surroundings = schema.Surroundings(walls, boundary, gravity)
         sizes = {"scene": len(scene_text.encode()) + schema.SCENE_SLACK, "command": schema.COMMAND_SIZE}
-        columns = (event_columns if events else (), checkpoint_arrays, checkpoint_values, observables, snapshot_arrays)
         try:
             file = h5py.File(part, "w", **schema.FILE_OPTIONS, **schema.PAGES)
         except OSError as error:
             part.unlink(missing_ok=True)
             raise storage_error(path, error) from error
         try:
-            schema.write_header(file, gas, surroundings, disc_columns or {}, seed, trajectory, compression)
-            schema.create_tables(file, len(gas), *columns, sizes, most_rows, compression)
+            schema.write_header(file, gas, layout, seed, trajectory)
+            schema.create_tables(file, len(gas), layout, sizes)
             file.flush()
             commit = Commit.read(file)
             tables = open_tables(file, commit, commit.rows)
@@ -109,7 +90,7 @@ class LogWriter:
             abandon(file)
             part.unlink(missing_ok=True)
             raise storage_error(path, error) from error
-        self._start(path, file, tables, commit.sequence + 1, fsync, make_batch)
+        self._start(path, file, tables, commit.sequence + 1, fsync)
 
     @classmethod
     def resume(
@@ -117,7 +98,6 @@ class LogWriter:
         path: str | os.PathLike[str],
         checkpoint: int | None = -1,
         fsync: bool = False,
-        make_batch: Callable[[int], Any] = empty_batch,
         scene_text: str | None = None,
         command: str = "",
     ) -> Self:
@@ -130,28 +110,21 @@ class LogWriter:
         from idealgas.log.recovery import reopen
 
         writer = cls.__new__(cls)
-        writer._start(Path(path), *reopen(path, checkpoint), fsync, make_batch)
+        writer._start(Path(path), *reopen(path, checkpoint), fsync)
         if scene_text is not None:
             runs = writer._tables["runs"]
             writer._put(_Rows(runs, 0, 1, _texts(runs, scene_text, command)))
         return writer
 
-    def _start(
-        self,
-        path: Path,
-        file: h5py.File,
-        tables: dict[str, Table],
-        sequence: int,
-        fsync: bool,
-        make_batch: Callable[[int], Any],
-    ) -> None:
+    def _start(self, path: Path, file: h5py.File, tables: dict[str, Table], sequence: int, fsync: bool) -> None:
         self.path, self._file, self._tables, self._sequence, self._fsync = path, file, tables, sequence, fsync
         self._events = tables.get("events")
         self._flushed = self.rows = self._events.stored if self._events else 0
         self._due = math.inf
-        self._free: queue.LifoQueue[Any] = queue.LifoQueue()  # the last one back is still in the caches
+        self._names = [path.partition("/")[2] for path in self._events.columns] if self._events else []
+        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the last one back is still in the caches
         for _ in range(BUFFERS if self._events else 0):
-            self._free.put(make_batch(BLOCK + 1))
+            self._free.put(empty_batch(BLOCK + 1, columns_named(self._names)))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)
         self._error: Exception | None = None
         self._thread = threading.Thread(target=self._run, name="log writer", daemon=True)
@@ -173,7 +146,7 @@ class LogWriter:
         assert self._events is not None, "this log keeps no events"
         start = self.rows % BLOCK
         self.rows += rows
-        data = [getattr(self._lent, path.partition("/")[2]) for path in self._events.columns]
+        data = [getattr(self._lent, name) for name in self._names]
         self._put(_Rows(self._events, start, start + rows, data, self._lent))
 
     def checkpoint(

@@ -4,7 +4,7 @@ from idealgas._jit import inline
 from idealgas.physics.arithmetic import number
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
-from idealgas.physics.motion import acceleration_along
+from idealgas.physics.gravity import acceleration_along
 
 
 @inline

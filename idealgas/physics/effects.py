@@ -5,13 +5,14 @@ so no machine code of an absent effect is made.
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas.physics.motion import Gravity
+from idealgas.physics import periodic, piston, restitution, wall
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
-from idealgas.physics.piston import advance_piston
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
@@ -20,7 +21,7 @@ from idealgas.physics.thermal import Thermal
 class Effects(NamedTuple):
     """segments: (S,) SEGMENT. piston: (1,) PISTON.
 
-    ledger: (walls,) f8, energy that each wall gave to discs; where any wall can give some.
+    wall_energy: (walls,) f8, energy that each wall gave to discs; where any wall can give some.
     """
 
     gravity: Gravity | None = None
@@ -33,34 +34,34 @@ class Effects(NamedTuple):
     wall_energy: np.ndarray | None = None
 
 
-def copy_of(periodic: Periodic | None) -> Periodic | None:
-    """One whose counts can change without changing the original's."""
-    if periodic is None:
-        return None
-    return periodic._replace(boundary_crossings=periodic.boundary_crossings.copy(), image=periodic.image.copy())
+AT_BEGIN: dict[str, Callable[[Any, float], None]] = {"periodic": periodic.begin_epoch, "segments": wall.begin_epoch}
+"""What happens to effects when an epoch begins at a time."""
 
+AT_END: dict[str, Callable[[Any, float], None]] = {
+    "restitution": restitution.end_epoch,
+    "piston": piston.end_epoch,
+}
+"""What happens to effects when an epoch of some length ends."""
 
-def time_of_next_gate(segments: np.recarray | None, time: float) -> float:
-    """When a gate next opens or closes after a time; infinite if none does."""
-    if segments is None:
-        return math.inf
-    switches = np.concatenate((segments.opens, segments.closes))
-    return float(switches[switches > time].min(initial=math.inf))
+CHANGES: dict[str, Callable[[Any, float], float]] = {"segments": wall.next_change}
+"""When effects next change by themselves after a time: an epoch ends there."""
 
 
 def begin_epoch(effects: Effects, time: float) -> None:
-    """Set the gates as they are from a time on, and count ways through joined sides from there."""
-    if effects.segments is not None:
-        open_now = (effects.segments.opens <= time) & (time < effects.segments.closes)
-        effects.segments.active[:] = ~open_now
-    if effects.periodic is not None:
-        effects.periodic.boundary_crossings[:] = 0
+    """Make the effects ready for an epoch that begins at a time."""
+    for name, begin in AT_BEGIN.items():
+        if (effect := getattr(effects, name)) is not None:
+            begin(effect, time)
 
 
 def end_epoch(effects: Effects, length: float) -> None:
     """Count all local times from the end of an epoch."""
-    if effects.restitution is not None:
-        effects.restitution.last[:] -= length
-    if effects.piston is not None:
-        advance_piston(effects.piston[0], length)
-        effects.piston[0].t = 0.0
+    for name, end in AT_END.items():
+        if (effect := getattr(effects, name)) is not None:
+            end(effect, length)
+
+
+def next_change(effects: Effects, time: float) -> float:
+    """When an effect next changes by itself after a time; infinite if none does."""
+    present = ((getattr(effects, name), change) for name, change in CHANGES.items())
+    return min((change(effect, time) for effect, change in present if effect is not None), default=math.inf)

@@ -1,15 +1,6 @@
 """Free flight: r(t) = r₀ + v t, and under gravity + ½ g t²."""
 
-from typing import NamedTuple
-
 from idealgas._jit import inline
-
-
-class Gravity(NamedTuple):
-    """Constant acceleration, length/time²."""
-
-    x: float
-    y: float
 
 
 @inline
@@ -42,11 +33,3 @@ def advance(disc, time, gravity):
         disc.x = position_after(disc.x, disc.vx, None, delay)
         disc.y = position_after(disc.y, disc.vy, None, delay)
     disc.t = time
-
-
-@inline
-def acceleration_along(gravity, along_y):
-    """Component of the acceleration along an axis of the box."""
-    if gravity is not None:
-        return gravity.y if along_y else gravity.x
-    return 0.0

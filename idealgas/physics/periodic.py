@@ -30,6 +30,18 @@ def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
     return (periodic.x, periodic.y) if periodic else (False, False)
 
 
+def copy_of(periodic: Periodic | None) -> Periodic | None:
+    """One whose counts can change without changing the original's."""
+    if periodic is None:
+        return None
+    return periodic._replace(boundary_crossings=periodic.boundary_crossings.copy(), image=periodic.image.copy())
+
+
+def begin_epoch(periodic: Periodic, time: float) -> None:
+    """Count ways through periodic sides from a time on, at which every record stands."""
+    periodic.boundary_crossings[:] = 0
+
+
 @inline
 def images_between(periodic, a_id, b_id, image):
     """Box lengths between the records of a and b, which stand `image` box lengths apart now."""

@@ -8,7 +8,8 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
-from idealgas.physics.motion import acceleration_along, position_after, velocity_after
+from idealgas.physics.gravity import acceleration_along
+from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.restitution import wall_rebound
 
 PISTON = np.dtype(
@@ -30,19 +31,30 @@ def outward(piston):
 
 
 @inline
+def piston_motion(piston, time):
+    """Position and velocity of a piston at a later local time, if it meets nothing until then."""
+    delay = time - piston.t
+    return position_after(piston.x, piston.v, piston.a, delay), velocity_after(piston.v, piston.a, delay)
+
+
+def end_epoch(piston: np.ndarray, length: float) -> None:
+    """Bring the piston to the end of an epoch, and count its local time from there."""
+    advance_piston(piston[0], length)
+    piston[0].t = 0.0
+
+
+@inline
 def piston_contact(disc, piston, gravity):
     """Time at which a disc meets the piston; NEVER if it does not."""
     along_y = piston.side >= 2
     sign = outward(piston)
     time = max(disc.t, piston.t)
     d_dt = time - disc.t
-    p_dt = time - piston.t
     pull = acceleration_along(gravity, along_y)
     place, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     d_place = position_after(place, velocity, pull, d_dt)
-    p_place = position_after(piston.x, piston.v, piston.a, p_dt)
     d_velocity = velocity_after(velocity, pull, d_dt)
-    p_velocity = velocity_after(piston.v, piston.a, p_dt)
+    p_place, p_velocity = piston_motion(piston, time)
     height = sign * (p_place - d_place) - disc.r
     delay = time_to_plane(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
     return time + delay if delay < NEVER else NEVER
@@ -58,7 +70,10 @@ def stop_contact(piston):
 
 @inline
 def advance_piston(piston, time):
-    """Move the piston's record to a later time."""
+    """Move the piston's record to a later time.
+
+    The way is summed before it is added, other than in `piston_motion`: events on record depend on its last digit.
+    """
     delay = time - piston.t
     piston.x += position_after(0.0, piston.v, piston.a, delay)
     piston.v = velocity_after(piston.v, piston.a, delay)
@@ -66,7 +81,10 @@ def advance_piston(piston, time):
 
 
 def piston_energy(mass, position, velocity, acceleration):
-    """Energy of motion and place of a piston with a mass, m (V²/2 - A X), constant between hits. Numbers or arrays."""
+    """Energy of motion and place of a piston with a mass, m (V²/2 - A X), constant between hits. Numbers or arrays.
+
+    acceleration: along its way between hits, by the outer pressure and gravity.
+    """
     return mass * (0.5 * velocity**2 - acceleration * position)
 
 

@@ -23,6 +23,11 @@ class Restitution(NamedTuple):
     last: np.ndarray
 
 
+def end_epoch(restitution: Restitution, length: float) -> None:
+    """Count the local times of the last collisions from the end of an epoch."""
+    restitution.last[:] -= length
+
+
 @inline
 def rebound(restitution, a_id, b_id, time):
     """1 + the coefficient of restitution of two discs that meet."""

@@ -24,6 +24,17 @@ SEGMENT = np.dtype(
 )  # fmt: skip
 
 
+def begin_epoch(segments: np.recarray, time: float) -> None:
+    """Set the gates as they are from a time on."""
+    segments.active[:] = ~((segments.opens <= time) & (time < segments.closes))
+
+
+def next_change(segments: np.recarray, time: float) -> float:
+    """When a gate next opens or closes after a time; infinite if none does."""
+    switches = np.concatenate((segments.opens, segments.closes))
+    return float(switches[switches > time].min(initial=math.inf))
+
+
 @inline
 def foot_inside(s, length):
     """Whether a foot point at arc length s lies strictly between the ends."""

@@ -2,22 +2,23 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.run.effects.bundle import present
 
 
 class Energy(NamedTuple):
-    """kinetic, rotational, potential: of the discs. piston: motion and position of one with a mass. given: what walls
-    gave to the discs; a piston with a mass, whose energy counts itself, is not among them.
+    """The energy of a gas by its parts.
+
+    kinetic, rotational, potential: of the discs. piston: of motion and position of a piston with a mass. given: energy
+    that walls gave to the discs; what a piston with a mass gave is not counted, as its own energy is.
     """
 
     kinetic: float
-    rotational: float
-    potential: float
-    piston: float
-    given: float
+    rotational: float = 0.0
+    potential: float = 0.0
+    piston: float = 0.0
+    given: float = 0.0
 
     @property
     def gas(self) -> float:
@@ -37,32 +38,16 @@ class Energy(NamedTuple):
 
 def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
     """Energy of a gas; local_time: of the gas, from the start of the epoch."""
-    rotational = potential = piston = 0.0
     given = 0.0 if effects.wall_energy is None else float(effects.wall_energy.sum())
-    if effects.rotation is not None:
-        rotational = float((0.5 * effects.rotation.inertia * effects.rotation.omega**2).sum())
-    if effects.gravity is not None:
-        potential = -float((gas.mass * (gas.position @ np.array(effects.gravity))).sum())
-    if effects.piston is not None and effects.wall_energy is not None and effects.piston[0].m > 0:
-        record = effects.piston[0]
-        place, velocity = piston_motion(effects.piston, local_time)
-        piston = float(record.m * (0.5 * velocity**2 - record.a * place))
-        given -= float(effects.wall_energy[record.side])
-    return Energy(gas.kinetic_energy, rotational, potential, piston, given)
-
-
-def piston_motion(piston: np.ndarray, local_time: float) -> tuple[float, float]:
-    """Position and velocity of a piston at a local time from its last hit to the next."""
-    record = piston[0]
-    dt = local_time - record.t
-    return float(record.x + record.v * dt + 0.5 * record.a * dt * dt), float(record.v + record.a * dt)
+    parts = {}
+    for effect, state in present(effects):
+        if effect.energy is not None:
+            parts[effect.energy.part] = effect.energy.of(state, gas, local_time)
+        if effects.wall_energy is not None and (wall := effect.own_wall(state)) is not None:
+            given -= float(effects.wall_energy[wall])
+    return Energy(gas.kinetic_energy, **parts, given=given)
 
 
 def is_conserved(effects: Effects) -> bool:
-    """Whether the balance is: no energy is lost between discs, or between a disc and a piston with a mass."""
-    restitution, rotation, piston = effects.restitution, effects.rotation, effects.piston
-    if rotation is not None and abs(rotation.roughness) < 1:
-        return False
-    if restitution is not None and restitution.normal < 1:
-        return False
-    return not (restitution is not None and restitution.wall < 1 and piston is not None and piston[0].m > 0)
+    """Whether the balance is: no energy is lost between discs, or between a disc and a wall with energy of its own."""
+    return all(effect.conserves(effects) for effect, _ in present(effects))

@@ -1,4 +1,4 @@
-"""Going on with a log from its last checkpoint, to what one run without a break would have written."""
+"""Resuming a run from the last checkpoint of its log, which becomes what one run without a break would have written."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -6,17 +6,18 @@ from collections.abc import Callable, Sequence
 from idealgas._jit import compile_timer
 from idealgas.document.dump import dump_document
 from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
+from idealgas.events import empty_batch
 from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
-from idealgas.run.layout import restore
-from idealgas.run.simulate import TOTALS, LoggedRun, Progress, RunHistory, Summary, batch_maker, method_of, stop_of
+from idealgas.run.layout import TOTALS, restore, row_columns
+from idealgas.run.simulate import LoggedRun, Progress, RunHistory, Summary, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
 
 TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
 
 STOP_RULES = ("until", "events", "collisions_per_disc", "trials")
-"""Keys of [run] that say where it ends: all that may change when a log is gone on with."""
+"""Keys of [run] that say where a run ends: all that may change when it is resumed."""
 
 
 def resume(
@@ -27,12 +28,17 @@ def resume(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Go on with a log from its last checkpoint, to a log that is bit for bit that of a run without a break.
+    """Go on with a run that was interrupted or killed, or that is to end later, from the last checkpoint of its log.
 
-    overrides: `run.until=...` and the other STOP_RULES, to end later than the log's scene says. A log that is at its
-    end stays as it is. Raises SceneError for a wrong override; LogError if another process writes the log, if the
-    program or a change of the scene would make it go on otherwise than it began, or if it goes beyond the end asked
-    for.
+    The events in the log become bit for bit those of a run without a break. A log that is at its end already stays as
+    it is, and its summary is returned.
+
+    path: of the log, which is written on. overrides: new ends of the run, such as "run.until=100" or
+    "run.events=1000000" (any of STOP_RULES; the others stay as they are unless set to nothing, as in "run.until=").
+    command, on_progress, interrupted: as in `simulate`.
+
+    Raises SceneError for an override that is wrong; LogError if another process is writing the log, if this program or
+    a change of the scene would go on otherwise than the run began, or if the log goes beyond the end asked for.
     """
     with compile_timer() as compilation:
         with open_log(path) as log:
@@ -50,7 +56,6 @@ def resume(
             path,
             None if last is None else -1,
             fsync=scene.log.fsync,
-            make_batch=batch_maker(simulation.effects, simulation.method),
             scene_text=dump_document(scene),
             command=command,
         ) as writer:
@@ -98,7 +103,7 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
 def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
     """Raise LogError unless the discs go on from the last checkpoint as they did."""
     first = 0 if last is None else last.row
-    batch = batch_maker(simulation.effects, simulation.method)(TRIAL_ROWS + 2)
+    batch = empty_batch(TRIAL_ROWS + 2, row_columns(simulation.effects, simulation.method.without_positions))
     rows = min(simulation.advance(Stop(), batch, TRIAL_ROWS), len(log) - first)
     for stored in log.chunks(None, first, first + rows):
         again, batch = batch.rows(0, len(stored.time)), batch.rows(len(stored.time), TRIAL_ROWS + 2)

@@ -1,11 +1,10 @@
-"""From a scene to a run: the discs, the method, the log, and where it stops."""
+"""Running a scene: places the discs, lets them move by the scene's method, and writes every event into a log."""
 
 import math
 import os
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,48 +16,33 @@ from idealgas.engine.audit import Audit
 from idealgas.engine.methods import make_method
 from idealgas.engine.records import LATEST
 from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
-from idealgas.events import BLOCK, empty_batch
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
-from idealgas.log import Column, LogWriter
-from idealgas.physics.effects import Effects
-from idealgas.run.effects import make_effects
+from idealgas.log import LogWriter
+from idealgas.run.effects.bundle import make_effects, whole_state
 from idealgas.run.energy import Energy, energy_of, is_conserved
-from idealgas.run.layout import (
-    boundary_of,
-    by_name,
-    disc_constants,
-    disc_state,
-    event_columns,
-    observed,
-    snapshot_state,
-    walls_of,
-    whole_state,
-)
+from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
 
-TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
-OBSERVABLES = (
-    Column("kinetic_energy", "f8", unit="energy"),
-    Column("momentum", "f8", (2,), "mass length/time"),
-    Column("overlap", "f8"),
-    Column("outside", "f8"),
-    *TOTALS,
-)
-
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run came to.
+    """What a run came to, all of the log included if it was resumed.
 
-    completed: whether it reached its end. end_time: time. trials: of pairs, by Monte Carlo. energy_change: of the
-    discs, energy. energy_drift: of discs and piston less what walls gave, relative; None where energy is lost between
-    discs. deepest_overlap: in units of the sum of the radii; farthest_outside: in units of a diameter (both at the
-    starts of epochs and at the end; in time steps the overlap is that of any collision, each of which has one).
-    seconds: wall time, start-up and compilation not counted.
+    completed: whether the run reached the end that its scene asks for. end_time: time at which it ended. events: number
+    of events, the sum of disc_collisions (of two discs) and wall_hits (of discs with walls and the piston). trials:
+    number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision. epochs: number of them.
+
+    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston less
+    what walls gave, relative to the energy: rounding errors only; None where collisions between discs lose energy.
+    deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
+    in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
+    the overlap is that of all collisions, each of which has one.
+
+    seconds: wall time of this run without start-up and compilation; compile_seconds: that of compilation.
     """
 
     completed: bool
@@ -76,10 +60,14 @@ class Summary:
     seconds: float
     compile_seconds: float
 
+    def as_dict(self) -> dict[str, Any]:
+        """The fields by name, ready for JSON."""
+        return asdict(self)
+
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is. share: of the way to its end, 0 to 1. time: simulated time of the last event. events: so far."""
+    """Where a run is. share: of the way to its end, 0 to 1. time: of the last event. events: number of them so far."""
 
     share: float
     time: float
@@ -123,11 +111,17 @@ def simulate(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Run a scene and write its log.
+    """Run a scene to the end that its table [run] asks for, and write its log.
 
-    force: replace an existing file. command: stored in the log. interrupted: asked several times a second; once true,
-    the run ends at its last event, with a readable log. Raises SceneError if the discs do not fit, LogError if the log
-    cannot be written.
+    scene: from `load_scene` or `parse_scene`. path: of the log to write, an HDF5 file that `open_log` reads. force:
+    replace an existing file. command: text to keep in the log as the command of the run. on_progress: called several
+    times a second with the `Progress` of the run. interrupted: asked as often; once it says True, the run ends after
+    its last event and the summary says that it is not completed. After that, as after Ctrl-C (KeyboardInterrupt), the
+    log can be read and resumed.
+
+    The first run with a set of effects compiles its machine code, which takes some seconds and is kept on disk.
+
+    Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written.
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)
@@ -136,42 +130,18 @@ def simulate(
         with LogWriter(
             path,
             gas,
+            layout_of(scene, gas, effects, method.without_positions),
             scene_text=dump_document(scene),
             seed=scene.scene.seed,
             command=command,
             trajectory=TRAJECTORY,
-            walls=walls_of(scene),
-            boundary=boundary_of(scene),
-            gravity=scene.gravity.acceleration if scene.gravity else (0.0, 0.0),
-            events=scene.log.events,
-            compression=scene.log.compression,
             fsync=scene.log.fsync,
             force=force,
-            disc_columns=disc_constants(effects),
-            event_columns=event_columns(effects, method.without_positions),
-            make_batch=batch_maker(effects, method),
-            checkpoint_arrays=tuple(disc_state(gas, effects, method.without_positions)),
-            checkpoint_values=(*TOTALS, *whole_state(effects)),
-            observables=(*OBSERVABLES, *observed(gas, effects)),
-            snapshot_arrays=tuple(snapshot_state(gas, effects, method.without_positions))
-            if scene.log.snapshot_every
-            else (),
-            most_rows=2 * (scene.run.events or BLOCK),
         ) as log:
-            run = LoggedRun(
-                scene, Simulation(gas, method, effects), log, RunHistory(energy_of(gas, effects)), compilation
+            past = RunHistory(energy_of(gas, effects))
+            return LoggedRun(scene, Simulation(gas, method, effects), log, past, compilation).run(
+                on_progress, interrupted
             )
-            return run.run(on_progress, interrupted)
-
-
-def batch_maker(effects: Effects, method: Method) -> Callable[..., Any]:
-    """`empty_batch` for a run with these effects by this method."""
-    return partial(
-        empty_batch,
-        rotating=effects.rotation is not None,
-        periodic=effects.periodic is not None,
-        without_positions=method.without_positions,
-    )
 
 
 class RunHistory(NamedTuple):
@@ -198,6 +168,7 @@ class LoggedRun:
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
 
     def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
+        """Go on to the stop, or until `interrupted` says True, and close the log."""
         simulation, stop = self._simulation, self._stop
         if not self._begun:
             if self._scene.log.snapshot_every:
@@ -223,7 +194,7 @@ class LoggedRun:
             elif taken > LONGEST_SLICE:
                 slice_events = max(slice_events // 2, 1)
         summary = self._finish(time.perf_counter() - started)
-        self._log.close(asdict(summary) if summary.completed else None)
+        self._log.close(summary.as_dict() if summary.completed else None)
         return summary
 
     def _slice(self, events: int) -> None:

@@ -6,26 +6,15 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from idealgas.document.table import Rectangle
-
 if TYPE_CHECKING:
     from idealgas.scene.tables.box import Box
-    from idealgas.scene.tables.piston import Piston
     from idealgas.scene.tables.wall import Wall
 
 Point = tuple[float, float]
 
 
-def room(box: Box, piston: Piston | None) -> Rectangle:
-    """What the gas has at the start: the box, up to the piston."""
-    low, high = [0.0, 0.0], list(box.size)
-    if piston is not None:
-        (high if piston.outward > 0 else low)[piston.axis] = piston.start(box.size)
-    return low[0], low[1], high[0], high[1]
-
-
 def images(centre: Point, radius: float, box: Box | None) -> Iterator[Point]:
-    """A disc's centre, and those of its images that reach into the box through joined sides."""
+    """A disc's centre, and those of its images that reach into the box through periodic sides."""
     shifts = []
     for axis in range(2):
         here = [0.0]

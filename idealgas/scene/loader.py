@@ -16,17 +16,24 @@ from idealgas.scene.model import Scene
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene; an override is `table.key=value`. SceneError if it cannot be read or simulated."""
+    """Read a scene from a TOML file and check all of it.
+
+    overrides: values to put in place of those of the file, each as "table.key=value", such as "run.until=100" or
+    "species.0.count=500"; the value is written as in TOML, and nothing after the `=` takes the key away.
+
+    Raises SceneError, with one line for everything that is wrong, if the file cannot be read or the scene cannot be
+    simulated.
+    """
     return parse_scene(read_text(path), str(path), overrides)
 
 
 def parse_scene(text: str, name: str = "<scene>", overrides: Sequence[str] = ()) -> Scene:
-    """The same from text; `name` stands for the file in messages."""
+    """Make a scene from TOML text and check all of it, as `load_scene` does. name: stands for the file in messages."""
     text = text.replace("\r\n", "\n")
     document = parse_document(text, name)
     overridden: dict[Key, str] = {}
     errors = []
-    for override in overrides:
+    for override in [overrides] if isinstance(overrides, str) else overrides:  # a text is a sequence of texts too
         try:
             overridden[apply(override, document)] = f"--set {override}"
         except OverrideError as error:
@@ -55,7 +62,7 @@ def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]
 
 
 def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
-    """What tables of a document are sound, None in the place of the others, and the names of these."""
+    """The valid tables of a document, None for each of the others, and the names of the invalid ones."""
     parts: dict[str, Any] = {}
     invalid = set()
     for name, field in Scene.model_fields.items():

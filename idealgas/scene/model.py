@@ -41,5 +41,5 @@ class Scene(Document):
         return self
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """Lines for people about faults that show only later, with the place of the key each names."""
+        """One line for each issue found after the scene was checked, with file and line of the key that it is about."""
         return self._origin.report(issues)

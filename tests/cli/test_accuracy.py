@@ -4,7 +4,7 @@ import csv
 import json
 
 import pytest
-from support import ROOT, idealgas
+from support import ROOT, called, idealgas
 
 SMALL = """
 [box]
@@ -55,7 +55,7 @@ def test_its_files_hold_all_numbers(small):
 
 def test_the_orbit_of_three_discs(tmp_path):
     scene = ROOT / "configs" / "three-discs.toml"
-    done = idealgas("accuracy", scene, "--json", "-o", tmp_path)
+    done = called("accuracy", scene, "--json", "-o", tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     result = json.loads(done.stdout)
     assert result["placements"] >= 12
@@ -70,7 +70,7 @@ def test_the_orbit_of_three_discs(tmp_path):
                            ("novak-bortz", "run.method: nothing to compare")],
 )  # fmt: skip
 def test_what_cannot_be_compared_is_refused_in_a_line(scene, message, tmp_path):
-    done = idealgas("accuracy", ROOT / "configs" / f"{scene}.toml", folder=tmp_path)
+    done = called("accuracy", ROOT / "configs" / f"{scene}.toml", folder=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(message)
     assert done.stderr.count("\n") == 1
@@ -79,6 +79,6 @@ def test_what_cannot_be_compared_is_refused_in_a_line(scene, message, tmp_path):
 
 def test_a_folder_that_cannot_be_is_refused_before_anything_runs(tmp_path):
     (tmp_path / "file").write_text("")
-    done = idealgas("accuracy", ROOT / "configs" / "quickstart.toml", "-o", "file/out", folder=tmp_path)
+    done = called("accuracy", ROOT / "configs" / "quickstart.toml", "-o", "file/out", folder=tmp_path)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr.startswith("file/out: cannot be written: ")

@@ -64,7 +64,7 @@ def test_pressure_check(path):
 
 
 def test_check_that_fails_exits_with_one(path, monkeypatch):
-    monkeypatch.setattr("idealgas.analysis.pressure.measure.TOLERANCE", 1e-9)
+    monkeypatch.setattr("idealgas.analysis.core.statistics.TOLERANCE", 1e-9)
     result = idealgas("pressure", path, "--check")
     assert result.exit_code == 1
     assert "do not agree" in result.stdout

@@ -1,20 +1,15 @@
 import json
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from support import ROOT
+from support import ROOT, called, idealgas
 
 from idealgas.scene import EFFECTS, load_scene
 
-IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
 CONFIGS = ROOT / "configs"
 
 
 def check(*arguments, folder=None):
-    return subprocess.run([IDEALGAS, "check", *map(str, arguments)], capture_output=True, text=True, cwd=folder)
+    return called("check", *arguments, folder=folder)
 
 
 def test_an_invalid_scene_is_refused_line_by_line(invalid_case, tmp_path):
@@ -28,7 +23,7 @@ def test_an_invalid_scene_is_refused_line_by_line(invalid_case, tmp_path):
 
 @pytest.mark.parametrize("name", ["missing.toml", "."])
 def test_an_unreadable_scene_is_one_line(name, tmp_path):
-    result = check(name, folder=tmp_path)
+    result = idealgas("check", name, folder=tmp_path)
     assert result.returncode == 2
     assert result.stderr.startswith(f"{name}: cannot be read (")
     assert result.stderr.count("\n") == 1
@@ -71,7 +66,7 @@ def test_what_theory_does_not_know_is_said():
 
 
 def test_json():
-    result = check(CONFIGS / "mixture.toml", "--json", "--set", "species.heavy.count=100")
+    result = idealgas("check", CONFIGS / "mixture.toml", "--json", "--set", "species.heavy.count=100")
     assert result.returncode == 0
     found = json.loads(result.stdout)
     assert found["number"] == 900

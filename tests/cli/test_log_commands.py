@@ -8,7 +8,7 @@ from functools import partial
 
 import h5py
 import pytest
-from support import IDEALGAS, ROOT, idealgas
+from support import IDEALGAS, ROOT, called, idealgas
 
 from idealgas.log import LogError, open_log
 
@@ -74,7 +74,7 @@ def test_resume_to_a_later_end(copy):
 )
 def test_resume_refuses(copy, arguments, message):
     before = copy.read_bytes()
-    result = idealgas("resume", copy, *arguments)
+    result = called("resume", copy, *arguments)
     assert (result.returncode, result.stdout) == (2, "")
     assert message in result.stderr
     assert result.stderr.count("\n") == 1
@@ -99,8 +99,8 @@ def test_recover(dead, tmp_path):
         assert (result.returncode, result.stdout) == (0, f"{copy}: {len(log):,} event rows kept\n")
     with h5py.File(copy) as file:
         assert len(file["events/time"]) >= 200_000
-    assert idealgas("info", copy).stderr == ""
-    assert idealgas("recover", dead, "-o", copy).returncode == 2
+    assert called("info", copy).stderr == ""
+    assert called("recover", dead, "-o", copy).returncode == 2
 
 
 def test_follow_ends_with_the_run(tmp_path):
@@ -145,7 +145,7 @@ def test_export(copy):
     ],
 )
 def test_export_refuses(copy, arguments, message):
-    result = idealgas("export", copy, *arguments)
+    result = called("export", copy, *arguments)
     assert (result.returncode, result.stdout) == (2, "")
     assert message in result.stderr
     assert [path.name for path in copy.parent.iterdir()] == ["run.h5"]

@@ -4,9 +4,7 @@ import shutil
 
 import h5py
 import pytest
-from click.testing import CliRunner
-from idealgas_cli.main import main
-from support import ROOT, idealgas
+from support import ROOT, called, idealgas
 
 COMMANDS = ("info", "histogram", "temperature", "pressure", "heat-capacity")
 
@@ -48,7 +46,7 @@ def test_results_only(command, folder):
 @pytest.mark.parametrize("command", COMMANDS[1:])
 def test_plot_and_window(command, folder, tmp_path):
     shutil.copy(folder / "run.h5", tmp_path)
-    result = idealgas(command, "run.h5", "--from", "0.5", "--to", "1", "--plot", "picture.png", folder=tmp_path)
+    result = called(command, "run.h5", "--from", "0.5", "--to", "1", "--plot", "picture.png", folder=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["picture.png", "run.h5"]
     assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
@@ -60,7 +58,7 @@ BAD = ("missing", "folder", "empty", "text", "noise", "other", "start", "half")
 @pytest.mark.parametrize("name", BAD)
 def test_what_is_no_log_is_one_line(name, folder):
     before = listing(folder)
-    result = idealgas("info", f"{name}.h5", folder=folder)
+    result = called("info", f"{name}.h5", folder=folder)
     assert (result.returncode, result.stdout) == (2, "")
     assert result.stderr.startswith(f"{name}.h5: ")
     assert result.stderr.count("\n") == 1
@@ -76,23 +74,22 @@ def test_what_is_no_log_is_one_line(name, folder):
         if not (name == "folder" and command in ("pressure", "heat-capacity"))
     ],
 )
-def test_all_commands_say_the_same(command, name, folder, monkeypatch):
-    monkeypatch.chdir(folder)
-    first, result = (CliRunner().invoke(main, [each, f"{name}.h5"]) for each in ("info", command))
-    assert (result.exit_code, result.stdout) == (2, "")
+def test_all_commands_say_the_same(command, name, folder):
+    first, result = (called(each, f"{name}.h5", folder=folder) for each in ("info", command))
+    assert (result.returncode, result.stdout) == (2, "")
     assert result.stderr == first.stderr
     assert result.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize("command", ["pressure", "heat-capacity"])
 def test_a_folder_that_is_no_sweep_is_one_line(command, folder):
-    result = idealgas(command, "folder.h5", folder=folder)
+    result = called(command, "folder.h5", folder=folder)
     assert (result.returncode, result.stdout) == (2, "")
     assert result.stderr == "folder.h5: holds no results of a sweep\n"
 
 
 def test_a_picture_that_cannot_be_written(folder):
-    result = idealgas("pressure", "run.h5", "--plot", "missing/picture.png", folder=folder)
+    result = called("pressure", "run.h5", "--plot", "missing/picture.png", folder=folder)
     assert result.returncode in (1, 2)
     assert result.stderr.count("\n") == 1
     assert "missing" in result.stderr

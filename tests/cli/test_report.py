@@ -15,8 +15,8 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 from support import program
 
+from idealgas.analysis import registry
 from idealgas.analysis.movie.piston_track import piston_track
-from idealgas.analysis.report import page as report_module
 from idealgas.analysis.report import player as player_module
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -61,14 +61,13 @@ def idealgas(*arguments):
 def pages(tmp_path_factory):
     """make(name): paths of the log and the page of one of the SCENES; only FULL ones have all the sections."""
     folder = tmp_path_factory.mktemp("report")
-    every, one = report_module.SECTIONS, tuple(entry for entry in report_module.SECTIONS if entry[0] == "Temperature")
 
     def make(name):
         log, page = folder / f"{name}.h5", folder / f"{name}.html"
         if not log.exists():
             simulate(parse_scene(SCENES[name]), log)
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(report_module, "SECTIONS", every if name in FULL else one)
+                patch.setattr(registry, "NAMES", registry.NAMES if name in FULL else ("temperature",))
                 made = idealgas("report", log, "-o", page)
             assert (made.exit_code, made.output) == (0, f"{page}\n"), made.output
         return log, page

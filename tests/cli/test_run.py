@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
-from support import IDEALGAS, ROOT, idealgas, same_rows
+from support import IDEALGAS, ROOT, called, idealgas, same_rows
 
 from idealgas.log import open_log
 
@@ -73,7 +73,7 @@ def test_the_same_scene_gives_the_same_rows(tmp_path):
 
 
 def test_shipped_scenes(shipped_scene, tmp_path):
-    result = idealgas("run", shipped_scene, "-o", "run.h5", "--json", "--set", "run.events=3000", folder=tmp_path)
+    result = called("run", shipped_scene, "-o", "run.h5", "--json", "--set", "run.events=3000", folder=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     summary = json.loads(result.stdout)
     assert summary["completed"]

@@ -7,7 +7,8 @@ import math
 
 import pytest
 
-from idealgas.analysis.heat_capacity.measure import heat_capacity, measure_heat
+from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
+from idealgas.analysis.heat_capacity.measure import heat_capacity
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature.measure import temperature
@@ -121,7 +122,7 @@ def test_heat_capacity_is_the_number_of_discs(tmp_path):
         path = tmp_path / f"{t}.h5"
         simulate(scene(500, 0.1, 400, seed=20 + k, temperature=t), path)
         logs.append(open_log(path))
-    routes = heat_capacity([measure_heat(log) for log in logs]).routes
+    routes = combine_heat_capacity([heat_capacity(log) for log in logs]).routes
     for log in logs:
         log.close()
     assert [route.name for route in routes] == ["dE/dT", "E/T"]

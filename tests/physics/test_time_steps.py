@@ -6,7 +6,7 @@ import numpy as np
 from support import gas_of
 
 from idealgas.engine.event_driven.method import EventDriven
-from idealgas.engine.simulation import Simulation, Stop
+from idealgas.engine.simulation import Simulation
 from idealgas.engine.time_driven import TimeDriven
 
 BLOCKS = 40
@@ -30,10 +30,7 @@ def rate(method, width=12.0):
     simulation = Simulation(gas(), method)
     counts = []
     for k in range(1, BLOCKS + 3):
-        simulation.advance(Stop(), None, pause=k * width)
-        while not simulation.paused:
-            simulation.next_epoch()
-            simulation.advance(Stop(), None, pause=k * width)
+        simulation.run(pause=k * width)
         counts.append(simulation.counters.disc_collisions)
     rates = np.diff(counts[1:]) / width
     return rates.mean(), rates.std(ddof=1) / math.sqrt(len(rates))

@@ -18,13 +18,14 @@ import pytest
 from fuzz_scenes import scene_and_gas, scene_texts
 from hypothesis import HealthCheck, given, settings
 from invariants import InvariantChecker, MaxErrors
+from support import batches, joined, record, same_rows
 
 from idealgas._jit import aligned
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.epoch import LONGEST_WAY
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import EventBatch, empty_batch
+from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
@@ -36,6 +37,7 @@ from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects
 from idealgas.run.simulate import stop_of
 from idealgas.scene import Scene
+from idealgas.sides import FIRST_SEGMENT
 
 PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
 MOST_EPOCHS = 5_000  # no scene has many, but for those in which a disc goes a long way and meets nothing
@@ -72,22 +74,16 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         segments=aligned(0, SEGMENT),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
-        thermal=Thermal(np.full(4 + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
+        thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
         piston=beyond,
-        wall_energy=np.zeros(4 + walls),
+        wall_energy=np.zeros(FIRST_SEGMENT + walls),
     )
     return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
 
 
-def columns_of(scene: Scene, gas: Gas, stop: Stop) -> list[np.ndarray]:
+def log_of_brute_force(scene: Scene, gas: Gas, stop: Stop) -> EventBatch:
     """The whole log by brute force."""
-    simulation, parts = Simulation(gas, BruteForce(), fresh_effects(scene, gas)), []
-    while not simulation.finished(stop):
-        batch = empty_batch(1024, True, True)
-        parts.append(batch.rows(0, simulation.advance(stop, batch)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    return [np.concatenate(column) for column in zip(*parts, strict=True) if column[0] is not None]
+    return record(Simulation(gas, BruteForce(), fresh_effects(scene, gas)), stop, 1024)
 
 
 def run_scene(text: str, max_errors: MaxErrors) -> None:
@@ -99,27 +95,23 @@ def run_scene(text: str, max_errors: MaxErrors) -> None:
     invariants = InvariantChecker(scene, gas, effects, max_errors)
     seen: list[EventBatch] = []
     longest, way = LONGEST_WAY * gas.radius.min(), 0.0  # an epoch's, at least, unless there is much to do
-    while not simulation.finished(stop):
-        batch = empty_batch(4, True, True)
-        rows = batch.rows(0, simulation.advance(stop, batch, events=1))
+    for rows in batches(simulation, stop, 4, events=1):
         if len(rows.time):
             seen.append(rows)
             invariants.see(rows, simulation)
-        if simulation.epoch_over and not simulation.finished(stop):
+        if simulation.epoch_over:
             way += np.hypot(*simulation.state()[0].velocity.T).max() * simulation.length
-            simulation.next_epoch()
-            assert simulation.epoch < MOST_EPOCHS + way / longest, "the clock hardly runs"
+        assert simulation.epoch < MOST_EPOCHS + way / longest, "the clock hardly runs"
     by_time = simulation.counters.events < stop.events
     assert simulation.counters.events == len(seen) <= stop.events
     assert simulation.last_event_time <= stop.time
     if by_time:
         invariants.finish(stop.time, simulation)
-    oracle = columns_of(scene, gas, stop)
+    oracle = log_of_brute_force(scene, gas, stop)
     if seen:
-        columns = [np.concatenate(column) for column in zip(*seen, strict=True) if column[0] is not None]
-        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True)), "not the log of brute force"
+        assert same_rows(joined(seen), oracle), "not the log of brute force"
     else:
-        assert not len(oracle[0])
+        assert not len(oracle.time)
 
 
 scenes = given(scene_texts())

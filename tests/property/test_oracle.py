@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from support import record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import empty_batch
 from idealgas.gas.state import Gas
 
 
@@ -63,25 +63,13 @@ def make(case: Case) -> Gas:
     )
 
 
-def log_of(gas: Gas, method, stop: Stop, batch_rows: int) -> list[np.ndarray]:
-    """All columns of the event log."""
-    simulation = Simulation(gas, method)
-    parts = []
-    while not simulation.finished(stop):
-        batch = empty_batch(batch_rows)
-        parts.append(batch.rows(0, simulation.advance(stop, batch)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    return [np.concatenate(columns) for columns in zip(*parts, strict=True) if columns[0] is not None]
-
-
 def assert_same_log(case: Case, events: int) -> None:
     gas = make(case)
     stop = Stop(events=events)
-    oracle = log_of(gas, BruteForce(), stop, 65_536)
+    oracle = record(Simulation(gas, BruteForce()), stop)
     for filling, rows in ((None, 65_536), (0.1, 65_536), (3.0, 1_000), (1e9, 257)):
-        columns = log_of(gas, EventDriven(filling), stop, rows)
-        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True)), (filling, rows)
+        found = record(Simulation(gas, EventDriven(filling)), stop, rows)
+        assert same_rows(found, oracle), (filling, rows)
 
 
 @settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -121,8 +109,8 @@ def test_many_simultaneous_events():
         species_names=("gas",),
     )
     stop = Stop(events=400)
-    oracle = log_of(gas, BruteForce(), stop, 65_536)
-    assert (np.diff(oracle[0]) == 0).mean() > 0.9
+    oracle = record(Simulation(gas, BruteForce()), stop)
+    assert (np.diff(oracle.time) == 0).mean() > 0.9
     for filling in (0.1, 1.0, 1e9):
-        columns = log_of(gas, EventDriven(filling), stop, 100)
-        assert all(np.array_equal(a, b) for a, b in zip(columns, oracle, strict=True))
+        found = record(Simulation(gas, EventDriven(filling)), stop, 100)
+        assert same_rows(found, oracle)

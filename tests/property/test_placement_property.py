@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from idealgas.document.dump import toml_value
 from idealgas.gas.build import make_gas
 from idealgas.scene import SceneError, parse_scene
-from idealgas.scene.tables.box import SIDES
+from idealgas.sides import SIDES
 
 SIDE = 10.0
 

@@ -10,14 +10,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
+from support import batches
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import empty_batch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.physics.motion import Gravity
-from idealgas.run.effects import make_segments
+from idealgas.physics.gravity import Gravity
+from idealgas.run.effects.wall import make_segments
 
 EVENTS = 120
 DEPTH = 1e-11
@@ -69,14 +69,10 @@ def assert_walls_hold(scene: Scene, gravity: tuple[float, float] | None = None) 
     simulation, stop = Simulation(gas, EventDriven(), effects), Stop(events=EVENTS)
     since = np.zeros(scene.number)
     position, velocity = gas.position.copy(), gas.velocity.copy()
-    while not simulation.finished(stop):
-        batch = empty_batch(2 * EVENTS)
-        rows = batch.rows(0, simulation.advance(stop, batch))
+    for rows in batches(simulation, stop, 2 * EVENTS):
         for time, disc, place, after in zip(rows.time, rows.disc, rows.position, rows.velocity, strict=True):
             assert_clear(position[disc], velocity[disc], pull, time - since[disc], place, walls, scene.radius)
             since[disc], position[disc], velocity[disc] = time, place, after
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
 
 
 def assert_clear(start, velocity, pull, duration, end, walls, radius) -> None:

@@ -119,11 +119,7 @@ def test_digits_of_pi(digits, events):
     """
     gas = gas_of((64, 1), [(1, 0.5), (2, 0.5)], [(0, 0), (-1, 0)], 0.25, [1.0, 100.0**digits])
     simulation = Simulation(gas, EventDriven())
-    stop = Stop(time=16.0)
-    while not simulation.finished(stop):
-        simulation.advance(stop, None)
-        if not simulation.finished(stop):
-            simulation.next_epoch()
+    simulation.run(Stop(time=16.0))
     assert simulation.counters.events == events
     end = simulation.state()[0]
     assert end.velocity[1, 0] > 0.9

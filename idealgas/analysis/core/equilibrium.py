@@ -9,8 +9,6 @@ from scipy.optimize import brentq
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.physics.rotation import moment_of_inertia
-from idealgas.scene import Scene, ThermalSide
 
 
 @dataclass(frozen=True)
@@ -34,11 +32,7 @@ def kept_momentum(log: Log) -> np.ndarray:
 
     Smooth walls take none along themselves; thermal and rough ones do.
     """
-    if not log.has_positions:
-        return np.array([True, True])
-    scene = log.scene
-    grip = bool(wall_temperatures(scene)) or (scene.rotation is not None and scene.rotation.wall_roughness > -1)
-    return np.array(log.periodic) & (not scene.wall) & (all(log.periodic) or not grip)
+    return np.array(log.scene.properties.conserves_momentum if log.has_positions else (True, True))
 
 
 def drift(log: Log) -> np.ndarray:
@@ -51,42 +45,28 @@ def ensemble(log: Log) -> Ensemble:
     """Of the discs of a log. UserError if their energy is not known beforehand."""
     found = known_ensemble(log)
     if found is None:
-        raise UserError(f"{log.path}: no temperature is known beforehand under {', '.join(log.scene.effects)}")
+        causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
+        raise UserError(f"{log.path}: no temperature is known beforehand under {', '.join(causes)}")
     return found
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
     """The same, None if the energy of motion and spin is neither fixed nor set by walls of one temperature."""
-    scene, gas, mass = log.scene, log.discs, composition(log.discs).mass
-    if scene.gravity or scene.piston or "restitution" in scene.effects or _loses_spin(scene):
+    properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
+    if not properties.conserves_energy or len(properties.temperatures) > 1:
         return None
     kept, frame = kept_momentum(log), drift(log)
     dof = 2 * len(gas) - int(kept.sum())
     energy = float((gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum())  # twice
-    if scene.rotation:
+    if log.inertia is not None:
         dof += len(gas)
-        inertia = moment_of_inertia(scene.rotation.inertia, gas.mass, gas.radius)
         spin = log.state_at(log.start_time).angular_velocity
-        energy += 0.0 if spin is None else float((inertia * spin**2).sum())
-    walls = wall_temperatures(scene)
-    if len(walls) > 1:
-        return None
-    temperature = walls.pop() if walls else energy / dof
+        energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
     share = 1 - kept.mean() * mass / gas.mass.sum()
-    shared_by = math.inf if walls else dof
-    return Ensemble(frame, shared_by, temperature, temperature * share)
-
-
-def wall_temperatures(scene: Scene) -> set[float]:
-    """Those of all thermal walls."""
-    sides = {side.thermal for side in scene.box.sides if isinstance(side, ThermalSide)}
-    return sides | {wall.temperature for wall in scene.wall if wall.temperature is not None}
-
-
-def _loses_spin(scene: Scene) -> bool:
-    """Whether rough discs or walls take energy out of the gas."""
-    table = scene.rotation
-    return table is not None and (abs(table.roughness) < 1 or abs(table.wall_roughness) < 1)
+    if properties.isolated:
+        return Ensemble(frame, dof, energy / dof, energy / dof * share)
+    (temperature,) = properties.temperatures
+    return Ensemble(frame, math.inf, temperature, temperature * share)
 
 
 def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
@@ -94,20 +74,19 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
 
     None where other effects leave it unknown, and for a single disc, with which nobody shares.
     """
-    scene, gas = log.scene, log.discs
-    if scene.piston or "restitution" in scene.effects or log.periodic[1 - axis] or len(gas) == 1:
+    properties, gas = log.scene.properties, log.discs
+    if not properties.fixed_walls or not properties.elastic or log.periodic[1 - axis] or len(gas) == 1:
         return None
-    if walls := wall_temperatures(scene):
-        return walls.pop() if len(walls) == 1 else None
-    if scene.rotation and (abs(scene.rotation.roughness) < 1 or abs(scene.rotation.wall_roughness) < 1):
+    if walls := properties.temperatures:
+        return min(walls) if len(walls) == 1 else None
+    if not properties.lossless:
         return None
     g = log.gravity[axis]
     start = log.state_at(log.start_time)
     energy = gas.kinetic_energy - float(gas.mass @ start.position[:, axis]) * g
     spins = 0.0
-    if scene.rotation and start.angular_velocity is not None:
-        inertia = moment_of_inertia(scene.rotation.inertia, gas.mass, gas.radius)
-        energy += float(inertia @ start.angular_velocity**2) / 2
+    if log.inertia is not None and start.angular_velocity is not None:
+        energy += float(log.inertia @ start.angular_velocity**2) / 2
         spins = len(gas) / 2
     height = log.box[axis] - 2 * discs.radius
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from idealgas._jit import njit
 from idealgas.analysis.core.stream import block_at
-from idealgas.events import BOX_SIDES
 from idealgas.gas.state import Gas
 from idealgas.physics.periodic import nearest_image
+from idealgas.sides import SIDES
 
 X, Y, VX, VY = range(4)  # columns of a track: the disc at its last event
 
@@ -23,7 +23,7 @@ class Impacts:
 
     columns = ("time", "disc", "partner", "position", "velocity")
 
-    def __init__(self, walls: int = len(BOX_SIDES), periodic: tuple[bool, bool] = (False, False)) -> None:
+    def __init__(self, walls: int = len(SIDES), periodic: tuple[bool, bool] = (False, False)) -> None:
         """walls: W, the sides of the box first. periodic: which axes are periodic."""
         self.walls, self.periodic = walls, periodic
 

@@ -7,12 +7,14 @@ independent (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007)) and where equ
 
 import logging
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from scipy import stats
+
+from idealgas.errors import UserError
 
 logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
 from pymbar import timeseries  # noqa: E402
@@ -23,10 +25,18 @@ ENOUGH_REPLICATES = 20
 LONG_BLOCKS = 32
 """Blocks that errors of anticorrelated series are taken from."""
 
+TOLERANCE = 4.0
+"""Standard errors by which measurement and theory may differ where they are checked."""
+
 
 @dataclass(frozen=True)
 class Estimate:
-    """A measured value, its standard error, the independent samples behind it, and what theory says."""
+    """A measured number with its error bar.
+
+    value: in the unit of the quantity. standard_error: of the value, nan if there are too few samples for one.
+    independent_samples: number of them that the error comes from, inf for what is known exactly. theory: value that
+    theory expects of this gas; None where no theory applies.
+    """
 
     value: float
     standard_error: float
@@ -41,7 +51,7 @@ class Estimate:
         return (self.value - self.theory) / self.standard_error
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval by Student's t."""
+        """Confidence interval of a level, 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
 
@@ -57,9 +67,17 @@ class Estimate:
         )
 
     def as_dict(self) -> dict[str, float | None]:
-        """For JSON, which has no word for what is not a number."""
+        """Fields and deviation by name, for JSON: None for what is not finite."""
         fields = asdict(self) | {"deviation": self.deviation}
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
+
+
+def agree(found: Iterable[Estimate]) -> bool:
+    """Whether every value is within TOLERANCE standard errors of its theory. UserError if that cannot be said."""
+    deviations = [one.deviation for one in found]
+    if any(deviation is None or not math.isfinite(deviation) for deviation in deviations):
+        raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
+    return all(abs(deviation) <= TOLERANCE for deviation in deviations if deviation is not None)
 
 
 def inefficiency(series: np.ndarray) -> float:

@@ -1,6 +1,6 @@
 """Which part of a log an analysis uses: a given window of time, or what follows detected equilibration."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,15 +58,15 @@ def measure(
     start: float | None = None,
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
-    allowed: Collection[str] = (),
+    needs: Sequence[str] = (),
 ) -> Window:
     """Stream the log between start and end into the tallies; without a start, from detected equilibrium on.
 
     The detection looks at the kurtosis of the velocities, the energy of each species and the numbers of events,
-    per block. allowed: effects that the analysis knows how to deal with. UserError when there is nothing in the window,
-    or if the scene has other effects.
+    per block. needs: properties (`idealgas.scene.properties`) that the analysis relies on. UserError when there is
+    nothing in the window, or if an effect of the scene takes one of these properties away.
     """
-    if strange := [name for name in log.scene.effects if name not in allowed]:
+    if strange := log.scene.lacking(*needs):
         raise UserError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
     edges = block_edges(log, start, end)
     if start is not None:

@@ -1,25 +1,23 @@
 """The picture of gases that leave through a slit."""
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import COLOURS, GREY, panels
-from idealgas.analysis.effusion.measure import Effusion
+from idealgas.analysis.effusion.combine import Effusions
 
 
-def effusion_figure(groups: Mapping[str, Sequence[Effusion]], together: Mapping[str, Estimate]) -> Figure:
+def effusion_figure(found: Effusions) -> Figure:
     """Share of the discs beyond the slit against time, and the flux of each gas beside n⟨v⟩/π."""
+    groups, together = found.groups, found.together
     figure, (course, flux) = panels(2)
     for (name, runs), colour in zip(groups.items(), COLOURS * len(groups), strict=False):
         beyond = np.mean([run.beyond for run in runs], axis=0)
         course.plot(runs[0].time, beyond, color=colour, label=name)
         course.plot(runs[0].time, np.mean([run.expected for run in runs], axis=0), "--", color=GREY, linewidth=0.8)
         n = runs[0].density
-        found, expected = together[name], together[name].theory or 0.0
-        flux.errorbar(n * expected, n * found.value, n * found.standard_error, fmt="o", color=colour, capsize=3)
+        speed, expected = together[name], together[name].theory or 0.0
+        flux.errorbar(n * expected, n * speed.value, n * speed.standard_error, fmt="o", color=colour, capsize=3)
     line = np.array([0.0, 1.1 * max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())])
     flux.plot(line, line, "--", color=GREY, label="n⟨v⟩/π")
     course.set_xlabel("t (time)")

@@ -1,6 +1,7 @@
 """The flow of discs through a slit that opens, beside n⟨v⟩/π."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 
 INSTANTS = 256
 TINY = 1e-12
@@ -20,13 +22,15 @@ TINY = 1e-12
 
 @dataclass(frozen=True)
 class Effusion:
-    """time: (INSTANTS,), from the opening on; beyond: (INSTANTS,), discs on the side that had fewer at first.
+    """name: of the run. density: of the fuller side if all were there.
 
-    density: of the fuller side if all were there. expected: (INSTANTS,), beyond by theory. speed: discs per time and
-    open length, over the difference of the densities, each times the mean speed on its side over that of the gas;
-    theory: ⟨v⟩/π. Its error is that of a Poisson number of passages both ways.
+    time: (INSTANTS,), from the opening on. beyond: (INSTANTS,), discs on the side that had fewer at first; expected:
+    (INSTANTS,), the same by theory. speed: discs per time and open length, over the difference of the densities, each
+    times the mean speed on its side over that of the gas; theory: ⟨v⟩/π. Its error is that of a Poisson number of
+    passages both ways.
     """
 
+    name: str
     density: float
     temperature: float
     time: np.ndarray
@@ -35,11 +39,11 @@ class Effusion:
     speed: Estimate
 
     @classmethod
-    def from_dict(cls, found: dict[str, Any]) -> "Effusion":
-        """What `as_dict` was made from."""
-        time, beyond, expected = (np.array(found[name]) for name in ("time", "beyond", "expected"))
+    def from_dict(cls, found: dict[str, Any], name: str) -> "Effusion":
+        """What `as_dict` was made from, under a name."""
+        time, beyond, expected = (np.array(found[key]) for key in ("time", "beyond", "expected"))
         speed = Estimate.from_dict(found["speed"])
-        return cls(found["density"], found["temperature"], time, beyond, expected, speed)
+        return cls(name, found["density"], found["temperature"], time, beyond, expected, speed)
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -53,13 +57,22 @@ class Effusion:
         }
 
 
-def effusion(log: Log, start: float | None = None, end: float | None = None) -> Effusion:
-    """Measure a log of two chambers and one gate, by default from its opening to the end.
+def effusion(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Effusion:
+    """Measure how fast discs pass through a slit that opens between two chambers, and compare with n⟨v⟩/π.
 
-    The theory is that of a slit much narrower than the mean free path; through a wider one more discs pass.
-    UserError if there is no gate along an axis, or discs of several species.
+    n⟨v⟩/π discs per time and open length of the slit leave a gas of number density n and mean speed ⟨v⟩: that is the
+    flux of kinetic theory through a slit much narrower than the mean free path; through a wider one more discs pass.
+
+    start, end: times; by default from the opening of the slit to the end of the log. progress(done, in all) is called
+    as states are read. Raises UserError unless the scene has one gate along an axis, one species and its events in the
+    log, or if the chambers are in balance.
     """
-    gates = [wall for wall in log.scene.wall if wall.opens_at is not None]
+    gates = [wall for wall in walls_inside(log.scene) if 0 < wall.absence[0] < math.inf]
     discs, equilibrium = composition(log.discs), ensemble(log)
     if len(gates) != 1 or len(discs.name) != 1 or not log.has_events:
         raise UserError(f"{log.path}: no effusion: it takes one gate, one species and the events")
@@ -69,12 +82,14 @@ def effusion(log: Log, start: float | None = None, end: float | None = None) -> 
     if np.ptp(ends[:, across]) != 0:
         raise UserError(f"{log.path}: no effusion: the gate is not along an axis")
     place, radius, number = ends[0, across], discs.radius[0], len(log.discs)
-    opening = max(gate.opens_at or 0.0, log.start_time)
+    opening = max(gate.absence[0], log.start_time)
     time = np.linspace(opening if start is None else start, log.end_time if end is None else end, INSTANTS)
     beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
     for k, state in enumerate(log.frames(time)):
         side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
         beyond[k], flux[:, k] = side.sum(), (pace[~side].sum(), pace[side].sum())
+        if progress is not None:
+            progress(k + 1, INSTANTS)
     if beyond[0] > number / 2:
         beyond, flux, place = number - beyond, flux[::-1], log.box[across] - place
     height = log.box[1 - across] - 2 * radius
@@ -92,7 +107,7 @@ def effusion(log: Log, start: float | None = None, end: float | None = None) -> 
     rate = expected * slit
     course = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
     found = Estimate(speed, error, max(passed, 1.0), expected)
-    return Effusion(number / inner, equilibrium.temperature, time, beyond, course, found)
+    return Effusion(str(log.path), number / inner, equilibrium.temperature, time, beyond, course, found)
 
 
 def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:

@@ -1,5 +1,6 @@
 """The course in time of temperatures, energies and the account of the walls, and of discs beyond a gate."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,7 @@ from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
-from idealgas.physics.rotation import moment_of_inertia
+from idealgas.scene.walls import walls_inside
 
 INSTANTS = 257
 
@@ -45,21 +46,38 @@ class Evolution:
         if self.law is not None:
             at_rest = {"spin": self.law.spin, "piston": self.law.piston}
             law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
-        return lists | tables | {"law": law}
+        return lists | tables | {"law": law, "end": self._end()}
+
+    def _end(self) -> dict[str, float]:
+        """The last of each series that is one number at a time."""
+        series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
+        return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
 
 TABLES = ("beyond", "parts", "given")
 
 
-def evolution(log: Log, start: float | None = None, end: float | None = None) -> Evolution:
-    """Follow a log from one time to another, by default from its start to its end. UserError if it has no samples."""
+def evolution(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Evolution:
+    """Follow temperature, energies, piston and the account of the walls in time, and discs beyond a gate.
+
+    It needs no equilibrium. Theory, where there is one, is that of the temperature: in equilibrium, of a gas that cools
+    by its collisions (Haff's law), or of one that a moving piston compresses (the adiabat).
+
+    start, end: times; by default the whole log. progress(done, in all) is called as states are read. Raises UserError
+    if the log does not cover the times or has no samples of the energy.
+    """
     first, last = span(log, start, end)
     if not len(log.observables["kinetic_energy"][0]):
         raise UserError(f"{log.path}: no samples of the energy")
     observed = {name: values for name, (_, values) in log.observables.items()}
     samples = log.observables["kinetic_energy"][0]
     inside = (samples >= first) & (samples <= last)
-    time, temperature, spin, beyond = _frames(log, first, last) if log.has_events else _samples(log, inside)
+    time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
     parts, given, balance = _account(log, observed)
     return Evolution(
         time,
@@ -89,10 +107,9 @@ def _samples(log: Log, inside: np.ndarray) -> Course:
     return time[inside], kinetic[inside] / n, spin, {}
 
 
-def _frames(log: Log, first: float, last: float) -> Course:
+def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> Course:
     """At even times."""
-    gas, frame, rotation, gate = log.discs, drift(log), log.scene.rotation, _gate(log)
-    inertia = moment_of_inertia(rotation.inertia, gas.mass, gas.radius) if rotation else None
+    gas, frame, inertia, gate = log.discs, drift(log), log.inertia, _gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -103,15 +120,17 @@ def _frames(log: Log, first: float, last: float) -> Course:
         if gate is not None:
             axis, place = gate
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
+        if progress is not None:
+            progress(k + 1, len(time))
     shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gate is not None else {}
     return time, temperature, None if inertia is None else spin, shares
 
 
 def _gate(log: Log) -> tuple[int, float] | None:
     """The axis that leads through the first gate along one, and its place there."""
-    for wall in log.scene.wall:
+    for wall in walls_inside(log.scene):
         for axis in range(2):
-            if np.isfinite(wall.absence[0]) and wall.start[axis] == wall.end[axis]:
+            if wall.is_gate and wall.start[axis] == wall.end[axis]:
                 return axis, wall.start[axis]
     return None
 
@@ -128,7 +147,8 @@ def _account(
     if piston and piston.mass:  # its own energy counts: what it gives is not from outside
         counted[[wall.name for wall in log.walls].index(piston.side)] = False
         pull = piston.acceleration(log.box, log.scene.gravity)
-        parts["piston"] = piston_energy(piston.mass, observed["piston_position"], observed["piston_velocity"], pull)
+        place, velocity = observed["piston_position"], observed["piston_velocity"]
+        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
     from_outside = given[:, counted].sum(axis=1)
     total = sum(parts.values()) - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))

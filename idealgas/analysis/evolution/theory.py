@@ -25,16 +25,17 @@ class Law:
 
 def expected_course(log: Log, time: np.ndarray) -> Law | None:
     """At times (F,); None where no simple theory applies."""
-    effects, one = set(log.scene.effects) - {"periodic sides"}, np.ones(len(time))
+    properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
+    single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # nothing else changes the energy of motion
     alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction < hard_discs.FREEZING
-    if effects == {"restitution"} and alone and log.has_positions:
+    if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
-    if effects == {"piston"} and alone:
+    if single and alone and not properties.fixed_walls:
         return _at_rest(log, one) if log.scene.piston and log.scene.piston.mass else _adiabat(log, time)
     if any(log.gravity):
         axis = int(log.gravity[1] != 0)
-        t = None if log.scene.wall or log.gravity[1 - axis] else column_temperature(log, axis, discs)
+        t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis, discs)
         return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t)
     if (equilibrium := known_ensemble(log)) is None:
         return None

@@ -3,7 +3,7 @@
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import COLOURS, panels
-from idealgas.analysis.heat_capacity.measure import HeatCapacity
+from idealgas.analysis.heat_capacity.combine import HeatCapacity
 
 
 def heat_capacity_figure(result: HeatCapacity) -> Figure:

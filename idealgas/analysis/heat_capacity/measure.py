@@ -1,18 +1,18 @@
-"""Heat capacity by every route that logs allow, side by side: slopes of the energy, and fluctuations of it.
+"""What one log tells of a heat capacity: energy, temperature, and the routes that it allows alone.
 
 A thermometer must not know the energy whose capacity it helps to find: it is the pressure on the walls where all energy
 is kinetic, the temperature of thermal walls in a heat bath, and the kinetic energy where that is a part of the whole.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import kept_momentum, wall_temperatures
-from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_replicates, mean_theory
+from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs
@@ -20,15 +20,6 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
-
-ROUTES = {
-    "dE/dT": "it takes logs of one kind of gas at several energies",
-    "E/T": "it takes the pressure on the walls of a closed box, in a log with events",
-    "Var(E)/T²": "it takes thermal walls of one temperature",
-    "fluctuations of the kinetic energy": "it takes an isolated gas with spin, gravity or a piston",
-    "γ": "it takes a piston with a mass",
-}
-"""Each route, and what a set of logs lacks that does not allow it."""
 
 
 @dataclass(frozen=True)
@@ -78,54 +69,30 @@ class Measured:
         }
 
 
-@dataclass(frozen=True)
-class Route:
-    """C per disc (or γ) of one kind of gas by one way of measuring."""
-
-    name: str
-    kind: str
-    value: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {"route": self.name, "kind": self.kind, "value": self.value.as_dict()}
-
-
-@dataclass(frozen=True)
-class HeatCapacity:
-    """routes: those the logs allow. refused: why others do not apply, by route."""
-
-    routes: tuple[Route, ...]
-    refused: dict[str, str]
-    logs: tuple[Measured, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "routes": [route.as_dict() for route in self.routes],
-            "refused": self.refused,
-            "logs": [measured.as_dict() for measured in self.logs],
-        }
-
-
-# ── one log ──
-
-
-def measure_heat(
+def heat_capacity(
     log: Log,
     start: float | None = None,
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Measured:
-    """All that one log tells of a heat capacity, between two times or from detected equilibrium on."""
-    scene, n = log.scene, len(log.discs)
-    losing = "restitution" in scene.effects or (scene.piston and scene.piston.mass is None and scene.piston.velocity)
-    if losing or not log.has_positions or len(wall_temperatures(scene)) > 1:
+    """Measure the heat capacity per disc, in units of k_B, by all the routes that one log allows.
+
+    A closed box gives E/T, with T from the pressure on its walls; a heat bath Var(E)/T²; discs with spin, gravity or a
+    piston the fluctuations of the kinetic energy at fixed total energy (Lebowitz, Percus & Verlet, Phys. Rev. 153, 250,
+    1967).
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if there is no equilibrium, or none known: walls of two temperatures, collisions
+    that lose energy, a piston that is driven, a gas without positions.
+    """
+    scene, properties, n = log.scene, log.scene.properties, len(log.discs)
+    settles = properties.elastic and not properties.driven and len(properties.temperatures) <= 1
+    if not settles or not log.has_positions:
         raise UserError(f"{log.path}: no equilibrium, or none known, and so no heat capacity")
     kinds = []
-    if wall_temperatures(scene):
+    if not properties.isolated:
         kinds.append(BATH)
-    kinds += [name for name, there in ((ROUGH, scene.rotation), (GRAVITY, scene.gravity)) if there]
+    kinds += [name for name, there in ((ROUGH, properties.spins), (GRAVITY, not properties.straight_flight)) if there]
     if scene.piston and scene.piston.mass:
         kinds.append(PISTON)
     if not kinds:
@@ -134,7 +101,7 @@ def measure_heat(
     dof = 2 * n - int(kept_momentum(log).sum())
     capacity, excess = expected_capacity(log, series)
     if BATH in kinds:
-        (bath,) = wall_temperatures(scene)
+        (bath,) = properties.temperatures
         temperature, thermometer = Estimate(bath, 0.0, math.inf), "the walls' own"
         routes = {"Var(E)/T²": _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)}
     else:
@@ -152,10 +119,10 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     1 - x² eˣ/(eˣ - 1)²; a piston Z²/(Z + φZ'), which is T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas = log.scene, log.discs
-    per_disc = 1.5 if scene.rotation else 1.0
+    per_disc = 1.5 if scene.properties.spins else 1.0
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
-    if pull.any() and (scene.piston or scene.wall or pull.all() or equilibrated):
+    if pull.any() and (scene.piston or not scene.properties.empty or pull.all() or equilibrated):
         return None, None
     if pull.any():
         axis = int(np.flatnonzero(pull)[0])
@@ -216,67 +183,3 @@ def _kinetic_fluctuations(series: EnergySeries, n: int, dof: int, capacity: floa
         return (a + r * (a + 1) / (1 - r) - other) / n
 
     return estimate(per_disc, kinetic, kinetic**2, theory=capacity)
-
-
-# ── all logs ──
-
-
-def heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
-    """Put the logs of a kind together: slopes over them, means of what each gives, and γ."""
-    routes = [route for kind in dict.fromkeys(m.kind for m in logs) for route in _of_kind(kind, logs)]
-    routes += _gammas(routes, logs)
-    used = {route.name for route in routes}
-    return HeatCapacity(tuple(routes), {name: why for name, why in ROUTES.items() if name not in used}, tuple(logs))
-
-
-def _of_kind(kind: str, logs: Sequence[Measured]) -> Iterator[Route]:
-    members = [m for m in logs if m.kind == kind]
-    if (slope := _slope(members)) is not None:
-        yield Route("dE/dT", kind, slope)
-    for name in dict.fromkeys(name for m in members for name in m.routes):
-        values = [m.routes[name] for m in members if name in m.routes]
-        yield Route(name, kind, mean_of_replicates(values))
-
-
-def _slope(members: Sequence[Measured]) -> Estimate | None:
-    """dE/dT per disc by weighted least squares, whichever of E and T is the exact one; None if all are alike."""
-    energy, t = (np.array([getattr(m, name).value for m in members]) for name in ("energy", "temperature"))
-    if len(members) < 2 or not np.ptp(t) > 0.05 * np.abs(t).max():
-        return None
-    errors = np.array([(m.energy.standard_error, m.temperature.standard_error) for m in members])
-    guess = np.polyfit(t, energy, 1)[0]
-    weight = (errors[:, 0] ** 2 + (guess * errors[:, 1]) ** 2) ** -1.0
-    if not np.isfinite(weight).all():
-        return None
-    given, measured = (t, energy) if errors[:, 1].max() == 0 else (energy, t)
-    middle = (weight * given).sum() / weight.sum()
-    spread = (weight * (given - middle) ** 2).sum()
-    slope = (weight * (given - middle) * measured).sum() / spread
-    if given is energy:
-        slope = 1 / slope
-        error = spread**-0.5 * slope**2 / abs(guess)
-    else:
-        error = spread**-0.5
-    other = 1.5 / members[0].number if PISTON in members[0].kind else 0.0
-    samples = sum(min(m.energy.independent_samples, m.temperature.independent_samples) for m in members)
-    return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]))
-
-
-def _gammas(routes: Sequence[Route], logs: Sequence[Measured]) -> Iterator[Route]:
-    """γ = C_P/C_A: C_A as the same discs have it without the piston where a log tells, else by theory's C_P - C_A."""
-    for route in routes:
-        excess = next((m.excess for m in logs if m.kind == route.kind and m.excess), None)
-        c_p = route.value
-        if excess is None or c_p.theory is None:
-            continue
-        other = (ROUGH, f"{BATH}, {ROUGH}") if ROUGH in route.kind else (CLOSED, BATH)
-        at_area = [r.value for r in routes if r.kind in other]
-        expected = c_p.theory / (c_p.theory - excess)
-        if at_area:
-            c_a = min(at_area, key=lambda value: value.standard_error)
-            value = c_p.value / c_a.value
-            error = value * math.hypot(c_p.standard_error / c_p.value, c_a.standard_error / c_a.value)
-        else:
-            value = c_p.value / (c_p.value - excess)
-            error = excess * c_p.standard_error / (c_p.value - excess) ** 2
-        yield Route("γ", f"{route.kind}: {route.name}", Estimate(value, error, c_p.independent_samples, expected))

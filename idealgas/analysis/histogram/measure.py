@@ -18,26 +18,12 @@ from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogra
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
-from idealgas.scene import EFFECTS
-
-QUANTITIES = {
-    "speed": "length/time",
-    "vx": "length/time",
-    "vy": "length/time",
-    "energy": "energy",
-    "free-path": "length",
-    "free-time": "time",
-    "wait": "time",
-}
-"""What there are distributions of, and its unit."""
-
-UNIFORM = ("periodic sides", "rotation", "thermal walls")
-"""Effects that leave the gas uniform, its flights straight and its laws known."""
 
 BINS = 120
 SAMPLED = 256  # discs of a species whose velocities are tested, at most
@@ -112,9 +98,19 @@ Progress = Callable[[int, int], None] | None
 
 
 def histogram(
-    log: Log, quantity: str, start: float | None = None, end: float | None = None, progress: Progress = None
+    log: Log, quantity: str = "speed", start: float | None = None, end: float | None = None, progress: Progress = None
 ) -> Histogram:
-    """Distribution of one of QUANTITIES between two times, by default from detected equilibrium to the end."""
+    """Measure a distribution between two times of a log, species by species, and test it against its laws.
+
+    quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
+    wait, the time between two successive events of the gas. The laws of velocities are Maxwell and Boltzmann's and that
+    at fixed energy of N discs; of free flights that of a dilute gas; of waits the exponential one. The p-values are
+    those of Kolmogorov and Smirnov's test of decorrelated samples.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are too few events in the window, or for a gas with
+    effects for which there is no such law.
+    """
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     if quantity in VELOCITY_QUANTITIES:
@@ -153,7 +149,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [_some_discs(gas, s) for s in range(len(thermal))]
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members))
-    window = measure(log, [tally], start, end, progress, (*UNIFORM, "wall segments"))
+    window = measure(log, [tally], start, end, progress, ("conserves_energy",))
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
@@ -202,7 +198,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     if path:
         high *= mean_speed(temperature, discs.mass)
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress, UNIFORM)
+    window = measure(log, [tally], start, end, progress, ("uniform",))
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
@@ -216,7 +212,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
 def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
     longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # rows: pairs count twice
     tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress, EFFECTS)
+    window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
     with np.errstate(invalid="ignore"):
         law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())

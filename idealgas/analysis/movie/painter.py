@@ -24,6 +24,7 @@ from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.gas.state import Gas
 from idealgas.log import LogState
 from idealgas.scene import Scene
+from idealgas.scene.walls import walls_inside
 
 COLOUR_MAP = "cividis"
 """Of speeds; even to colour-blind eyes: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
@@ -93,8 +94,8 @@ class Painter:
 
         by_species: what the colour of a disc says, its species or its speed.
         """
-        self._scene, self._gas, self._piston, self._by_species = scene, gas, piston, by_species
-        self._periodic = np.array(scene.box.periodic)
+        self._inside, self._gas, self._piston, self._by_species = walls_inside(scene), gas, piston, by_species
+        self._periodic = np.array(scene.properties.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
         self._edges = np.linspace(0, FASTEST * rms_speed or 1.0, BINS + 1)
         self._shades = colormaps[COLOUR_MAP](np.linspace(0, PALEST, SHADES))
@@ -138,7 +139,7 @@ class Painter:
         )
         axes.add_collection(self._discs)
         self._walls: list[Artist] = []
-        for wall in self._scene.wall:
+        for wall in self._inside:
             (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color="black", linewidth=1.5, animated=True)
             self._walls.append(line)
         if self._piston is not None:
@@ -192,8 +193,7 @@ class Painter:
 
     def _walls_at(self, time: float) -> list[Artist]:
         """Segments that are there, as gates may be open, and the piston."""
-        there = (not (opens <= time < closes) for opens, closes in (wall.absence for wall in self._scene.wall))
-        lines = [line for line, shown in zip(self._walls, there, strict=True) if shown]
+        lines = [line for line, wall in zip(self._walls, self._inside, strict=True) if wall.is_there(time)]
         if self._piston is None:
             return lines
         place = [self._piston.at(time)] * 2

@@ -1,0 +1,18 @@
+"""Pressure from the walls and from the virial; of several logs the equation of state."""
+
+from idealgas.analysis.core.declaration import Analysis, Section
+
+ANALYSIS = Analysis(
+    __name__,
+    help="""Measure the pressure from the walls and from the virial, and compare Z = PA/NT with 1 and with hard discs.
+
+    Collision rates and mean free paths come from the same events. Several logs, or the folder of a sweep with the
+    analysis "pressure", give the equation of state: Z against the packing fraction, and the virial coefficients in it.
+    """,
+    sections=(
+        Section("Pressure", "Compressibility factor Z by every route with its standard error, and theory as lines"),
+    ),
+    several=True,
+    folders=True,
+    checked=True,
+)

@@ -9,7 +9,12 @@ from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.theory import hard_discs
 
 
-def pressure_figure(result: Pressure) -> Figure:
+def pressure_figure(result: Pressure | EquationOfState) -> Figure:
+    """Z of one log by every route, or of several against the packing fraction."""
+    return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
+
+
+def _of_log(result: Pressure) -> Figure:
     """Z by every route with its error bar, and the theories as lines."""
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
@@ -27,7 +32,7 @@ def pressure_figure(result: Pressure) -> Figure:
     return figure
 
 
-def equation_of_state_figure(result: EquationOfState) -> Figure:
+def _of_states(result: EquationOfState) -> Figure:
     """Z against φ with the theories, and below what is left when the resummed series is taken away."""
     figure, (above, below) = panels(2)
     phi = np.array([state.packing_fraction for state in result.states])

@@ -10,12 +10,10 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.statistics import Estimate, equilibration, mean, ratio
 from idealgas.analysis.core.window import Window, block_edges
+from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.physics.rotation import moment_of_inertia
-
-BINS = 20
 
 FEWEST_FRAMES = 32
 """Frames with a disc in a strip, below which its temperature is not told."""
@@ -78,10 +76,14 @@ def profile(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Profile:
-    """Measure a log in strips of equal width over all that centres reach, by default from detected equilibrium on.
+    """Measure density and temperature in strips across an axis, and the heat that walls give, between two times.
 
-    along: "x" or "y"; by default the axis along which something changes. Frames are as far apart as the events of a
-    disc, or farther. UserError without events or positions, or if the window is empty.
+    along: "x" or "y"; by default the axis along which something changes. bins: number of strips, of equal width, over
+    all that centres of discs reach. Averages are taken over states at least as far apart as the events of a disc.
+    Theory, where there is one: a uniform gas, the barometric law, or Fourier's law between two thermal walls.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    states are read. Raises UserError without events or positions, or if the window is empty.
     """
     if not log.has_positions:
         raise UserError(f"{log.path}: discs of this method have no positions")
@@ -94,7 +96,7 @@ def profile(
     expected = expected_profile(log, axis, edges, window.start)
     names = composition(log.discs).name
     strip = float(edges[1] - edges[0]) * log.box[1 - axis]
-    spinning = log.scene.rotation is not None
+    spinning = log.inertia is not None
     species = tuple(_of_species(name, sums[first:, s], strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
     return Profile(window, axis, edges, len(times) - first, law, species, _heat(log, window))
@@ -109,8 +111,7 @@ def _collect(
     sums = np.zeros((len(times), *shape, 3))
     middle = np.empty((len(times), shape[0]))
     number = np.bincount(gas.species)
-    rotation = log.scene.rotation
-    inertia = moment_of_inertia(rotation.inertia, gas.mass, gas.radius) if rotation else np.zeros(len(gas))
+    inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
     for k, state in enumerate(log.frames(times)):
         place = state.position[:, axis]
         strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)

@@ -1,14 +1,13 @@
 """Density and temperature along an axis where theory knows them: of dilute gases, of discs small beside a strip."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.equilibrium import column_temperature, known_ensemble, wall_temperatures
+from idealgas.analysis.core.equilibrium import column_temperature, known_ensemble
 from idealgas.log import Log
-from idealgas.scene import Scene, ThermalSide
+from idealgas.sides import sides_across
 
 POINTS = 64
 """Places in a strip that averages over it are taken from."""
@@ -27,14 +26,14 @@ def natural_axis(log: Log) -> int:
     """The axis along which something changes: that of gravity, or of thermal sides of two temperatures; else x."""
     if log.gravity[1] != 0:
         return 1
-    bottom, top = log.scene.box.sides[2:]
-    return int(isinstance(bottom, ThermalSide) and isinstance(top, ThermalSide) and bottom != top)
+    bottom, top = (log.scene.properties.emits[side] for side in sides_across(1))
+    return int(bottom is not None and top is not None and bottom != top)
 
 
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
     """In the strips between edges (K + 1,), from time start on; None where no simple theory applies."""
-    scene, discs = log.scene, composition(log.discs)
-    if not _is_empty(scene, start) or scene.piston or log.gravity[1 - axis]:
+    properties, discs = log.scene.properties, composition(log.discs)
+    if start < properties.clear_from or not properties.fixed_walls or log.gravity[1 - axis]:
         return None
     reach = np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius  # of centres, from the sides
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
@@ -50,19 +49,15 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     return Expected(law, number / strips, (weight * temperature).mean(axis=2) / weight.mean(axis=2))
 
 
-def _is_empty(scene: Scene, start: float) -> bool:
-    """Whether no wall is in the box from a time on."""
-    return all(opens <= start and not math.isfinite(closes) for opens, closes in (w.absence for w in scene.wall))
-
-
 def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tuple[str, np.ndarray, np.ndarray] | None:
     """The law, and at places (S, K, P) relative density and temperature."""
     one = np.ones_like(places)
-    low, high = log.scene.box.sides[2 * axis : 2 * axis + 2]
-    if len(wall_temperatures(log.scene)) == 2 and isinstance(low, ThermalSide) and isinstance(high, ThermalSide):
-        if log.scene.gravity or "restitution" in log.scene.effects or low == high:
+    properties = log.scene.properties
+    low, high = (properties.emits[side] for side in sides_across(axis))
+    if len(properties.temperatures) == 2 and low is not None and high is not None:
+        if not properties.straight_flight or not properties.elastic or low == high:
             return None
-        power = low.thermal**1.5 + (high.thermal**1.5 - low.thermal**1.5) * places / log.box[axis]
+        power = low**1.5 + (high**1.5 - low**1.5) * places / log.box[axis]
         temperature = power ** (2 / 3)
         return "T^(3/2) in a straight line between the walls, nT the same (Fourier)", 1 / temperature, temperature
     if log.gravity[axis]:

@@ -1,6 +1,5 @@
 """The picture of relaxations: several logs on one plot, against collisions per disc and against time."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from idealgas.analysis.core.style import COLOURS, GREY, panels
-from idealgas.analysis.relaxation.measure import Relaxation
+from idealgas.analysis.relaxation.combine import Relaxations
 
 STYLES = ("-", "--", "-.", ":")
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
@@ -16,10 +15,10 @@ ENTROPIES = (-0.1, -0.05, 0, 0.05, 0.1, 0.2, 0.5, 1, 2)
 """Ticks of the axes with both small and large values."""
 
 
-def relaxation_figure(results: Sequence[Relaxation]) -> Figure:
+def relaxation_figure(found: Relaxations) -> Figure:
     """Kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H; left against collisions, right time."""
     figure, axes = panels(3, columns=2)
-    for k, result in enumerate(results):
+    for k, result in enumerate(found.logs):
         colour, style = COLOURS[k % len(COLOURS)], STYLES[k // len(COLOURS) % len(STYLES)]
         name = f"{Path(result.path).stem}, N = {result.number}"
         for column, x in enumerate((result.collisions, result.time - result.time[0])):
@@ -43,7 +42,7 @@ def relaxation_figure(results: Sequence[Relaxation]) -> Figure:
         distance.yaxis.set_major_formatter("{x:g}")
         distance.yaxis.set_minor_locator(NullLocator())
         entropy.set_ylabel("H - H of equilibrium, per disc (no unit)")
-        if max(result.entropy.max() for result in results) > 0.5:
+        if max(result.entropy.max() for result in found.logs) > 0.5:
             entropy.set_yscale("symlog", linthresh=0.1)
             entropy.yaxis.set_major_locator(FixedLocator(ENTROPIES))
             entropy.yaxis.set_major_formatter("{x:g}")

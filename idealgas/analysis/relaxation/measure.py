@@ -13,9 +13,17 @@ from typing import Any
 import numpy as np
 from scipy import optimize
 
-from idealgas.analysis.core.equilibrium import Ensemble, ensemble
+from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
+from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
+from idealgas.analysis.relaxation.speeds import SpeedDistributions, speed_distributions
+from idealgas.analysis.relaxation.velocities import (
+    check_steady,
+    collisions_per_disc,
+    reduced_energy,
+    reduced_energy_cdf,
+)
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -36,9 +44,6 @@ First Sonine approximation: van Noije & Ernst, Granular Matter 1, 57 (1998), ela
 equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
 """
 
-STEADY = ("periodic sides", "wall segments")
-"""Effects that leave every disc its energy between collisions with other discs."""
-
 
 @dataclass(frozen=True)
 class Relaxation:
@@ -47,8 +52,8 @@ class Relaxation:
     kurtosis, distance, entropy: (K,), entropy being H - H_eq per disc. equilibrium_kurtosis: of N discs.
     critical_distance: what one in twenty gases of N discs in equilibrium exceeds. in_time, in_collisions: the fitted
     relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium.
-    first_indistinguishable: index of the
-    first instant at which the distance is below the critical one; None if it never is.
+    first_indistinguishable: index of the first instant at which the distance is below the critical one; None if it
+    never is. acceptance: of the trials; None for a method that makes none. speeds: at instants, if they were asked for.
     """
 
     path: str
@@ -63,6 +68,8 @@ class Relaxation:
     in_time: Estimate | None
     in_collisions: Estimate | None
     first_indistinguishable: int | None
+    acceptance: Acceptance | None
+    speeds: SpeedDistributions | None
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -83,6 +90,8 @@ class Relaxation:
             "kurtosis": self.kurtosis.tolist(),
             "distance": self.distance.tolist(),
             "entropy": self.entropy.tolist(),
+            "acceptance": self.acceptance and self.acceptance.as_dict(),
+            "speed_distributions": self.speeds and self.speeds.as_dict(),
         }
 
 
@@ -91,10 +100,13 @@ def relaxation(
     start: float | None = None,
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
+    every: float | None = None,
 ) -> Relaxation:
-    """Follow a log from `start`, by default its own, to `end`, by default HORIZON collisions per disc later.
+    """Follow how the speeds of a gas come to Maxwell and Boltzmann's distribution, and fit the time that it takes.
 
-    UserError if there is nothing in between, or if the energy of the discs is not constant.
+    start, end: times; by default from the start of the log until HORIZON collisions per disc later. progress(done, in
+    all) is called as states are read. Raises UserError if no two discs collide in between, or if the energy of the
+    discs is not constant, so that there is no distribution that they tend to.
     """
     check_steady(log)
     first, last = colliding_span(log, start, end)
@@ -128,17 +140,9 @@ def relaxation(
         in_time=_fit(time - first, sums, members, target),
         in_collisions=_fit(collisions, sums, members, target),
         first_indistinguishable=int(told[0]) if len(told) else None,
+        acceptance=acceptance(log),
+        speeds=None if every is None else speed_distributions(log, every, start, end),
     )
-
-
-def check_steady(log: Log) -> None:
-    """UserError if there is no law of Maxwell and Boltzmann that the discs of the log tend to, or no event in it."""
-    if not log.has_events:
-        raise UserError(f"{log.path}: has no events (made with log.events = false)")
-    if restless := [name for name in log.scene.effects if name not in STEADY]:
-        raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
-    if not log.discs.temperature > 0:
-        raise UserError(f"{log.path}: no disc moves")
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
@@ -154,27 +158,6 @@ def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[fl
     if not found:
         raise UserError(f"{log.path}: no two discs collide between t = {first:g} and {last:g}")
     return first, last
-
-
-def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """(K,) collisions that a disc had on average from time[0] up to each of the times; a collision counts for both."""
-    rows_until = np.zeros(len(time))
-    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
-        place = np.searchsorted(time, rows.time[rows.partner >= 0])
-        rows_until += np.bincount(place, minlength=len(time))
-    return np.cumsum(rows_until) / len(log.discs)
-
-
-def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
-    """m v²/2T of every disc, with the T that it tends to."""
-    gas = log.discs
-    square = ((velocity - equilibrium.drift) ** 2).sum(axis=1)
-    return gas.mass * square / (2 * equilibrium.of_species[gas.species])
-
-
-def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
-    """Distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
-    return -np.expm1(-energy)
 
 
 def relative_entropy(energy: np.ndarray) -> float:
@@ -213,18 +196,20 @@ def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float)
     whole = _kurtosis(sums.sum(axis=2), members.sum())
     if abs(whole[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(members.sum()):
         return None
-    value = _decay_time(time, whole, target)
+    value = decay_time(time, whole, target)
     less = _kurtosis(sums.sum(axis=2)[..., None] - sums, members.sum() - members)
     groups = len(members)
     if groups < 2:
         return Estimate(value, math.nan, 1.0)
-    parts = np.array([_decay_time(time, less[:, g], target) for g in range(groups)])
+    parts = np.array([decay_time(time, less[:, g], target) for g in range(groups)])
     error = math.sqrt((groups - 1) / groups * ((parts - parts.mean()) ** 2).sum())
     return Estimate(value, error, float(groups))
 
 
-def _decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """τ of target + (series[0] - target) exp(-time/τ) that is nearest to the series."""
+def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
+    """The τ whose target + (series[0] - target) exp(-time/τ) is nearest to the series, by least squares; in its unit of
+    time. time, series: (S,).
+    """
 
     def misfit(logarithm: float) -> float:
         model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))

@@ -11,7 +11,12 @@ from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import last_trial
-from idealgas.analysis.relaxation.measure import check_steady, collisions_per_disc, reduced_energy, reduced_energy_cdf
+from idealgas.analysis.relaxation.velocities import (
+    check_steady,
+    collisions_per_disc,
+    reduced_energy,
+    reduced_energy_cdf,
+)
 from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.errors import UserError
 from idealgas.log import Log

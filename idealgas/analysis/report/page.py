@@ -12,9 +12,10 @@ from string import Template
 
 from matplotlib.figure import Figure
 
+from idealgas.analysis.core.tables import Number, Table
 from idealgas.analysis.info import info
 from idealgas.analysis.report.player import MOST_DISCS, Player, player
-from idealgas.analysis.report.sections import SECTIONS, Section, Table
+from idealgas.analysis.report.sections import Section, make_sections
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -77,18 +78,10 @@ def write_report(
         raise UserError(f"{output}: unknown kind of report (allowed: .html)")
     if not path.parent.is_dir():
         raise UserError(f"{output}: no folder {path.parent}")
-    steps = len(SECTIONS) + 1
     played = player(log, start)
-    on_step(1, steps)
-    sections, left_out = [], []
-    for k, (title, analyse) in enumerate(SECTIONS):
-        try:
-            sections.append((title, analyse(log)))
-        except UserError as error:
-            left_out.append((title, str(error).removeprefix(f"{log.path}: ")))
-        on_step(k + 2, steps)
+    sections = make_sections(log, on_step)
     try:
-        path.write_text(_page(log, played, sections, left_out), encoding="utf-8")
+        path.write_text(_page(log, played, sections), encoding="utf-8")
     except OSError as error:
         failure = UserError(f"{path}: cannot be written: {error.strerror}")
         failure.exit_code = 1
@@ -96,16 +89,12 @@ def write_report(
     return path
 
 
-def _page(
-    log: Log,
-    played: Player | None,
-    sections: Sequence[tuple[str, Section]],
-    left_out: Sequence[tuple[str, str]],
-) -> str:
+def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     found = info(log)
     gas, run, file = found["gas"], found["run"], found["file"]
-    parts = [("The run", _run(log, found)), *((title, _section(section)) for title, section in sections)]
-    if left_out:
+    applicable = [(section.title, _section(section)) for section in sections if section.left_out is None]
+    parts = [("The run", _run(log, found)), *applicable]
+    if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
         rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
         parts.append(("What does not apply", f"<ul>{rows}</ul>"))
     title = log.scene.scene.title or Path(log.path).name
@@ -166,7 +155,7 @@ def _data(played: Player) -> str:
 def _run(log: Log, found: dict) -> str:
     """Scene, discs and how the run ended."""
     species = [
-        (s["name"], f"{s['number']:,}", f"{s['radius']:.6g}", f"{s['mass']:.6g}") for s in found["gas"]["species"]
+        (s["name"], Number(s["number"], ","), Number(s["radius"]), Number(s["mass"])) for s in found["gas"]["species"]
     ]
     summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
     if "trial" not in log.columns:
@@ -186,9 +175,9 @@ def _shown(value: object) -> str:
 
 
 def _section(section: Section) -> str:
-    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in section.notes)
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for table in section.tables for note in table.notes)
     picture = "" if section.picture is None else _picture(section.picture, section.caption)
-    return f'{notes}<div class="beside">{picture}{_tables(section.tables)}</div>'
+    return f'{notes}<div class="beside">{picture}{_tables([table for table in section.tables if table.rows])}</div>'
 
 
 def _picture(figure: Figure, caption: str) -> str:
@@ -213,5 +202,5 @@ def _table(table: Table) -> str:
         yield "</tr>"
 
     head = "".join(row(table.heads, "th")) if any(table.heads) else ""
-    body = "".join("".join(row(cells, "td")) for cells in table.rows)
+    body = "".join("".join(row(cells, "td")) for cells in table.shown)
     return f'<div class="wide"><table><caption>{escape(table.title)}</caption>{head}{body}</table></div>'

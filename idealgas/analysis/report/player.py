@@ -18,6 +18,7 @@ from idealgas.analysis.movie.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FAS
 from idealgas.analysis.movie.piston_track import piston_track
 from idealgas.events import Kind
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 
 MOST_ROWS = 600_000
 """Events that are put into a page, about 19 MB."""
@@ -74,7 +75,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
         ],
         "walls": [
             {"from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
-            for w in log.scene.wall
+            for w in walls_inside(log.scene)
         ],
         "piston": _piston(log, first, last),
     }

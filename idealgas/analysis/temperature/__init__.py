@@ -1,0 +1,9 @@
+"""Temperatures of every degree of freedom and species, which equipartition says are the same."""
+
+from idealgas.analysis.core.declaration import Analysis, Section
+
+ANALYSIS = Analysis(
+    __name__,
+    help="Measure the temperature of every degree of freedom and species; by equipartition all are E/N.",
+    sections=(Section("Temperature", "Kinetic temperature of each species against time"),),
+)

@@ -12,7 +12,6 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.log import Log
-from idealgas.scene import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -64,9 +63,16 @@ def temperature(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Temperature:
-    """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
+    """Measure the temperature of every direction of motion, species by species, between two times of a log.
+
+    By equipartition all are the same in equilibrium: m⟨vx²⟩ = m⟨vy²⟩ = m⟨v²⟩/2 = T, with k_B = 1, less what a conserved
+    momentum takes away in a finite gas.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if there are no events in the window.
+    """
     moments = Moments(log.gravity)
-    window = measure(log, [moments], start, end, progress, allowed=EFFECTS)
+    window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
     equilibrium = known_ensemble(log)
     shares: list[float] | list[None] = [None] * len(discs.name)

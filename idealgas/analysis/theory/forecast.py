@@ -7,18 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import hard_discs
+from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
-from idealgas.scene.geometry import room
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
 """Size of an event's row in the log, by compression..."""
 
-MORE_BYTES = {"rotation": {"gzip": 7, "none": 8}, "periodic sides": {"gzip": 2, "none": 8}}
-"""...and what columns of effects add to it."""
+MORE_BYTES = {"angular_velocity": {"gzip": 7, "none": 8}, "image": {"gzip": 2, "none": 8}}
+"""...and what further columns add to it."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class Forecast:
     species: tuple[SpeciesForecast, ...]
 
 
-BEYOND_THEORY = ("gravity", "wall segments", "restitution", "thermal walls", "piston")
-"""Effects under which a gas is not uniform or does not keep its energy."""
+KNOWN = ("uniform", "conserves_energy", "isolated")
+"""Properties of the gases that the theory knows."""
 
 
 class _Rates(NamedTuple):
@@ -72,7 +72,7 @@ class _Rates(NamedTuple):
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
     """Rates by Enskog's theory at the temperature all species will share; sizes by the stop rule met first."""
-    beyond = _beyond_theory(scene)
+    beyond = scene.lacking(*KNOWN)
     rates = None if beyond else _rates(scene, gas)
     duration = _duration(scene, len(gas), rates)
     events = rows = None
@@ -81,7 +81,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         rows = duration * (2 * rates.pairs + rates.hits)
     if not scene.log.events:
         rows = 0.0
-    x0, y0, x1, y1 = room(scene.box, scene.piston)
+    x0, y0, x1, y1 = scene.room
     area = (x1 - x0) * (y1 - y0)
     return Forecast(
         number=len(gas),
@@ -100,30 +100,25 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
 
 def _bytes_a_row(scene: Scene) -> int:
-    compression = scene.log.compression
-    more = sum(MORE_BYTES[name][compression] for name in scene.effects if name in MORE_BYTES)
-    return BYTES_A_ROW[compression] + more
-
-
-def _beyond_theory(scene: Scene) -> tuple[str, ...]:
-    lossy = scene.rotation and not {abs(scene.rotation.roughness), abs(scene.rotation.wall_roughness)} <= {1}
-    return tuple(name for name in scene.effects if name in BEYOND_THEORY or (name == "rotation" and lossy))
+    compression, has = scene.log.compression, scene.properties
+    columns = event_columns(*[SPINS] * has.spins, *[IMAGES] * any(has.periodic))
+    return BYTES_A_ROW[compression] + sum(MORE_BYTES[c.name][compression] for c in columns if c.name in MORE_BYTES)
 
 
 def _spin_energy(scene: Scene) -> float:
     """At the start."""
-    if scene.rotation is None:
+    if (factor := scene.properties.inertia) is None:
         return 0.0
     energy = 0.0
     for count, item in [(1, d) for d in scene.disc] + [(s.count, s) for s in scene.species]:
-        inertia = moment_of_inertia(scene.rotation.inertia, item.mass, item.radius)
+        inertia = moment_of_inertia(factor, item.mass, item.radius)
         temperature = getattr(item, "spin_temperature", None) or inertia * (item.angular_velocity or 0.0) ** 2
         energy += count * temperature / 2
     return energy
 
 
 def _rates(scene: Scene, gas: Gas) -> _Rates:
-    freedom = 3 if scene.rotation else 2
+    freedom = 2 + scene.properties.spins
     temperature = 2 * (gas.kinetic_energy + _spin_energy(scene)) / (freedom * len(gas))
     number = np.bincount(gas.species)
     _, first = np.unique(gas.species, return_index=True)
@@ -132,7 +127,7 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
         return _rates_without_positions(scene, gas, temperature, radius, mass, number)
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # no disc meets itself
-    hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.box.periodic)
+    hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits)
 
 

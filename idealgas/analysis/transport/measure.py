@@ -102,12 +102,20 @@ def transport(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Transport:
-    """Measure a log between two times, by default from detected equilibrium to the end."""
+    """Measure how discs of a gas move about between two times of its log, and compare with Enskog's theory.
+
+    Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
+    displacement, velocity autocorrelation and from the first the diffusion coefficient; pair distribution functions.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects
+    other than periodic sides.
+    """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
-    window = measure(log, [moments, impacts], start, end, progress, allowed=("periodic sides",))
+    window = measure(log, [moments, impacts], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
     expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
     rates = collision_rates(discs, expected, window, impacts)
@@ -186,9 +194,9 @@ def _of_species(
     name: str, lag: np.ndarray, places: np.ndarray, velocities: np.ndarray, enskog: tuple[float, float, float] | None
 ) -> Diffusion:
     """places, velocities: (segments, L, discs, 2)."""
-    correlation = _autocorrelation(velocities)
+    correlation = autocorrelation(velocities)
     square = correlation[:, 0].mean()
-    displacement = _mean_square_displacement(places)
+    displacement = mean_square_displacement(places)
     late = slice(int(FITTED_FROM * LAGS), None)
     slope = np.polyfit(lag[late], displacement[:, late].T, 1)[0] / 4
     correlation_time = np.trapezoid(correlation, lag, axis=1) / square
@@ -206,20 +214,27 @@ def _of_species(
     )
 
 
-def _autocorrelation(velocities: np.ndarray) -> np.ndarray:
-    """(segments, L), ⟨v(t)·v(t + lag)⟩ over discs and over the times t of each segment."""
+def autocorrelation(velocities: np.ndarray) -> np.ndarray:
+    """(segments, L): ⟨v(t)·v(t + lag)⟩ over discs and over the times t of each segment.
+
+    velocities: (segments, L, discs, 2), at equal steps.
+    """
     length = velocities.shape[1]
     spectrum = np.fft.rfft(velocities, 2 * length, axis=1)
     raw = np.fft.irfft((np.abs(spectrum) ** 2).sum(axis=3).mean(axis=2), 2 * length, axis=1)[:, :length]
     return raw / np.arange(length, 0, -1)
 
 
-def _mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """(segments, L), by Σ r² and the autocorrelation of places: Calandrini et al., Collection SFN 12, 201 (2011)."""
+def mean_square_displacement(places: np.ndarray) -> np.ndarray:
+    """(segments, L): ⟨|r(t + lag) - r(t)|²⟩ over discs and over the times t of each segment.
+
+    places: (segments, L, discs, 2), at equal steps. By Σ r² and the autocorrelation of places: Calandrini et al.,
+    Collection SFN 12, 201 (2011).
+    """
     length = places.shape[1]
     places = places - places[:, :1]  # keeps the digits
     square = (places**2).sum(axis=3).mean(axis=2)
     both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
     steps = np.arange(length)
     first, last = both[:, length - steps], both[:, -1:] - both[:, steps]
-    return (first + last) / (length - steps) - 2 * _autocorrelation(places)
+    return (first + last) / (length - steps) - 2 * autocorrelation(places)

@@ -61,14 +61,14 @@ def _normalised(
         (side, side) if periodic else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
         for side, periodic in zip(log.box, log.periodic, strict=True)
     ]
-    expected = discs.number[i] * (discs.number[j] - (i == j)) * np.diff(_chance(edges, reach, log.periodic))
+    expected = discs.number[i] * (discs.number[j] - (i == j)) * np.diff(chance_within(edges, reach, log.periodic))
     g = counts / expected
     return PairDistribution(
         discs.name[i], discs.name[j], edges, g.mean(axis=0), g.std(axis=0, ddof=1) / math.sqrt(len(g))
     )
 
 
-def _chance(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
+def chance_within(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
     """Probability that two points at random, in rectangles of sides `reach` about one centre, are closer than r."""
     angle = (np.arange(720) + 0.5) / 720 * math.pi / 2
     steps = np.linspace(0.0, 1.0, 65)

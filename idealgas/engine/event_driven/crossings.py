@@ -8,7 +8,8 @@ from idealgas.engine.event_driven.scheduler import SIDE_OF_BOX
 from idealgas.physics.box_side import arrival_delay, centre_range
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
-from idealgas.physics.motion import acceleration_along, position_after, velocity_after
+from idealgas.physics.gravity import acceleration_along
+from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along
 from idealgas.physics.piston import is_piston_side
 

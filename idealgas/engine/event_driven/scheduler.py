@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import aligned, inline
-from idealgas.engine.order import FIRST_SEGMENT, precedes, wall_rank
+from idealgas.engine.order import precedes, wall_rank
 from idealgas.physics.constants import NEVER
+from idealgas.sides import FIRST_SEGMENT
 
 PREDICTION = np.dtype(
     [

@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 
 from idealgas._version import __version__
+from idealgas.events import IMAGE, POSITION, VELOCITY
 from idealgas.log.reader import Log
 
 
@@ -70,9 +71,8 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
         h5md.create_group("creator").attrs.update({"name": np.bytes_("idealgas"), "version": np.bytes_(__version__)})
         group = file.create_group("particles/trajectory")
         group["position/step"], group["position/time"] = np.arange(frames), np.asarray(times, "f8")
-        names = ("position", "velocity", "image") if any(log.periodic) else ("position", "velocity")
-        for name in names:
-            dtype = "i4" if name == "image" else "f8"
+        columns = (POSITION, VELOCITY, IMAGE) if any(log.periodic) else (POSITION, VELOCITY)
+        for name, dtype, *_ in columns:
             group.create_dataset(f"{name}/value", (frames, discs, 3), dtype, chunks=(1, discs, 3), compression="gzip")
             _share_times(group, name)
         box = group.create_group("box")
@@ -84,7 +84,7 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
         group["id"], group["species"] = np.arange(discs), log.discs.species
         group["mass"], group["radius"] = log.discs.mass, log.discs.radius
         for frame, state in enumerate(log.frames(times)):
-            for name in names:
+            for name, *_ in columns:
                 group[f"{name}/value"][frame] = _with_zeros(getattr(state, name))
     return frames
 

@@ -7,12 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind, empty_batch
+from idealgas.log.flat import KIND_NAMES, Columns, flat_events, flat_states
 from idealgas.log.reader import Log
-from idealgas.log.replay import LogState
-
-Columns = dict[str, np.ndarray]
-_VECTORS = {"position": ("x", "y"), "velocity": ("vx", "vy"), "image": ("image_x", "image_y")}
 
 
 def write_csv_events(log: Log, path: Path) -> int:
@@ -58,7 +54,8 @@ def _write(path: Path, blocks: Iterable[Columns], make_writer: Callable[[Path, A
         for columns in blocks:
             table = pyarrow.table(columns)
             writer = writer or make_writer(path, table.schema)
-            writer.write_table(table)
+            if len(table):
+                writer.write_table(table)
             rows += len(table)
     finally:
         if writer is not None:
@@ -67,29 +64,12 @@ def _write(path: Path, blocks: Iterable[Columns], make_writer: Callable[[Path, A
 
 
 def _event_columns(log: Log) -> Iterator[Columns]:
-    kinds = np.array([kind.name.lower() for kind in Kind])
-    empty = empty_batch(0, "angular_velocity" in log.columns, "image" in log.columns, not log.has_positions)
-    for block in (empty, *()) if not len(log) else log.chunks():
-        columns = _flat(block)
+    kinds = np.array(KIND_NAMES)
+    for columns in flat_events(log.chunks(), log.columns):
         yield columns | {"kind": kinds[columns["kind"]]}
 
 
 def _frame_columns(log: Log, times: Sequence[float]) -> Iterator[Columns]:
-    ids, names = np.arange(len(log.discs), dtype=np.uint32), np.array(log.discs.species_names)[log.discs.species]
-    for state in log.frames(times):
-        columns = _flat(state)
-        if not log.has_positions:
-            del columns["x"], columns["y"]
-        time = np.full(len(ids), columns.pop("time"))
-        yield {"time": time, "disc": ids, "species": names, **columns}
-
-
-def _flat(block: EventBatch | LogState) -> Columns:
-    """Columns of one number a row."""
-    columns: Columns = {}
-    for name, values in block._asdict().items():
-        if name in _VECTORS and values is not None:
-            columns |= dict(zip(_VECTORS[name], np.ascontiguousarray(values.T), strict=True))
-        elif values is not None:
-            columns[name] = values
-    return columns
+    species = np.array(log.discs.species_names)
+    for columns in flat_states(log.discs, log.frames(times)):
+        yield columns | {"species": species[columns["species"]]}

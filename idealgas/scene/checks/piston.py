@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue, Key
-from idealgas.scene.tables.box import SIDES
+from idealgas.scene.tables.periodic import PERIODIC
+from idealgas.sides import SIDES, opposite
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document
@@ -17,13 +19,15 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
 
-def piston_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Faults of a piston in a scene whose tables are sound."""
-    opposite = SIDES[SIDES.index(piston.side) ^ 1]
-    for name, allowed in ((piston.side, "reflecting"), (opposite, "reflecting or thermal")):
+def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
+    """Faults of a piston in a scene whose tables are valid."""
+    piston = scene.piston
+    if piston is None or invalid:
+        return
+    for name, allowed in ((piston.side, "reflecting"), (_facing(piston), "reflecting or thermal")):
         side = getattr(scene.box, name)
-        if side == "periodic" or (name == piston.side and side != "reflecting"):
-            got = "periodic" if side == "periodic" else "thermal"
+        if side == PERIODIC or (name == piston.side and side != "reflecting"):
+            got = "periodic" if side == PERIODIC else "thermal"
             keys: tuple[Key, ...] = (("piston", "side"), ("box", name))
             yield Issue(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
     length = scene.box.size[piston.axis]
@@ -40,6 +44,11 @@ def piston_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
         yield from found
     if not found:
         yield from _walls_in_the_way(scene, piston)
+
+
+def _facing(piston: Piston) -> str:
+    """Name of the side of the box that it faces."""
+    return SIDES[opposite(SIDES.index(piston.side))]
 
 
 def _motion_issues(piston: Piston) -> Iterator[Issue]:
@@ -106,6 +115,5 @@ def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
         reach = max(_depth(scene, piston, wall.start[piston.axis]), _depth(scene, piston, wall.end[piston.axis]))
         if reach > depth:
             keys: tuple[Key, ...] = (("wall", i), ("piston", "position"), ("piston", "velocity"), ("run", "until"))
-            opposite = SIDES[SIDES.index(piston.side) ^ 1]
             allowed = f"no farther than {depth:.6g}, where it cannot come"
-            yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {opposite} side", allowed)
+            yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {_facing(piston)} side", allowed)

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue, Key
+from idealgas.scene.checks.valid import valid
 
 if TYPE_CHECKING:
-    from idealgas.scene.tables.discs import Disc, Species
-    from idealgas.scene.tables.rotation import Rotation
+    from idealgas.scene.tables.document import Document
 
 
-def rotation_issues(
-    rotation: Rotation | None, species: list[tuple[int, Species]], disc: list[tuple[int, Disc]]
-) -> Iterator[Issue]:
+def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Spins without rotation, and rotation that no spin ever feels."""
-    for table, items in (("species", species), ("disc", disc)):
-        for i, item in items:
+    rotation = scene.rotation
+    if "rotation" in invalid:
+        return
+    for table, items in (("species", scene.species), ("disc", scene.disc)):
+        for i, item in valid(items):
             given = [key for key in ("angular_velocity", "spin_temperature") if getattr(item, key, None) is not None]
             keys: tuple[Key, ...] = tuple((table, i, key) for key in given)
             if given and rotation is None:

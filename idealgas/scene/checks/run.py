@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue, Key
 from idealgas.scene.defaults import mean_speed
-from idealgas.scene.tables.box import SIDES
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document
@@ -39,30 +38,27 @@ def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
     elif run.method == TIME_DRIVEN:
         yield from _step_issues(scene)
     elif run.method == BRUTE_FORCE and run.precision not in (None, PLAIN):
-        yield from _precision_issues(scene, invalid)
+        yield from _precision_issues(scene)
 
 
 def _step_issues(scene: Document) -> Iterator[Issue]:
     got = f'method = "{TIME_DRIVEN}"'
     if scene.run.dt is None:
         yield Issue((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
-    places: list[Key] = [("wall", i) for i, wall in enumerate(scene.wall) if wall is not None]
-    for place in places + ([("piston",)] if scene.piston else []):
+    for place in _keys(scene, "in_steps"):
         yield Issue((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
 
 
-def _precision_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    got = f'precision = "{scene.run.precision}"'
-    spun = [(name,) for name in ("rotation",) if scene.rotation]
-    lossy = [("restitution",)] if scene.restitution and not scene.restitution.elastic else []
-    for place in (*_places(scene, invalid), *spun, *lossy):
+def _precision_issues(scene: Document) -> Iterator[Issue]:
+    """Effects: other precisions know of none."""
+    for place in _keys(scene):
         wrong = "smooth elastic discs in a reflecting box are all there is"
-        yield Issue((place, ("run", "precision")), wrong, got, f'"{PLAIN}"')
+        yield Issue((place, ("run", "precision")), wrong, f'precision = "{scene.run.precision}"', f'"{PLAIN}"')
 
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Effects that need positions, and gases in which no pair ever meets."""
-    for place in _places(scene, invalid):
+    for place in _keys(scene, "without_places"):
         got = f'method = "{MONTE_CARLO}"'
         yield Issue((place, ("run", "method")), "needs discs that are somewhere", got, "event_driven, brute_force")
     if not {"species", "disc"} & invalid and (scene.species or scene.disc):
@@ -72,19 +68,11 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
             yield Issue((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
 
 
-def _places(scene: Document, invalid: AbstractSet[str]) -> Iterator[Key]:
-    """Keys of everything that acts at a place."""
-    if scene.gravity:
-        yield ("gravity",)
-    if "box" not in invalid:
-        for name, side in zip(SIDES, scene.box.sides, strict=True):
-            if side != "reflecting":
-                yield ("box", name)
-    for i, wall in enumerate(scene.wall):
-        if wall is not None:
-            yield ("wall", i)
-    if scene.piston:
-        yield ("piston",)
+def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
+    """Keys of all effects, or of those that lack a property."""
+    for effect in scene.called:
+        if missing is None or not getattr(effect.properties, missing):
+            yield from effect.keys
 
 
 def endless_issues(scene: Document) -> Iterator[Issue]:
@@ -100,11 +88,10 @@ def endless_issues(scene: Document) -> Iterator[Issue]:
     if (
         not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in scene.species)
         and not any(any(d.velocity) for d in scene.disc)
-        and not scene.gravity
-        and not scene.piston
+        and not scene.properties.sets_in_motion
     ):
         yield Issue(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
     elif run.events is None and alone:
         yield Issue(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
-    elif alone and all(scene.box.periodic) and not scene.wall:
+    elif alone and all(scene.properties.periodic) and scene.properties.empty:
         yield Issue(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")

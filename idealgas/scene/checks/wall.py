@@ -4,36 +4,41 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue, Key
+from idealgas.scene.checks.valid import valid
 from idealgas.scene.geometry import distance_to_wall, images
-from idealgas.scene.tables.box import SIDES
+from idealgas.sides import SIDES
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.box import Box
-    from idealgas.scene.tables.discs import Disc
+    from idealgas.scene.tables.document import Document
     from idealgas.scene.tables.wall import Wall
 
 SHORTEST = 1e-9
 """Length of a wall in units of the box's longer side: below, a double cannot tell its ends apart."""
 
 
-def wall_issues(box: Box, walls: list[tuple[int, Wall]], discs: list[tuple[int, Disc]]) -> Iterator[Issue]:
+def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Faults of single walls, of their names, and explicit discs that overlap one that is there at the start."""
+    if "box" in invalid:
+        return
+    box = scene.box
     first: dict[str, int] = {}
-    valid: list[tuple[int, Wall]] = []
-    for i, wall in walls:
+    whole: list[tuple[int, Wall]] = []
+    for i, wall in valid(scene.wall):
         found = list(_own_issues(box, i, wall))
         yield from found
         if not found:
-            valid.append((i, wall))
+            whole.append((i, wall))
         if wall.name in SIDES:
             yield Issue((("wall", i, "name"),), "name taken by a side of the box", f'"{wall.name}"', "any other word")
         elif wall.name is not None and first.setdefault(wall.name, i) != i:
             yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a name of its own")
-    for k, d in discs:
-        for i, wall in valid:
+    for k, d in valid(scene.disc):
+        for i, wall in whole:
             distance = min(distance_to_wall(centre, wall) for centre in images(d.position, d.radius, box))
             if wall.there_at_start and distance < d.radius:
                 keys: tuple[Key, ...] = (("disc", k, "position"), ("disc", k, "radius"), ("wall", i))

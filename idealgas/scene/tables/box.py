@@ -5,9 +5,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from idealgas.document.table import Positive, Table
+from idealgas.scene.tables.periodic import PERIODIC
 from idealgas.scene.tables.thermal import ThermalSide
-
-SIDES = ("left", "right", "bottom", "top")
 
 
 def _tag(side: Any) -> str:
@@ -39,5 +38,5 @@ class Box(Table):
 
     @property
     def periodic(self) -> tuple[bool, bool]:
-        """Whether left and right, and bottom and top, are joined: periodic."""
-        return self.left == "periodic", self.bottom == "periodic"
+        """Whether the sides across x, and across y, are periodic."""
+        return self.left == PERIODIC, self.bottom == PERIODIC

@@ -1,14 +1,17 @@
 """A scene's tables together, as a TOML file holds them, before anything between them is checked.
 
-Reduced units, k_B = 1; a whole number will do for any number. An effect is a table of its own: one class in a file of
-its name here and one field below, `None` when absent.
+Reduced units, k_B = 1; a whole number will do for any number. An effect is a table of its own, or a part of the box's:
+a file of its name here says what it changes. It has one field below, `None` when absent, and one line in `CALLS`.
 """
 
+from collections.abc import Callable
 from typing import Annotated
 
 from pydantic import Field
 
-from idealgas.document.table import Table
+from idealgas.document.table import Rectangle, Table
+from idealgas.scene.properties import Effect, Properties, combine, lacking
+from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, wall
 from idealgas.scene.tables.box import Box
 from idealgas.scene.tables.discs import Disc, Species
 from idealgas.scene.tables.gravity import Gravity
@@ -16,11 +19,7 @@ from idealgas.scene.tables.piston import Piston
 from idealgas.scene.tables.restitution import Restitution
 from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
-from idealgas.scene.tables.thermal import ThermalSide
 from idealgas.scene.tables.wall import Wall
-
-EFFECTS = ("gravity", "periodic sides", "wall segments", "rotation", "restitution", "thermal walls", "piston")
-"""What a scene may add to smooth elastic discs in a reflecting box; no code of the others runs."""
 
 
 class Document(Table):
@@ -39,16 +38,40 @@ class Document(Table):
     log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
 
     @property
+    def called(self) -> tuple[Effect, ...]:
+        """The effects that the scene calls for."""
+        return tuple(effect for call in CALLS.values() if (effect := call(self)) is not None)
+
+    @property
     def effects(self) -> tuple[str, ...]:
         """Which of EFFECTS the scene calls for."""
-        thermal = any(isinstance(side, ThermalSide) for side in self.box.sides) or any(w.temperature for w in self.wall)
-        called = (
-            self.gravity,
-            any(self.box.periodic),
-            self.wall,
-            self.rotation,
-            self.restitution and not self.restitution.elastic,
-            thermal,
-            self.piston,
-        )
-        return tuple(name for name, call in zip(EFFECTS, called, strict=True) if call)
+        return tuple(effect.name for effect in self.called)
+
+    @property
+    def properties(self) -> Properties:
+        """What is true of the gas with all effects that the scene calls for."""
+        return combine(self.called)
+
+    def lacking(self, *properties: str) -> tuple[str, ...]:
+        """Names of the effects for which one of these properties is not true."""
+        return lacking(self.called, *properties)
+
+    @property
+    def room(self) -> Rectangle:
+        """What the gas has at the start."""
+        return self.piston.room(self.box.size) if self.piston else (0.0, 0.0, *self.box.size)
+
+
+CALLS: dict[str, Callable[[Document], Effect | None]] = {
+    gravity.NAME: lambda scene: gravity.effect(scene.gravity),
+    periodic.NAME: lambda scene: periodic.effect(scene.box.sides if scene.box else ()),
+    wall.NAME: lambda scene: wall.effect(scene.wall),
+    rotation.NAME: lambda scene: rotation.effect(scene.rotation),
+    restitution.NAME: lambda scene: restitution.effect(scene.restitution),
+    thermal.NAME: lambda scene: thermal.effect(scene.box.sides if scene.box else (), scene.wall),
+    piston.NAME: lambda scene: piston.effect(scene.piston),
+}
+"""Every effect by its name, and whether a scene calls for it; one that is being checked may lack its box."""
+
+EFFECTS = tuple(CALLS)
+"""What a scene may add to smooth elastic discs in a reflecting box; no code of the others runs."""

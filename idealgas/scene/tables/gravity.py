@@ -3,9 +3,26 @@
 from pydantic import Field
 
 from idealgas.document.table import Table, Vector
+from idealgas.scene.properties import Effect, Properties
+
+NAME = "gravity"
 
 
 class Gravity(Table):
     """`[gravity]`: the same acceleration everywhere."""
 
     acceleration: Vector = Field(description="[gx, gy], length/time²")
+
+
+def effect(gravity: Gravity | None) -> Effect | None:
+    """What gravity changes, if there is any."""
+    if gravity is None:
+        return None
+    properties = Properties(
+        uniform=False,
+        straight_flight=False,
+        without_places=False,
+        sets_in_motion=True,
+        acceleration=gravity.acceleration,
+    )
+    return Effect(NAME, (("gravity",),), properties)

@@ -4,9 +4,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from idealgas.document.table import NotNegative, Number, Positive, Table
-from idealgas.scene.tables.box import SIDES
+from idealgas.document.table import NotNegative, Number, Positive, Rectangle, Table
+from idealgas.scene.properties import Effect, Properties
 from idealgas.scene.tables.gravity import Gravity
+from idealgas.sides import OUTWARD, SIDES, axis_of
+
+NAME = "piston"
 
 
 class Piston(Table):
@@ -25,12 +28,12 @@ class Piston(Table):
     @property
     def axis(self) -> int:
         """0 if it moves along x, 1 along y."""
-        return SIDES.index(self.side) // 2
+        return axis_of(SIDES.index(self.side))
 
     @property
     def outward(self) -> float:
         """+1 if it is above the gas on its axis, -1 if below."""
-        return 1.0 if SIDES.index(self.side) % 2 else -1.0
+        return sum(OUTWARD[SIDES.index(self.side)])
 
     def stop(self, size: tuple[float, float]) -> float:
         """Coordinate of its side of the box."""
@@ -40,9 +43,39 @@ class Piston(Table):
         """Coordinate at time 0."""
         return self.stop(size) if self.position is None else self.position
 
+    def room(self, size: tuple[float, float]) -> Rectangle:
+        """What the gas has at the start: the box, up to the piston if that is in it."""
+        low, high = [0.0, 0.0], list(size)
+        if 0 <= (start := self.start(size)) <= size[self.axis]:
+            (high if self.outward > 0 else low)[self.axis] = start
+        return low[0], low[1], high[0], high[1]
+
+    @property
+    def action(self) -> str:
+        """What it does, in words."""
+        if self.mass is None:
+            return f"piston of velocity {self.velocity:g}"
+        return f"piston of mass {self.mass:g} under pressure {self.pressure:g}"
+
     def acceleration(self, size: tuple[float, float], gravity: Gravity | None) -> float:
         """Along the axis, between hits, length/time²."""
         if self.mass is None:
             return 0.0
         weight = gravity.acceleration[self.axis] if gravity else 0.0
         return weight - self.outward * (self.pressure or 0.0) * size[1 - self.axis] / self.mass
+
+
+def effect(piston: Piston | None) -> Effect | None:
+    """What a piston changes, if there is one."""
+    if piston is None:
+        return None
+    properties = Properties(
+        uniform=False,
+        fixed_walls=False,
+        without_places=False,
+        in_steps=False,
+        scales=False,
+        driven=piston.mass is None and bool(piston.velocity),
+        sets_in_motion=True,
+    )
+    return Effect(NAME, (("piston",),), properties)

@@ -3,6 +3,9 @@
 from pydantic import Field
 
 from idealgas.document.table import Positive, Table
+from idealgas.scene.properties import Effect, Properties
+
+NAME = "restitution"
 
 
 class Restitution(Table):
@@ -22,3 +25,10 @@ class Restitution(Table):
     def elastic(self) -> bool:
         """Whether nothing is lost."""
         return self.normal == 1 and self.wall == 1
+
+
+def effect(restitution: Restitution | None) -> Effect | None:
+    """What restitution changes, if anything is lost."""
+    if restitution is None or restitution.elastic:
+        return None
+    return Effect(NAME, (("restitution",),), Properties(uniform=False, elastic=False, lossless=False))

@@ -3,6 +3,9 @@
 from pydantic import Field
 
 from idealgas.document.table import Table
+from idealgas.scene.properties import Effect, Properties
+
+NAME = "rotation"
 
 
 class Rotation(Table):
@@ -16,3 +19,12 @@ class Rotation(Table):
     )
     roughness: float = Field(default=1.0, ge=-1, le=1, description="of discs, -1 to 1")
     wall_roughness: float = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")
+
+
+def effect(rotation: Rotation | None) -> Effect | None:
+    """What spins change, if discs have any."""
+    if rotation is None:
+        return None
+    lossless = {abs(rotation.roughness), abs(rotation.wall_roughness)} <= {1}
+    properties = Properties(lossless=lossless, inertia=rotation.inertia, grip=rotation.wall_roughness > -1)
+    return Effect(NAME, (("rotation",),), properties)

@@ -1,10 +1,14 @@
 """The table of a wall segment, which may be a gate."""
 
 import math
+from collections.abc import Sequence
 
 from pydantic import Field
 
 from idealgas.document.table import Positive, Table, Vector
+from idealgas.scene.properties import Effect, Properties
+
+NAME = "wall segments"
 
 
 class Wall(Table):
@@ -34,6 +38,25 @@ class Wall(Table):
         return self.opens_at or math.inf, self.closes_at or math.inf
 
     @property
+    def action(self) -> str:
+        """What it does, in words."""
+        action = "reflecting" if self.temperature is None else f"emits at temperature {self.temperature:g}"
+        opens, closes = self.absence
+        if math.isinf(opens):
+            return action
+        return f"{action}, open from {opens:g}" + ("" if math.isinf(closes) else f" to {closes:g}")
+
+    @property
     def there_at_start(self) -> bool:
         """Whether it is there at time 0."""
         return self.absence[0] > 0
+
+
+def effect(walls: Sequence[Wall | None]) -> Effect | None:
+    """What wall segments change, if there are any; None in the place of those that are not valid."""
+    present = [(i, wall) for i, wall in enumerate(walls) if wall is not None]
+    if not present:
+        return None
+    gone = (opens if math.isinf(closes) else math.inf for opens, closes in (wall.absence for _, wall in present))
+    properties = Properties(uniform=False, without_places=False, in_steps=False, scales=False, clear_from=max(gone))
+    return Effect(NAME, tuple(("wall", i) for i, _ in present), properties)

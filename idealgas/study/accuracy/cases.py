@@ -9,10 +9,8 @@ import numpy as np
 from idealgas.document.dump import dump_document
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.precise import PreciseBruteForce
-from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Method, Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
-from idealgas.events import EventBatch
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
@@ -84,27 +82,13 @@ def equilibrated(scene: Scene) -> Start:
     gas = make_gas(scene)
     simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
     stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
-    while not simulation.finished(stop):
-        simulation.advance(stop, None)
-        if simulation.epoch_over:
-            simulation.next_epoch()
+    simulation.run(stop)
     gas, effects = simulation.state()
     return Start(gas, effects)
 
 
-def follow(simulation: Simulation, until: float, batch: EventBatch | None = None) -> int:
-    """Take a simulation to a time, exactly, from wherever it is; the rows written. Epochs follow one another."""
-    rows = simulation.advance(Stop(), batch, UNLIMITED, until)
-    while not simulation.paused:
-        if simulation.epoch_over:
-            simulation.next_epoch()
-        free = None if batch is None else batch.rows(rows, len(batch.time))
-        rows += simulation.advance(Stop(), free, UNLIMITED, until)
-    return rows
-
-
 def cpu_seconds(simulation: Simulation, until: float) -> float:
-    """CPU time that it takes to follow a simulation to a time; only the kernel's thread counts."""
+    """CPU time that a simulation takes to a time; only the kernel's thread counts."""
     started = time.thread_time()
-    follow(simulation, until)
+    simulation.run(pause=until)
     return time.thread_time() - started

@@ -8,11 +8,12 @@ import numpy as np
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.precise import PreciseBruteForce, make_columns, turn_back
-from idealgas.engine.simulation import Simulation, Stop
+from idealgas.engine.simulation import NO_STOP, Simulation
 from idealgas.events import EventBatch, Kind, empty_batch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.study.accuracy.cases import Case, Start, follow
+from idealgas.run.layout import row_columns
+from idealgas.study.accuracy.cases import Case, Start
 
 STARTS = 200  # at most, from which collisions are compared
 ENOUGH = 5_000  # collisions compared
@@ -57,7 +58,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
             missed[k] += through
         number += 1
         progress(max(number / STARTS, compared.max() / ENOUGH))
-        follow(reference, number * BETWEEN / rate)
+        reference.run(pause=number * BETWEEN / rate)
     return [Missed(int(c), int(m)) for c, m in zip(compared, missed, strict=True)]
 
 
@@ -66,22 +67,20 @@ def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndar
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
     simulation = start.simulation(case.make())
-    while not simulation.paused:
-        batch = batch_for(start.effects)
-        rows = batch.rows(0, simulation.advance(Stop(), batch, pause=duration))
+    batch = batch_for(start.effects)
+    for count in simulation.slices(NO_STOP, batch, pause=duration):
+        rows = batch.rows(0, count)
         met = rows.kind == Kind.DISC
         disc, first = np.unique(rows.disc[met], return_index=True)
         new = np.isinf(time[disc])
         time[disc[new]] = rows.time[met][first[new]]
         partner[disc[new]] = rows.partner[met][first[new]]
-        if simulation.epoch_over:
-            simulation.next_epoch()
     return time, partner
 
 
 def batch_for(effects: Effects) -> EventBatch:
     """A batch with the columns that the effects call for."""
-    return empty_batch(rotating=effects.rotation is not None, periodic=effects.periodic is not None)
+    return empty_batch(columns=row_columns(effects))
 
 
 def flown_through(
@@ -101,7 +100,7 @@ def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
     """(T, N, 2): where the discs are."""
     found = []
     for time in times:
-        follow(simulation, time)
+        simulation.run(pause=time)
         found.append(simulation.state()[0].position)
     return np.array(found)
 
@@ -116,10 +115,10 @@ def error_on_return(start: Start, case: Case, duration: float) -> float:
     if case.precision is not None:
         return _error_on_precise_return(start, case.precision, duration)
     simulation = start.simulation(case.make())
-    follow(simulation, duration)
+    simulation.run(pause=duration)
     gas = simulation.state()[0]
     back = Start(replace(gas, velocity=-gas.velocity), start.effects).simulation(case.make())
-    follow(back, duration)
+    back.run(pause=duration)
     return float(rms_distance(back.state()[0].position, start.gas.position, start.gas))
 
 
@@ -128,7 +127,7 @@ def _error_on_precise_return(start: Start, precision: str, duration: float) -> f
     columns = origin = make_columns(start.gas, precision)
     for _ in range(2):
         method = PreciseBruteForce(precision, columns)
-        follow(start.simulation(method), duration)
+        start.simulation(method).run(pause=duration)
         columns = method.columns
         turn_back(columns, duration)
     apart = [_difference(a, b) for a, b in zip(columns[:2], origin[:2], strict=True)]

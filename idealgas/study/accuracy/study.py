@@ -129,7 +129,7 @@ def check(scene: Scene) -> None:
     """UserError unless the scene can be run in time steps, and anything collides."""
     if scene.run.method == "monte_carlo":
         raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
-    if strange := [effect for effect in scene.effects if effect in ("wall segments", "piston")]:
+    if strange := scene.lacking("in_steps"):
         raise UserError(f"nothing to compare: time steps know nothing of {' and '.join(strange)}")
     if len(make_gas(scene)) < 2:
         raise UserError("nothing to compare: one disc alone collides with none")

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import AfterValidator, Field, ValidationError
+from pydantic_core import PydanticKnownError
 
+from idealgas.analysis import registry
 from idealgas.document.dump import dump_document, toml_value
 from idealgas.document.error import Issue, Key
 from idealgas.document.messages import as_issues
@@ -26,7 +28,16 @@ from idealgas.scene.loader import make_scene
 PHI, BASE = "phi", "base"
 """Axis keys that no scene has: the packing fraction, reached by scaling the box; the path of the base scene."""
 
-Analysis = Literal["temperature", "pressure", "heat-capacity", "transport", "effusion"]
+
+def _known(name: str) -> str:
+    if name not in registry.commands():
+        raise PydanticKnownError("literal_error", {"expected": ", ".join(map(toml_value, registry.commands()))})
+    return name
+
+
+Analysis = Annotated[str, AfterValidator(_known)]
+"""The name of an analysis, as its command has it."""
+
 Value = bool | int | float | str | tuple[Any, ...]
 Count = Annotated[int, Field(ge=1, le=100_000)]
 
@@ -38,7 +49,7 @@ class Settings(Table):
     seed: int = Field(default=0, ge=0, lt=2**63, description="whole number from which the seeds of all points follow")
     replicates: Count = Field(default=1, description="runs of each point that differ in their seeds, 1 to 100000")
     analyses: Annotated[tuple[Analysis, ...], Field(strict=False)] = Field(
-        default=(), description="temperature, pressure, heat-capacity, transport, effusion"
+        default=(), description=f"names of {', '.join(registry.commands())}"
     )
     keep_logs: bool = Field(default=True, description="whether the logs stay after their analyses")
 
@@ -95,7 +106,7 @@ class Point:
 class Sweep:
     """A whole sweep. text: what tells it from others, the file with a digest of its points."""
 
-    analyses: tuple[Analysis, ...]
+    analyses: tuple[str, ...]
     keep_logs: bool
     axes: tuple[str, ...]
     points: tuple[Point, ...]
@@ -237,7 +248,8 @@ def _seed(seed: int, combination: int, replicate: int) -> int:
 
 def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) -> None:
     """Scale the document's box so that its discs cover a share phi of it. SceneError if that has no meaning."""
-    fixed = [name for name in ("disc", "wall", "piston") if getattr(scene, name)]
+    fixed = ["disc"] if scene.disc else []
+    fixed += [str(effect.keys[0][0]) for effect in scene.called if not effect.properties.scales]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []
     if fixed:
         allowed = "a scene in which nothing but the box has a place"

@@ -3,20 +3,11 @@
 import json
 import os
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from idealgas.analysis import registry
 from idealgas.scene import parse_scene
-
-ANALYSES = {
-    "temperature": ("idealgas.analysis.temperature.measure", "temperature"),
-    "pressure": ("idealgas.analysis.pressure.measure", "pressure"),
-    "heat-capacity": ("idealgas.analysis.heat_capacity.measure", "measure_heat"),
-    "transport": ("idealgas.analysis.transport.measure", "transport"),
-    "effusion": ("idealgas.analysis.effusion.measure", "effusion"),
-}
-"""Module and function of each analysis of one log; imported when called for."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +54,7 @@ def run_point(task: Task) -> None:
     simulate(scene, part, force=True, command="idealgas sweep")
     with open_log(part) as opened:
         summary = {name: value for name, value in opened.summary.items() if not name.endswith("seconds")}
-        results = {name: _analysis(name)(opened).as_dict() for name in task.analyses}
+        results = {name: registry.analyse(opened, name).as_dict() for name in task.analyses}
     if task.keep_log:
         part.replace(log)
     else:
@@ -79,8 +70,3 @@ def run_point(task: Task) -> None:
     unfinished = done.with_name(f"{done.name}.part")
     unfinished.write_text(text)
     unfinished.replace(done)
-
-
-def _analysis(name: str) -> Any:
-    module, function = ANALYSES[name]
-    return getattr(import_module(module), function)

@@ -8,11 +8,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.effusion.measure import Effusion
-from idealgas.analysis.heat_capacity.measure import Measured
-from idealgas.analysis.pressure.equation_of_state import Sample
-from idealgas.analysis.pressure.measure import PAIRS
 from idealgas.errors import UserError
 from idealgas.study.sweep.point import points_folder
 
@@ -30,33 +25,13 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
         raise UserError(f"{folder}: damaged results ({error})") from None
 
 
-def pressure_samples(folder: str | os.PathLike[str]) -> list[Sample]:
-    """Z of every point of a sweep with the analysis "pressure". UserError if there are none."""
-    samples = []
-    for found in _found(folder, "pressure"):
-        pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
-        samples.append(Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs)))
-    return samples
-
-
-def heat_measurements(folder: str | os.PathLike[str]) -> list[Measured]:
-    """What every point of a sweep with the analysis "heat-capacity" gives. UserError if there are none."""
-    return [Measured.from_dict(found) for found in _found(folder, "heat-capacity")]
-
-
-def effusions(folder: str | os.PathLike[str]) -> Iterator[tuple[str, Effusion]]:
-    """What every point of a sweep with the analysis "effusion" gives, by the values of its axes."""
-    found = _found(folder, "effusion")
-    for point, values in zip(read_points(folder), found, strict=True):
-        name = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
-        yield name, Effusion.from_dict(values)
-
-
-def _found(folder: str | os.PathLike[str], analysis: str) -> Iterator[dict[str, Any]]:
+def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """What an analysis found at each point of a sweep, by the values of its axes. UserError if it was not asked for."""
     for point in read_points(folder):
         if analysis not in point["analyses"]:
             raise UserError(f'{folder}: a sweep without the analysis "{analysis}"')
-        yield point["analyses"][analysis]
+        label = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
+        yield label, point["analyses"][analysis]
 
 
 def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
@@ -93,7 +68,7 @@ def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict[str, float | None]]]:
-    """Numbers in a result by their path; an entry of a list is named by its own texts, long series are left out."""
+    """Numbers in a result by their path; an entry of a list is named by its texts or its place, series are left out."""
     if isinstance(found, dict):
         if "standard_error" in found:
             yield "/".join(path), {name: found[name] for name in ESTIMATE}
@@ -101,9 +76,9 @@ def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, di
         for name, value in found.items():
             yield from _estimates(value, (*path, name))
     elif isinstance(found, list):
-        for entry in found:
+        for k, entry in enumerate(found):
             if isinstance(entry, dict):
-                label = ", ".join(value for value in entry.values() if isinstance(value, str))
+                label = ", ".join(value for value in entry.values() if isinstance(value, str)) or str(k)
                 yield from _estimates(entry, (*path, label))
     elif isinstance(found, int | float):
         yield "/".join(path), {"value": float(found)}

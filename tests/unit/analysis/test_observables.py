@@ -11,8 +11,9 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import save
 from idealgas.analysis.core.window import measure
+from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
 from idealgas.analysis.heat_capacity.figure import heat_capacity_figure
-from idealgas.analysis.heat_capacity.measure import CLOSED, heat_capacity, measure_heat
+from idealgas.analysis.heat_capacity.measure import CLOSED, heat_capacity
 from idealgas.analysis.histogram.figure import histogram_figure
 from idealgas.analysis.histogram.measure import QUANTITIES, histogram
 from idealgas.analysis.info import info
@@ -176,23 +177,23 @@ def test_temperatures_of_the_directions_add_up(log):
 
 def test_heat_capacity_of_one_log(log):
     """The exact energy over the temperature by the pressure."""
-    measured = measure_heat(log)
-    (route,) = heat_capacity([measured]).routes
+    measured = heat_capacity(log)
+    (route,) = combine_heat_capacity([measured]).routes
     assert (route.name, route.kind) == ("E/T", CLOSED)
     assert route.value.value == pytest.approx(0.5 / measured.temperature.value, rel=1e-10)
 
 
 def test_heat_capacity_of_two_logs_has_their_slope(log, hotter):
-    cold, hot = logs = [measure_heat(log), measure_heat(hotter)]
+    cold, hot = logs = [heat_capacity(log), heat_capacity(hotter)]
     slope = (hot.energy.value - cold.energy.value) / (hot.temperature.value - cold.temperature.value)
-    found = {route.name: route.value for route in heat_capacity(logs).routes}
+    found = {route.name: route.value for route in combine_heat_capacity(logs).routes}
     assert found["dE/dT"].value == pytest.approx(slope, rel=1e-10)
     error = slope * np.hypot(cold.temperature.standard_error, hot.temperature.standard_error) / 1.5 * slope
     assert found["dE/dT"].standard_error == pytest.approx(error, rel=1e-10)
 
 
 def test_logs_of_one_energy_have_no_slope(log):
-    found = heat_capacity([measure_heat(log), measure_heat(log)])
+    found = combine_heat_capacity([heat_capacity(log), heat_capacity(log)])
     assert [route.name for route in found.routes] == ["E/T"]
     assert "several energies" in found.refused["dE/dT"]
 
@@ -201,7 +202,7 @@ def test_results_are_json(log, hotter):
     results = [
         pressure(log),
         temperature(log),
-        heat_capacity([measure_heat(log), measure_heat(hotter)]),
+        combine_heat_capacity([heat_capacity(log), heat_capacity(hotter)]),
         histogram(log, "speed"),
     ]
     for values in (*(result.as_dict() for result in results), info(log)):
@@ -216,7 +217,7 @@ def test_every_axis_has_a_name(log, hotter):
     for figure in (
         pressure_figure(pressure(log)),
         temperature_figure(temperature(log)),
-        heat_capacity_figure(heat_capacity([measure_heat(log), measure_heat(hotter)])),
+        heat_capacity_figure(combine_heat_capacity([heat_capacity(log), heat_capacity(hotter)])),
         *(histogram_figure(histogram(log, quantity)) for quantity in ("speed", "wait")),
     ):
         for ax in figure.axes:

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from support import gas_of
+from support import gas_of, record
 
 from idealgas.engine.monte_carlo import MonteCarlo
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.errors import UserError
-from idealgas.events import BLOCK, EventBatch, Kind, empty_batch
+from idealgas.events import EventBatch, Kind
 
 BOX = (10.0, 10.0)
 
@@ -19,24 +19,12 @@ def some_gas(n=60, seed=1, radius=0.05, mass=1.0):
     return gas_of(BOX, np.full((n, 2), 5.0), velocity, radius, mass)
 
 
-def run(simulation: Simulation, stop: Stop, rows: int = BLOCK) -> EventBatch:
-    """All event rows up to the stop."""
-    found = []
-    while not simulation.finished(stop):
-        batch = empty_batch(rows, without_positions=True)
-        found.append(batch.rows(0, simulation.advance(stop, batch)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    columns = zip(*found, strict=True)
-    return EventBatch(*(None if column[0] is None else np.concatenate(column) for column in columns))
-
-
 def simulation(gas=None, seed=3, v_ref=20.0, **options):
     return Simulation(some_gas() if gas is None else gas, MonteCarlo(seed, v_ref, **options))
 
 
 def test_rows_are_pairs_without_positions():
-    rows = run(simulation(), Stop(events=500))
+    rows = record(simulation(), Stop(events=500))
     assert rows.position is None
     assert len(rows.time) == 1000
     first, second = (EventBatch(*(c if c is None else c[k::2] for c in rows)) for k in (0, 1))
@@ -52,7 +40,7 @@ def test_rows_are_pairs_without_positions():
 
 def test_rows_give_the_state_at_the_end():
     made = simulation()
-    rows = run(made, Stop(trials=5000))
+    rows = record(made, Stop(trials=5000))
     velocity = some_gas().velocity.copy()
     velocity[rows.disc] = rows.velocity
     assert made.state()[0].velocity.tolist() == velocity.tolist()
@@ -61,59 +49,57 @@ def test_rows_give_the_state_at_the_end():
 
 @pytest.mark.parametrize("rows", [3, 17, 4096])
 def test_neither_batches_nor_slices_change_anything(rows):
-    whole = run(simulation(), Stop(trials=40_000))
-    parts = run(simulation(), Stop(trials=40_000), rows)
+    whole = record(simulation(), Stop(trials=40_000))
+    parts = record(simulation(), Stop(trials=40_000), rows)
     for name in ("time", "disc", "velocity", "trial"):
         assert np.array_equal(getattr(whole, name), getattr(parts, name)), name
     silent = simulation()
-    while not silent.finished(Stop(trials=40_000)):
-        silent.advance(Stop(trials=40_000), None, 7)
-        if silent.epoch_over:
-            silent.next_epoch()
+    for _ in silent.slices(Stop(trials=40_000), events=7):
+        pass
     assert silent.counters.events == len(whole.time) // 2
     assert silent.epoch >= 2
 
 
 def test_stops_where_it_should():
     made = simulation()
-    rows = run(made, Stop(trials=1234))
+    rows = record(made, Stop(trials=1234))
     assert (made.counters.trials, made.counters.events) == (1234, len(rows.time) // 2)
     assert rows.trial[-1] <= 1234
     made = simulation()
-    assert len(run(made, Stop(disc_collisions=77)).time) == 2 * 77
-    assert made.counters.trials == int(run(simulation(), Stop(events=77)).trial[-1])
+    assert len(record(made, Stop(disc_collisions=77)).time) == 2 * 77
+    assert made.counters.trials == int(record(simulation(), Stop(events=77)).trial[-1])
     made = simulation()
-    assert run(made, Stop(time=9.5)).time[-1] <= 9.5
+    assert record(made, Stop(time=9.5)).time[-1] <= 9.5
     assert made.finished(Stop(time=9.5))
 
 
 def test_a_run_goes_on_from_the_start_of_any_epoch():
     stop = Stop(trials=60_000)
-    whole = run(simulation(), stop)
+    whole = record(simulation(), stop)
     made = simulation()
     while made.epoch < 2:
         made.advance(stop, None)
         made.next_epoch()
     again = Simulation(made.gas, MonteCarlo(3, 20.0), time=made.time, epoch=made.epoch, totals=made.totals)
-    rest = run(again, stop)
+    rest = record(again, stop)
     for name in ("time", "disc", "velocity", "trial"):
         assert np.array_equal(getattr(whole, name)[-len(rest.time) :], getattr(rest, name)), name
     assert len(rest.time) == len(whole.time) - 2 * made.totals.events
 
 
 def test_seeds_differ_and_epochs_do_too():
-    one, two = (run(simulation(seed=seed), Stop(events=5)).time.tolist() for seed in (1, 2))
+    one, two = (record(simulation(seed=seed), Stop(events=5)).time.tolist() for seed in (1, 2))
     assert one != two
     method, other = MonteCarlo(1, 20.0), MonteCarlo(1, 20.0)
-    first = run(Simulation(some_gas(), method), Stop(events=5))
-    second = run(Simulation(some_gas(), other, time=8.0, epoch=1), Stop(events=5))
+    first = record(Simulation(some_gas(), method), Stop(events=5))
+    second = record(Simulation(some_gas(), other, time=8.0, epoch=1), Stop(events=5))
     assert first.disc.tolist() != second.disc.tolist()
 
 
 def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
     made = simulation(v_ref=2.0)
     with pytest.raises(UserError, match=r"^run\.v_ref: too small: an acceptance of 1\.\d+ in trial \d+ ") as caught:
-        run(made, Stop(trials=100_000))
+        record(made, Stop(trials=100_000))
     message = str(caught.value)
     assert "\n" not in message
     needed = float(message.split("allowed >= ")[1].split(",")[0])
@@ -127,7 +113,7 @@ def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
 def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
     def boundary_crossings(one_sided):
         gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
-        rows = run(simulation(gas, v_ref=4.0, one_sided=one_sided), Stop(events=2000))
+        rows = record(simulation(gas, v_ref=4.0, one_sided=one_sided), Stop(events=2000))
         relative = np.concatenate(([[2.0, 0.0]], rows.velocity[0::2] - rows.velocity[1::2]))
         return np.sign(relative[:-1, 0] * relative[1:, 1] - relative[:-1, 1] * relative[1:, 0])
 
@@ -138,7 +124,7 @@ def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
 def test_impact_parameters_are_uniform():
     """They show in the deflection: a relative velocity that meets the line of centres at φ is turned by π - 2φ."""
     gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
-    rows = run(simulation(gas, v_ref=4.0), Stop(events=4000))
+    rows = record(simulation(gas, v_ref=4.0), Stop(events=4000))
     relative = np.concatenate(([[2.0, 0.0]], rows.velocity[0::2] - rows.velocity[1::2]))
     cosine = (relative[:-1] * relative[1:]).sum(axis=1) / (relative[:-1] ** 2).sum(axis=1)
     offset = np.sqrt(np.maximum(1 + cosine, 0) / 2)  # |b|/S = sin φ = cos((π - 2φ)/2)
@@ -149,7 +135,7 @@ def test_impact_parameters_are_uniform():
 
 def test_every_pair_collides_as_often():
     n, trials = 12, 200_000
-    rows = run(simulation(some_gas(n, seed=5), v_ref=30.0), Stop(trials=trials))
+    rows = record(simulation(some_gas(n, seed=5), v_ref=30.0), Stop(trials=trials))
     counts = np.zeros((n, n))
     np.add.at(counts, (rows.disc, rows.partner), 1)
     each = counts[np.triu_indices(n, 1)]
@@ -169,7 +155,7 @@ def test_acceptance_is_in_proportion_to_speed_and_size():
     done = 0
     for seed in range(6000):
         made = Simulation(gas, MonteCarlo(seed, v_ref))
-        rows = run(made, Stop(events=1), 3)
+        rows = record(made, Stop(events=1), 3)
         shares[rows.disc[0], rows.disc[1]] += 1
         done += made.counters.trials
     for i, j in ((0, 1), (0, 2), (1, 2)):
@@ -181,7 +167,7 @@ def test_acceptance_is_in_proportion_to_speed_and_size():
 
 def test_waits_between_trials_are_those_of_a_poisson_process():
     made = simulation(v_ref=12.0)
-    rows = run(made, Stop(trials=50_000))
+    rows = record(made, Stop(trials=50_000))
     per_trial = rows.time[-1] / float(rows.trial[-1])
     gas = some_gas()
     chi = (1 - 7 * gas.packing_fraction / 16) / (1 - gas.packing_fraction) ** 2

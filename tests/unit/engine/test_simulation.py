@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from support import record
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import empty_batch
 from idealgas.gas.state import Gas
 
 pytestmark = pytest.mark.interpreted
@@ -32,16 +32,8 @@ def gas_of(box, *discs):
 
 def run(simulation, stop, batch_rows=64):
     """All rows up to the stop, as a list of (time, disc, partner)."""
-    rows = []
-    while not simulation.finished(stop):
-        batch = empty_batch(batch_rows)
-        count = simulation.advance(stop, batch)
-        rows += zip(
-            batch.time[:count].tolist(), batch.disc[:count].tolist(), batch.partner[:count].tolist(), strict=True
-        )
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    return rows
+    rows = record(simulation, stop, batch_rows)
+    return list(zip(rows.time.tolist(), rows.disc.tolist(), rows.partner.tolist(), strict=True))
 
 
 @methods
@@ -121,10 +113,7 @@ def test_three_discs_in_line_pass_the_motion_on(method):
 def test_the_end_of_an_epoch_changes_only_records(method):
     simulation = Simulation(gas_of((10, 10), (5, 5, 1, 0.5, 1)), method())
     stop = Stop(time=4 * simulation.length)
-    while not simulation.finished(stop):
-        simulation.advance(stop, None)
-        if not simulation.finished(stop):
-            simulation.next_epoch()
+    simulation.run(stop)
     assert simulation.epoch == 3
     assert simulation.time == 3 * simulation.length
     x = 1 + abs((4 + stop.time + 8) % 16 - 8)
@@ -152,8 +141,7 @@ def test_a_gas_keeps_its_energy_and_never_overlaps(method):
     energy = simulation.gas.kinetic_energy
     stop = Stop(events=600)
     overlap = 0.0
-    while not simulation.finished(stop):
-        simulation.advance(stop, None, 100)
+    for _ in simulation.slices(stop, events=100):
         overlap = max(overlap, simulation.audit_of(simulation.state()[0]).overlap)
     assert math.isclose(simulation.state()[0].kinetic_energy, energy, rel_tol=1e-13)
     assert overlap < 1e-13

@@ -7,10 +7,10 @@ import pytest
 from support import gas_of, record, same_rows
 
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.engine.time_driven import TimeDriven
-from idealgas.events import Kind, empty_batch
+from idealgas.engine.time_driven import TimeDriven, make_nearby
+from idealgas.events import Kind
 from idealgas.physics.effects import Effects
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
 
 BOX = (10.0, 8.0)
@@ -69,7 +69,7 @@ def test_it_does_what_the_plain_method_does(gravity, periodic):
     gas, dt, steps = some_gas(radius=0.2), 0.02, 120  # no three overlap: the order of collisions does not matter
     effects = effects_of(gravity=gravity, periodic=periodic)
     made = Simulation(gas, TimeDriven(dt), effects)
-    rows = record_with(made, Stop(time=dt * (steps + 0.5)), effects)
+    rows = record(made, Stop(time=dt * (steps + 0.5)))
     expected, position, velocity = plainly(gas, dt, steps, effects)
     assert sorted(zip(np.rint(rows.time / dt), rows.disc, rows.partner, strict=True)) == expected
     assert {kind.value for kind in (Kind.DISC,)} <= set(rows.kind.tolist())
@@ -82,23 +82,12 @@ def test_it_does_what_the_plain_method_does(gravity, periodic):
     assert "x" in periodic or not boxes.any()
 
 
-def record_with(simulation, stop, effects, rows=65_536, events=1 << 62):
-    parts = []
-    while not simulation.finished(stop):
-        batch = empty_batch(rows, periodic=effects.periodic is not None)
-        parts.append(batch.rows(0, simulation.advance(stop, batch, events)))
-        if simulation.epoch_over and not simulation.finished(stop):
-            simulation.next_epoch()
-    columns = zip(*parts, strict=True)
-    return type(parts[0])(*(None if column[0] is None else np.concatenate(column) for column in columns))
-
-
 @pytest.mark.parametrize(("rows", "events"), [(3, 1 << 62), (17, 5), (4096, 1)])
 def test_neither_batches_nor_slices_change_anything(rows, events):
     stop = Stop(time=12.0)
     whole = Simulation(some_gas(), TimeDriven(0.05))
     parts = Simulation(some_gas(), TimeDriven(0.05))
-    assert same_rows(record(whole, stop), record_with(parts, stop, Effects(), rows, events))
+    assert same_rows(record(whole, stop), record(parts, stop, rows, events))
     assert whole.state()[0].position.tolist() == parts.state()[0].position.tolist()
     assert whole.method.deepest_overlap() == parts.method.deepest_overlap() > 0
 
@@ -139,10 +128,20 @@ def test_it_neither_makes_nor_loses_energy():
 
 
 def test_a_longer_list_is_made_where_the_first_is_too_short():
-    gas = some_gas(200, radius=0.3)
-    made = Simulation(gas, TimeDriven(0.02))
-    made.method._near = made.method._near._replace(pairs=np.empty((5, 2), np.int32))
-    assert same_rows(record(made, Stop(time=5.0)), record(Simulation(gas, TimeDriven(0.02)), Stop(time=5.0)))
+    """A crowd in a corner of an empty box has far more pairs near each other than the same discs all over it."""
+    k = np.arange(100)
+    place = np.column_stack((k % 10, k // 10)) * 0.15 + 0.5
+    gas = gas_of(BOX, place, np.random.default_rng(3).normal(size=place.shape), 0.02)
+    near = make_nearby(gas, (False, False))
+    distance = np.hypot(*(place[:, None] - place).T)
+    assert (distance < 0.04 + near.skin).sum() / 2 > 2 * len(near.pairs)
+    dt, steps = 0.002, 100
+    made = Simulation(gas, TimeDriven(dt))
+    rows = record(made, Stop(time=dt * (steps + 0.5)))
+    expected, _, velocity = plainly(gas, dt, steps, Effects())
+    assert sorted(zip(np.rint(rows.time / dt), rows.disc, rows.partner, strict=True)) == expected
+    assert len(expected) > 20
+    assert np.abs(made.state()[0].velocity - velocity).max() < 1e-10  # each collision multiplies roundings
 
 
 # how wrong it is

@@ -9,7 +9,7 @@ from log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, w
 
 import idealgas.log.reader as log_reader
 from idealgas.events import BLOCK, Kind
-from idealgas.log import LogError, LogWriter, box_walls, open_log
+from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
 
 STOP = 2 * BLOCK + 300
 
@@ -41,7 +41,7 @@ def test_row_at(log):
 
 def test_row_at_with_equal_times_across_chunks(tmp_path):
     start = gas()
-    with LogWriter(tmp_path / "run.h5", start, scene_text="", seed=0, walls=box_walls(start.box)) as writer:
+    with LogWriter(tmp_path / "run.h5", start, LogLayout(box_walls(start.box)), scene_text="", seed=0) as writer:
         for size in (BLOCK, BLOCK, BLOCK):
             batch = writer.batch()
             for column, values in zip(batch, rows(0, size), strict=True):

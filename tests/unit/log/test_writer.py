@@ -8,7 +8,6 @@ import subprocess
 import sys
 import threading
 import time
-from functools import partial
 
 import h5py
 import numpy as np
@@ -16,9 +15,19 @@ import pytest
 from log_samples import DISCS, STEP, check, gas, mark, new_writer, rows, write_log, write_rows
 
 import idealgas.log.writer as log_writer
-from idealgas.events import BLOCK, EventBatch, Kind, empty_batch
-from idealgas.log import Column, LogError, LogWriter, box_walls, check_output, open_log
-from idealgas.log.schema import EVENT_COLUMNS
+from idealgas.events import (
+    BLOCK,
+    IMAGE,
+    IMAGES,
+    POSITION,
+    POSITIONS,
+    SPINS,
+    VELOCITY,
+    EventBatch,
+    Kind,
+    event_columns,
+)
+from idealgas.log import LogError, LogLayout, LogWriter, box_walls, check_output, open_log
 
 
 @pytest.mark.parametrize("compression", ["gzip", "none"])
@@ -115,10 +124,9 @@ def test_observables_are_h5md(tmp_path):
 
 
 def test_further_columns(tmp_path):
-    columns = (*EVENT_COLUMNS, Column("angular_velocity", "f8", (), "1/time"), Column("image", "i4", (2,)))
-    options = {"event_columns": columns, "make_batch": partial(empty_batch, rotating=True, periodic=True)}
-    arrays = (Column("position", "f8", (2,)), Column("velocity", "f8", (2,)), Column("image", "i4", (2,)))
-    with new_writer(tmp_path / "run.h5", checkpoint_arrays=arrays, **options) as writer:
+    columns = event_columns(POSITIONS, SPINS, IMAGES)
+    arrays = (POSITION, VELOCITY, IMAGE)
+    with new_writer(tmp_path / "run.h5", checkpoint_arrays=arrays, event_columns=columns) as writer:
         batch = writer.batch()
         for column in filter(lambda column: column is not None, batch):
             column[:100] = 1
@@ -137,7 +145,7 @@ def test_further_columns(tmp_path):
 
 
 def test_without_events(tmp_path):
-    with new_writer(tmp_path / "run.h5", events=False) as writer:
+    with new_writer(tmp_path / "run.h5", event_columns=()) as writer:
         mark(writer)
         writer.close({"end_time": 5.0})
     with open_log(tmp_path / "run.h5") as log:
@@ -178,7 +186,7 @@ def test_long_texts_and_many_checkpoints(tmp_path):
 @pytest.mark.parametrize("discs", [1, 5000])
 def test_few_and_many_discs(tmp_path, discs):
     start = gas(discs)
-    with LogWriter(tmp_path / "run.h5", start, scene_text="", seed=2**200, walls=box_walls(start.box)) as writer:
+    with LogWriter(tmp_path / "run.h5", start, LogLayout(box_walls(start.box)), scene_text="", seed=2**200) as writer:
         for k in range(3):
             writer.checkpoint(k, k, {"position": start.position + k, "velocity": start.velocity})
     with open_log(tmp_path / "run.h5") as log:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries
 from idealgas.analysis.heat_capacity.measure import (
     BATH,
@@ -12,7 +13,6 @@ from idealgas.analysis.heat_capacity.measure import (
     Measured,
     _bath_fluctuations,
     _kinetic_fluctuations,
-    heat_capacity,
 )
 
 N = 20
@@ -64,7 +64,7 @@ def test_slope(errors):
             )
             for t in (0.5, 1.0, 1.5, 2.0)
         ]
-        (route,) = heat_capacity(logs).routes
+        (route,) = combine_heat_capacity(logs).routes
         assert route.name == "dE/dT"
         deviations.append(route.value.deviation)
     assert np.std(deviations) == pytest.approx(1.0, abs=0.2)  # 4/√(2·200)
@@ -73,7 +73,7 @@ def test_slope(errors):
 
 def test_routes_that_do_not_apply_say_why():
     logs = [measured(BATH, 1.0, 1.0, (0.01, 0.0), {"Var(E)/T²": Estimate(1.0, 0.02, 100.0, 1.0)})]
-    found = heat_capacity(logs)
+    found = combine_heat_capacity(logs)
     assert [route.name for route in found.routes] == ["Var(E)/T²"]
     assert set(found.refused) == {"dE/dT", "E/T", "fluctuations of the kinetic energy", "γ"}
 
@@ -89,10 +89,10 @@ def test_gamma_takes_the_best_measured_capacity_at_constant_area():
         2.0,
         1.0,
     )
-    gamma = heat_capacity([c_a, c_p]).routes[-1]
+    gamma = combine_heat_capacity([c_a, c_p]).routes[-1]
     assert gamma.name == "γ"
     assert (gamma.value.value, gamma.value.theory) == pytest.approx((2.0, 2.0))
-    alone = heat_capacity([c_p]).routes[-1]
+    alone = combine_heat_capacity([c_p]).routes[-1]
     assert alone.value.value == pytest.approx(2.02 / 1.02)
 
 

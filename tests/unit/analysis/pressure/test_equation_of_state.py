@@ -26,7 +26,7 @@ def test_virial_coefficients_come_back():
     for coefficient in (found.b2, found.b3):
         assert abs(coefficient.deviation) < 4
     assert found.b2.standard_error < 0.005 * found.b2.value
-    assert found.check(4.0)
+    assert found.check()
 
 
 def test_spread_of_the_fit_is_its_standard_error():
@@ -47,7 +47,7 @@ def test_a_wrong_pressure_is_found():
         )
         for s in samples([0.1, 0.2], 1e-4)
     ]
-    assert not equation_of_state(wrong).check(4.0)
+    assert not equation_of_state(wrong).check()
 
 
 def test_few_states_give_no_coefficients_and_frozen_ones_nothing():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.transport.measure import _autocorrelation, _mean_square_displacement, transport
-from idealgas.analysis.transport.pair_distribution import _chance
+from idealgas.analysis.transport.measure import autocorrelation, mean_square_displacement, transport
+from idealgas.analysis.transport.pair_distribution import chance_within
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -43,7 +43,7 @@ def test_trajectories_are_those_of_the_frames(log):
 def test_correlations_are_plain_averages():
     random = np.random.default_rng(1)
     series = random.normal(size=(2, 30, 3, 2)).cumsum(axis=1)
-    correlation, displacement = _autocorrelation(series), _mean_square_displacement(series)
+    correlation, displacement = autocorrelation(series), mean_square_displacement(series)
     for lag in range(30):
         early, late = series[:, : 30 - lag], series[:, lag:]
         assert correlation[:, lag] == pytest.approx((early * late).sum(axis=3).mean(axis=(1, 2)), rel=1e-9, abs=1e-9)
@@ -63,7 +63,7 @@ def test_chance_of_a_distance(periodic):
         if periodic[axis]:
             apart[axis] -= reach[axis][0] * np.round(apart[axis] / reach[axis][0])
     distance = np.hypot(*apart)
-    for radius, chance in zip(r, _chance(r, reach, periodic), strict=True):
+    for radius, chance in zip(r, chance_within(r, reach, periodic), strict=True):
         assert (distance < radius).mean() == pytest.approx(chance, abs=4 * np.sqrt(chance / n))
 
 

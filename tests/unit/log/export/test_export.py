@@ -163,3 +163,11 @@ def test_a_gas_without_positions_has_tables_only(tmp_path):
         for kind in set(FORMATS) - {"csv", "parquet"}:
             with pytest.raises(LogError, match="no positions"):
                 export(log, kind, tmp_path / "out", [0.0])
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_a_table_without_events_has_its_columns(kind, tmp_path):
+    simulate(scene_of("mixture", "run.until=1e-9"), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert export(log, kind, tmp_path / f"events.{kind}") == 0
+    assert list(read_table(tmp_path / f"events.{kind}")) == ["time", "disc", "partner", "kind", "x", "y", "vx", "vy"]

@@ -12,7 +12,7 @@ from idealgas.engine.simulation import Stop
 from idealgas.errors import UserError
 from idealgas.physics.effects import Effects
 from idealgas.scene import parse_scene
-from idealgas.study.accuracy.cases import Case, Start, compared_cases, follow
+from idealgas.study.accuracy.cases import Case, Start, compared_cases
 from idealgas.study.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
 from idealgas.study.accuracy.report import cost_of, flat_row, linear_coefficient, lost_after, sentences
 from idealgas.study.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
@@ -33,13 +33,9 @@ def start():
 def test_a_simulation_is_followed_to_any_time_without_a_change(start):
     there, steps = start.simulation(EventDriven()), start.simulation(EventDriven())
     for time in (0.3, 0.31, 7.0, 40.0, 123.0):
-        follow(steps, time)
+        steps.run(pause=time)
     assert steps.epoch > 0
-    stop = Stop(time=123.0)
-    while not there.finished(stop):
-        there.advance(stop, None)
-        if there.epoch_over and not there.finished(stop):
-            there.next_epoch()
+    there.run(Stop(time=123.0))
     assert steps.state()[0].position.tolist() == there.state()[0].position.tolist()
 
 

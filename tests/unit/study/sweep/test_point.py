@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from idealgas.analysis.pressure.combine import restore_pressure
 from idealgas.document.dump import dump_document
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
 from idealgas.study.sweep.point import Task, log_path, points_folder, result_path, run_point
-from idealgas.study.sweep.results import pressure_samples, read_points, write_tables
+from idealgas.study.sweep.results import read_points, stored, write_tables
 
 SCENE = """
 scene.seed = 4
@@ -61,7 +62,9 @@ def test_the_table_is_tidy(task, tmp_path):
     by_name = {(row["analysis"], row["quantity"]): row for row in rows}
     assert len(by_name) == len(rows)
     pairs = by_name["pressure", "routes/pairs, virial/compressibility"]
-    (sample,) = pressure_samples(tmp_path)
+    ((label, result),) = stored(tmp_path, "pressure")
+    assert label == "phi = 0.1, species.x = [1, 2]"
+    sample = restore_pressure(result, label)
     assert float(pairs["value"]) == sample.compressibility.value
     assert float(pairs["theory"]) == sample.compressibility.theory
     assert pairs["species.x"] == "[1, 2]"
@@ -77,7 +80,7 @@ def test_folders_without_results_are_refused(task, tmp_path):
         read_points(tmp_path)
     run_point(replace(task, analyses=("temperature",)))
     with pytest.raises(UserError, match='without the analysis "pressure"'):
-        pressure_samples(tmp_path)
+        list(stored(tmp_path, "pressure"))
     result_path(tmp_path, 3).write_text(json.dumps({})[:1])
     with pytest.raises(UserError, match="damaged results"):
         read_points(tmp_path)

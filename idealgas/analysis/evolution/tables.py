@@ -1,0 +1,36 @@
+"""Tables of a gas in the course of time."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from idealgas.analysis.core.tables import Number, Table
+from idealgas.analysis.evolution.measure import Evolution
+
+ROWS = 9
+"""Instants that people see; a picture tells more."""
+
+
+def evolution_tables(result: Evolution) -> list[Table]:
+    """Temperature and what is beyond the gate, and the account of the energy."""
+    course = {"m v²/2 a disc": result.temperature}
+    if result.law is not None:
+        course["law"] = result.law.temperature
+    if result.spin is not None:
+        course["I ω² a disc"] = result.spin
+    course |= {f"{name} beyond the gate": share for name, share in result.beyond.items()}
+    energy = {f"energy of {name}": values for name, values in result.parts.items()}
+    energy |= {f"given by {name}": values for name, values in result.given.items()}
+    if result.piston is not None:
+        energy["piston at"] = result.piston
+    energy["balance, relative"] = result.balance
+    notes = (f"law: {result.law.text if result.law else 'none for this scene'}",)
+    return [
+        _in_time("Course in time", result.time, course, notes),
+        _in_time("Energy", result.samples, energy),
+    ]
+
+
+def _in_time(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], notes: Sequence[str] = ()) -> Table:
+    values = zip(*(column.tolist() for column in (time, *columns.values())), strict=True)
+    return Table(title, ("t", *columns), [tuple(map(Number, row)) for row in values], notes, most=ROWS)

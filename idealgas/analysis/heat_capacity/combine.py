@@ -1,0 +1,116 @@
+"""Heat capacities by every route that logs allow, side by side: slopes of the energy over them, and means."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, mean_theory
+from idealgas.analysis.heat_capacity.measure import BATH, CLOSED, PISTON, ROUGH, Measured
+
+ROUTES = {
+    "dE/dT": "it takes logs of one kind of gas at several energies",
+    "E/T": "it takes the pressure on the walls of a closed box, in a log with events",
+    "Var(E)/T²": "it takes thermal walls of one temperature",
+    "fluctuations of the kinetic energy": "it takes an isolated gas with spin, gravity or a piston",
+    "γ": "it takes a piston with a mass",
+}
+"""Each route, and what a set of logs lacks that does not allow it."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """C per disc (or γ) of one kind of gas by one way of measuring."""
+
+    name: str
+    kind: str
+    value: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"route": self.name, "kind": self.kind, "value": self.value.as_dict()}
+
+
+@dataclass(frozen=True)
+class HeatCapacity:
+    """routes: those the logs allow. refused: why others do not apply, by route."""
+
+    routes: tuple[Route, ...]
+    refused: dict[str, str]
+    logs: tuple[Measured, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "routes": [route.as_dict() for route in self.routes],
+            "refused": self.refused,
+            "logs": [measured.as_dict() for measured in self.logs],
+        }
+
+
+def combine_heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
+    """Put the logs of a kind together: slopes over them, means of what each gives, and γ."""
+    routes = [route for kind in dict.fromkeys(m.kind for m in logs) for route in _of_kind(kind, logs)]
+    routes += _gammas(routes, logs)
+    used = {route.name for route in routes}
+    return HeatCapacity(tuple(routes), {name: why for name, why in ROUTES.items() if name not in used}, tuple(logs))
+
+
+def _of_kind(kind: str, logs: Sequence[Measured]) -> Iterator[Route]:
+    members = [m for m in logs if m.kind == kind]
+    if (slope := _slope(members)) is not None:
+        yield Route("dE/dT", kind, slope)
+    for name in dict.fromkeys(name for m in members for name in m.routes):
+        values = [m.routes[name] for m in members if name in m.routes]
+        yield Route(name, kind, mean_of_replicates(values))
+
+
+def _slope(members: Sequence[Measured]) -> Estimate | None:
+    """dE/dT per disc by weighted least squares, whichever of E and T is the exact one; None if all are alike."""
+    energy, t = (np.array([getattr(m, name).value for m in members]) for name in ("energy", "temperature"))
+    if len(members) < 2 or not np.ptp(t) > 0.05 * np.abs(t).max():
+        return None
+    errors = np.array([(m.energy.standard_error, m.temperature.standard_error) for m in members])
+    guess = np.polyfit(t, energy, 1)[0]
+    weight = (errors[:, 0] ** 2 + (guess * errors[:, 1]) ** 2) ** -1.0
+    if not np.isfinite(weight).all():
+        return None
+    given, measured = (t, energy) if errors[:, 1].max() == 0 else (energy, t)
+    middle = (weight * given).sum() / weight.sum()
+    spread = (weight * (given - middle) ** 2).sum()
+    slope = (weight * (given - middle) * measured).sum() / spread
+    if given is energy:
+        slope = 1 / slope
+        error = spread**-0.5 * slope**2 / abs(guess)
+    else:
+        error = spread**-0.5
+    other = 1.5 / members[0].number if PISTON in members[0].kind else 0.0
+    samples = sum(min(m.energy.independent_samples, m.temperature.independent_samples) for m in members)
+    return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]))
+
+
+def _gammas(routes: Sequence[Route], logs: Sequence[Measured]) -> Iterator[Route]:
+    """γ = C_P/C_A: C_A as the same discs have it without the piston where a log tells, else by theory's C_P - C_A."""
+    for route in routes:
+        excess = next((m.excess for m in logs if m.kind == route.kind and m.excess), None)
+        c_p = route.value
+        if excess is None or c_p.theory is None:
+            continue
+        other = (ROUGH, f"{BATH}, {ROUGH}") if ROUGH in route.kind else (CLOSED, BATH)
+        at_area = [r.value for r in routes if r.kind in other]
+        expected = c_p.theory / (c_p.theory - excess)
+        if at_area:
+            c_a = min(at_area, key=lambda value: value.standard_error)
+            value = c_p.value / c_a.value
+            error = value * math.hypot(c_p.standard_error / c_p.value, c_a.standard_error / c_a.value)
+        else:
+            value = c_p.value / (c_p.value - excess)
+            error = excess * c_p.standard_error / (c_p.value - excess) ** 2
+        yield Route("γ", f"{route.kind}: {route.name}", Estimate(value, error, c_p.independent_samples, expected))
+
+
+def restore_heat_capacity(found: dict[str, Any], label: str) -> Measured:
+    """A point of a sweep; its result has the path of its log, which names it better than the label."""
+    return Measured.from_dict(found)

@@ -1,0 +1,19 @@
+"""Tables of heat capacities."""
+
+from idealgas.analysis.core.tables import Table, estimates
+from idealgas.analysis.heat_capacity.combine import HeatCapacity
+
+MANY = 12
+"""Logs beyond which they are not listed one by one."""
+
+
+def heat_capacity_tables(result: HeatCapacity) -> list[Table]:
+    """Energy and temperature of each log, and C by every route."""
+    tables = []
+    if len(result.logs) <= MANY:
+        rows = [(f"{log.path}: E/N", log.energy) for log in result.logs]
+        rows += [(f"{log.path}: T by {log.thermometer}", log.temperature) for log in result.logs]
+        tables.append(estimates("Logs (energy)", rows))
+    routes = [(f"{route.name}, {route.kind}", route.value) for route in result.routes]
+    refused = [f"no {name}: {why}" for name, why in result.refused.items()]
+    return [*tables, estimates("C per disc, and γ (no unit, k_B = 1)", routes, refused)]

@@ -1,0 +1,25 @@
+"""Tables of distributions."""
+
+from idealgas.analysis.core.tables import Number, Table, describe, estimates
+from idealgas.analysis.histogram.measure import Histogram
+
+
+def histogram_tables(result: Histogram) -> list[Table]:
+    """Means, and how far the samples are from the laws."""
+    tests = [
+        (
+            found.name,
+            test.law_name,
+            Number(test.distance, ".4f"),
+            Number(test.p_value, ".3g"),
+            Number(found.samples, "d"),
+            Number(found.correlation_time, ".4g"),
+        )
+        for found in result.distributions
+        for test in found.tests
+    ]
+    means = [(found.name, found.mean) for found in result.distributions]
+    return [
+        estimates(f"Mean {result.quantity} ({result.unit})", means, (describe(result.window),)),
+        Table("Kolmogorov-Smirnov tests (no unit)", ("", "law", "distance", "p", "samples", "spacing (time)"), tests),
+    ]

@@ -1,0 +1,21 @@
+"""Pressures of several logs, or of the points of a sweep: the equation of state."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample, equation_of_state, sample_of
+from idealgas.analysis.pressure.measure import PAIRS, Pressure
+
+
+def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | EquationOfState:
+    """The pressure of a log, or the equation of state of several or of a sweep. UserError where theory knows no Z."""
+    if len(results) == 1 and isinstance(results[0], Pressure):
+        return results[0]
+    return equation_of_state([sample_of(found) if isinstance(found, Pressure) else found for found in results])
+
+
+def restore_pressure(found: dict[str, Any], label: str) -> Sample:
+    """Z of a point of a sweep, whose label says nothing that its result does not."""
+    pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
+    return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

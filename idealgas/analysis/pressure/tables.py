@@ -1,0 +1,48 @@
+"""Tables of pressures and of the equation of state."""
+
+from idealgas.analysis.core.tables import Number, Table, collision_tables, describe, estimates
+from idealgas.analysis.pressure.equation_of_state import EquationOfState
+from idealgas.analysis.pressure.measure import Pressure
+
+
+def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
+    """Routes, theories and collisions of one log, or states and virial coefficients of several."""
+    return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
+
+
+def _of_log(result: Pressure) -> list[Table]:
+    gas = (
+        f"N = {result.number}, A = {result.area:g}, φ = {result.packing_fraction:.5g}, T = {result.temperature:.6g}",
+    )
+    theories = [(name, Number(value, ".6f")) for name, value in result.theories.items()]
+    return [
+        estimates(
+            "Z = PA/NT (no unit)",
+            [(route.name, route.compressibility) for route in result.routes],
+            (describe(result.window), *gas),
+        ),
+        Table("Z by theory (no unit)", ("", "value"), theories),
+        estimates("P (energy/length²)", [(route.name, route.pressure) for route in result.routes]),
+        *collision_tables(result.collision_rates, result.free_paths),
+    ]
+
+
+def _of_states(result: EquationOfState) -> list[Table]:
+    heads = ("φ", "runs", "Z", "± s.e.", "dev./s.e.", "resummed", "to B10", "Henderson")
+    rows = [
+        (
+            Number(state.packing_fraction, ".5g"),
+            Number(state.runs, "d"),
+            Number(state.infinite.value, ".5f"),
+            Number(state.infinite.standard_error, ".1g"),
+            Number(state.infinite.deviation or 0.0, "+.2f"),
+            *(Number(value, ".5f") for value in (state.infinite.theory, state.virial, state.henderson)),
+        )
+        for state in result.states
+    ]
+    states = Table("Z = PA/NT for N → ∞; deviations are from the resummed virial series", heads, rows)
+    if result.b2 is None or result.b3 is None:
+        notes = ("Too few states at low density for a fit of virial coefficients.",)
+        return [states, estimates("Virial coefficients, fitted", [], notes)]
+    fitted = [("B2 in units of the disc's area", result.b2), ("B3/B2²", result.b3)]
+    return [states, estimates("Virial coefficients, fitted", fitted)]

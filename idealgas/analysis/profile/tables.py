@@ -1,0 +1,21 @@
+"""Tables of profiles."""
+
+from dataclasses import replace
+
+from idealgas.analysis.core.tables import Table, describe, estimates
+from idealgas.analysis.profile.measure import Profile
+
+
+def profile_tables(result: Profile) -> list[Table]:
+    """Density and temperatures of each species, strip by strip, and what walls give."""
+    axis = "xy"[result.axis]
+    strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in zip(result.edges, result.edges[1:], strict=False)]
+    tables = []
+    for entry in result.species:
+        columns = [("density (1/length²)", entry.density), ("temperature, m v²/2", entry.temperature)]
+        columns += [("temperature, I ω²", entry.spin)] if entry.spin is not None else []
+        tables += [estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)) for name, column in columns]
+    if result.heat:
+        tables.append(estimates("Energy from each wall per time", result.heat.items()))
+    notes = (f"{describe(result.window)}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
+    return [replace(tables[0], notes=notes), *tables[1:]]

@@ -1,0 +1,80 @@
+"""What a log holds from before its run: scene, box, discs and walls, and what made it."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from idealgas.gas.state import Gas
+from idealgas.log.schema import DISC_COLUMNS, Wall
+from idealgas.log.source import Source
+
+if TYPE_CHECKING:
+    from idealgas.scene import Scene
+
+
+class LogHeader:
+    """The part of a `Log` that is written before its run begins; `Log` says what the attributes are."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self.path = source.path
+        self.unclosed = source.unclosed
+        self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
+        self.gravity: tuple[float, float] = tuple(source.fixed("gravity").tolist())
+        self.periodic = tuple(word == b"periodic" for word in source.attribute("box", "boundary").tolist())
+
+    @cached_property
+    def runs(self) -> list[tuple[str, str]]:
+        """Scene (TOML, all defaults filled in) and command of every run that wrote into the log, in order.
+
+        The first one is the run that made it, the others went on with it; their scenes differ only in where they end.
+        """
+        texts = (
+            [text.decode() for text in self._source.column(f"runs/{name}").tolist()] for name in ("scene", "command")
+        )
+        return list(zip(*texts, strict=True))
+
+    @property
+    def scene_text(self) -> str:
+        """Scene of the last run as TOML, with all defaults filled in."""
+        return self.runs[-1][0]
+
+    @cached_property
+    def scene(self) -> "Scene":
+        """Scene of the last run, with all defaults filled in."""
+        from idealgas.scene import parse_scene
+
+        return parse_scene(self.scene_text, name=f"{self.path}: scene")
+
+    @property
+    def command(self) -> str:
+        """Command line of the last run; empty for a run from Python."""
+        return self.runs[-1][1]
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """Facts about the file by name: format, format_version, seed, created (UTC), and versions of what made it.
+
+        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5; `trajectory` is the version of
+        the laws of motion: a log is resumed only by a program with the same one.
+        """
+        return self._source.attributes("/") | self._source.attributes("versions")
+
+    @cached_property
+    def discs(self) -> Gas:
+        """The discs at the start of the run: constants of each disc, and position and velocity at time 0."""
+        columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
+        return Gas(box=self.box, species_names=tuple(self._source.texts("discs/species_name")), **columns)
+
+    @cached_property
+    def inertia(self) -> np.ndarray | None:
+        """(N,) moment of inertia of each disc, mass length²; None where discs do not spin."""
+        spins = "angular_velocity" in self._source.names("checkpoints")
+        return self._source.fixed("discs/inertia") if spins else None
+
+    @cached_property
+    def walls(self) -> list[Wall]:
+        """Sides of the box (left, right, bottom, top), then the wall segments; events name wall k as partner -1 - k."""
+        ends = self._source.fixed("walls/endpoints").tolist()
+        return [Wall(name, *map(tuple, end)) for name, end in zip(self._source.texts("walls/name"), ends, strict=True)]

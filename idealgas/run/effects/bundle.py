@@ -1,0 +1,64 @@
+"""All effects of a scene together, as the engines take them; the one list of them that a run has."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from idealgas.events import Column
+from idealgas.gas.state import Gas
+from idealgas.log import Checkpoint
+from idealgas.physics.effects import Effects
+from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, wall
+from idealgas.run.effects.slice import Arrays, Slice, Values
+from idealgas.scene import Scene
+from idealgas.sides import FIRST_SEGMENT
+
+SLICES = tuple(effect.SLICE for effect in (gravity, periodic, wall, rotation, restitution, thermal, piston))
+
+
+def make_effects(scene: Scene, gas: Gas) -> Effects:
+    """The effects of a scene at time 0; None for those that it does not call for. gas: its discs at time 0."""
+    effects = Effects(**{effect.field: effect.make(scene, gas) for effect in SLICES})
+    if any(effect.gives_energy(state) for effect, state in present(effects)):
+        return effects._replace(wall_energy=np.zeros(FIRST_SEGMENT + len(scene.wall)))
+    return effects
+
+
+def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
+    """The effects that are there, with their states."""
+    for effect in SLICES:
+        if (state := getattr(effects, effect.field)) is not None:
+            yield effect, state
+
+
+def disc_state(effects: Effects) -> Arrays:
+    """What checkpoints keep of each disc, the effects' own arrays; times count from the checkpoint."""
+    return {column: values for effect, state in present(effects) for column, values in effect.disc_state(state).items()}
+
+
+def disc_constants(effects: Effects) -> Arrays:
+    """What the log keeps of each disc at the start, beside motion, radius and mass."""
+    return {column: values for effect, state in present(effects) for column, values in effect.constants(state).items()}
+
+
+def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
+    """What checkpoints and samples keep of the effects as a whole; local_time: from the start of the epoch."""
+    values = {
+        column: value
+        for effect, state in present(effects)
+        for column, value in effect.values(state, local_time).items()
+    }
+    if effects.wall_energy is not None:
+        values[Column("wall_energy", "f8", effects.wall_energy.shape, "energy")] = effects.wall_energy.copy()
+    return values
+
+
+def restore_effects(effects: Effects, checkpoint: Checkpoint) -> None:
+    """Give the effects the state that they had at a checkpoint."""
+    for column, values in disc_state(effects).items():
+        values[:] = checkpoint.arrays[column.name]
+    for effect, state in present(effects):
+        effect.restore(state, checkpoint.values)
+    if effects.wall_energy is not None:
+        effects.wall_energy[:] = checkpoint.arrays["wall_energy"]

@@ -1,0 +1,131 @@
+"""What effects do to a gas, as properties: analyses and checks ask a scene for properties, not for effects."""
+
+import operator
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from functools import reduce
+from itertools import zip_longest
+from typing import Any
+
+from idealgas.document.error import Key
+from idealgas.sides import SIDES
+
+
+def _sums(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(map(operator.add, a, b))
+
+
+def _said(a: Any, b: Any) -> Any:
+    """The one that says something."""
+    return b if a is None else a
+
+
+def _either(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Entry by entry the one that says something."""
+    return tuple(y if x is None else x or y for x, y in zip_longest(a, b))
+
+
+def _plain(value: Any, both: Callable[[Any, Any], Any]) -> Any:
+    """A property of the plain box, and what it is with two effects."""
+    return field(default=value, metadata={"both": both})
+
+
+@dataclass(frozen=True)
+class Properties:
+    """Of a gas. The defaults are those of the plain box: smooth elastic discs in a reflecting box.
+
+    True where an effect does not change that, and true of a scene if it is true with every effect it calls for:
+
+    uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: between two events a disc flies
+    along a straight line. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
+    lossless: no energy is lost at all when discs meet discs or walls. fixed_walls: all walls stay where they are.
+    without_places: it has a meaning for discs without positions. in_steps: it can be met in time steps.
+    scales: the box may grow or shrink around the gas, as nothing in it has a fixed position.
+
+    False where an effect does not change that, and true of a scene if it is true with any effect:
+
+    driven: a wall moves whatever hits it. grip: walls take momentum along themselves. sets_in_motion: discs that are at
+    rest do not stay so.
+
+    inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
+    are. acceleration: of all discs between events, length/time². emits: temperature of each wall that emits what it
+    takes, by number; None for those that reflect. clear_from: time from which on no wall is inside the box; infinite if
+    one always is.
+    """
+
+    uniform: bool = _plain(True, operator.and_)
+    straight_flight: bool = _plain(True, operator.and_)
+    elastic: bool = _plain(True, operator.and_)
+    lossless: bool = _plain(True, operator.and_)
+    fixed_walls: bool = _plain(True, operator.and_)
+    without_places: bool = _plain(True, operator.and_)
+    in_steps: bool = _plain(True, operator.and_)
+    scales: bool = _plain(True, operator.and_)
+    driven: bool = _plain(False, operator.or_)
+    grip: bool = _plain(False, operator.or_)
+    sets_in_motion: bool = _plain(False, operator.or_)
+    inertia: float | None = _plain(None, _said)
+    periodic: tuple[bool, bool] = _plain((False, False), _either)
+    acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
+    emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _either)
+    clear_from: float = _plain(0.0, max)
+
+    @property
+    def spins(self) -> bool:
+        """Whether discs have an angular velocity."""
+        return self.inertia is not None
+
+    @property
+    def temperatures(self) -> frozenset[float]:
+        """Those of all walls that emit."""
+        return frozenset(temperature for temperature in self.emits if temperature is not None)
+
+    @property
+    def isolated(self) -> bool:
+        """Whether no heat comes through the walls."""
+        return not self.temperatures
+
+    @property
+    def conserves_energy(self) -> bool:
+        """Whether nothing but heat from walls changes the energy of motion and spin."""
+        return self.lossless and self.straight_flight and self.fixed_walls
+
+    @property
+    def conserves_motion(self) -> bool:
+        """Whether nothing changes the energy of motion of all discs."""
+        return self.conserves_energy and self.isolated and not self.spins
+
+    @property
+    def empty(self) -> bool:
+        """Whether there never is a wall inside the box."""
+        return self.clear_from == 0
+
+    @property
+    def conserves_momentum(self) -> tuple[bool, bool]:
+        """Along which axes nothing takes momentum from the discs: smooth walls take none along themselves."""
+        free = self.empty and (all(self.periodic) or not self.grip)
+        return self.periodic[0] and free, self.periodic[1] and free
+
+    def __and__(self, other: "Properties") -> "Properties":
+        """With the effects of both."""
+        pairs = ((entry, getattr(self, entry.name), getattr(other, entry.name)) for entry in fields(self))
+        return Properties(**{entry.name: entry.metadata["both"](mine, others) for entry, mine, others in pairs})
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect that a scene calls for: its name for people, where the scene says so, what it changes."""
+
+    name: str
+    keys: tuple[Key, ...]
+    properties: Properties
+
+
+def combine(effects: tuple[Effect, ...]) -> Properties:
+    """Properties of a scene with these effects."""
+    return reduce(Properties.__and__, (effect.properties for effect in effects), Properties())
+
+
+def lacking(effects: tuple[Effect, ...], *names: str) -> tuple[str, ...]:
+    """Which of the effects lack one of these properties, by their names."""
+    return tuple(e.name for e in effects if not all(getattr(e.properties, name) for name in names))

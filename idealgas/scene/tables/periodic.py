@@ -1,0 +1,20 @@
+"""Periodic sides: a disc that leaves through one comes back through the one that faces it."""
+
+from collections.abc import Sequence
+
+from idealgas.document.error import Key
+from idealgas.scene.properties import Effect, Properties
+from idealgas.sides import SIDES
+
+NAME = "periodic sides"
+
+PERIODIC = "periodic"
+"""What a side of the box is called that is."""
+
+
+def effect(sides: Sequence[object]) -> Effect | None:
+    """What periodic sides change, if there are any among the sides of the box."""
+    keys: tuple[Key, ...] = tuple(("box", name) for name, side in zip(SIDES, sides, strict=False) if side == PERIODIC)
+    if not keys:
+        return None
+    return Effect(NAME, keys, Properties(without_places=False, periodic=(sides[0] == PERIODIC, sides[2] == PERIODIC)))

@@ -1,0 +1,176 @@
+"""A new analysis is one folder and one line of the registry: commands, report and sweeps then have it.
+
+The package is copied, and the copy gets both; everything else of it is as it was. Its commands run as for users.
+"""
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from support import ROOT
+
+FOLDER = {
+    "__init__.py": '''
+        """The fastest disc."""
+
+        from idealgas.analysis.core.declaration import Analysis, Option, Section
+
+        ANALYSIS = Analysis(
+            __name__,
+            help="Measure the speed of the fastest disc at the end.",
+            options=(Option("rank", int, "Which disc, 1 for the fastest.", default=1, least=1, metavar="K"),),
+            sections=(
+                Section("The fastest disc", "Speeds of all discs"),
+                Section("The disc after a thousand", "Speeds of all discs", {"rank": 1000}),
+            ),
+        )
+    ''',
+    "measure.py": '''
+        """The speed of the fastest disc at the end of a log."""
+
+        from dataclasses import dataclass
+
+        import numpy as np
+
+        from idealgas.analysis.core.statistics import Estimate
+        from idealgas.errors import UserError
+
+
+        @dataclass(frozen=True)
+        class FastestDisc:
+            speeds: np.ndarray
+            speed: Estimate
+
+            def as_dict(self):
+                return {"speed": self.speed.as_dict()}
+
+
+        def fastest_disc(log, start=None, end=None, progress=None, rank=1):
+            speeds = np.sort(np.hypot(*log.state_at(log.end_time if end is None else end).velocity.T))
+            if rank > len(speeds):
+                raise UserError(f"{log.path}: has {len(speeds)} discs")
+            return FastestDisc(speeds, Estimate(float(speeds[-rank]), 0.0, 1.0))
+    ''',
+    "tables.py": '''
+        """The speed as a table."""
+
+        from idealgas.analysis.core.tables import estimates
+
+
+        def fastest_disc_tables(found):
+            return [estimates("Of one disc", [("speed", found.speed)], ["at the end"])]
+    ''',
+    "figure.py": '''
+        """All speeds."""
+
+        from idealgas.analysis.core.style import panels
+
+
+        def fastest_disc_figure(found):
+            figure, (ax,) = panels(1)
+            ax.plot(found.speeds)
+            return figure
+    ''',
+}
+LINE = '    "fastest_disc",\n'
+
+SCENE = """
+scene.seed = 3
+box.size = [10, 10]
+species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
+run.events = 500
+"""
+
+SWEEP = """
+sweep.analyses = ["fastest-disc"]
+sweep.scene = "scene.toml"
+[[axis]]
+key = "species.temperature"
+values = [1.0, 4.0]
+"""
+
+
+def unindented(text):
+    return "\n".join(line.removeprefix("        ") for line in text.splitlines()).strip() + "\n"
+
+
+@pytest.fixture(scope="module")
+def idealgas(tmp_path_factory):
+    """The command of a copy of the package that has the analysis, in a folder with a scene and its log."""
+    copy, folder = tmp_path_factory.mktemp("package"), tmp_path_factory.mktemp("folder")
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "idealgas", copy / "idealgas", ignore=ignored)
+    shutil.copytree(ROOT / "cli", copy / "idealgas_cli", ignore=ignored)
+    made_up = copy / "idealgas" / "analysis" / "fastest_disc"
+    made_up.mkdir()
+    for name, text in FOLDER.items():
+        (made_up / name).write_text(unindented(text))
+    registry = copy / "idealgas" / "analysis" / "registry.py"
+    last = '    "effusion",\n'
+    assert registry.read_text().count(last) == 1
+    registry.write_text(registry.read_text().replace(last, last + LINE))
+
+    def run(*arguments, code=0):
+        done = subprocess.run(
+            [sys.executable, "-c", "from idealgas_cli.main import main; main()", *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            cwd=folder,
+            env=os.environ | {"PYTHONPATH": str(copy)},
+            stdin=subprocess.DEVNULL,
+        )
+        assert done.returncode == code, done.stderr
+        return done.stdout if code == 0 else done.stderr
+
+    run.folder = folder
+    (folder / "scene.toml").write_text(SCENE)
+    (folder / "sweep.toml").write_text(SWEEP)
+    run("run", "scene.toml", "-o", "run.h5")
+    return run
+
+
+def test_the_command_is_there(idealgas):
+    assert "fastest-disc   Measure the speed of the fastest disc at the end." in idealgas("--help")
+    shown = idealgas("fastest-disc", "--help")
+    for option in ("--rank K", "--from T", "--to T", "--plot FILE.png", "--json", "--csv"):
+        assert option in shown
+
+
+def test_tables_json_csv_and_pictures(idealgas):
+    speed = json.loads(idealgas("fastest-disc", "run.h5", "--json"))["speed"]["value"]
+    table = idealgas("fastest-disc", "run.h5")
+    assert "at the end\nOf one disc" in table
+    assert f"{speed:.6g}" in table
+    (row,) = csv.DictReader(idealgas("fastest-disc", "run.h5", "--csv").splitlines())
+    assert (row["table"], row["name"], float(row["value"])) == ("Of one disc", "speed", speed)
+    second = json.loads(idealgas("fastest-disc", "run.h5", "--rank", 2, "--json"))["speed"]["value"]
+    assert 0 < second < speed
+    idealgas("fastest-disc", "run.h5", "--plot", "speeds.png")
+    assert (idealgas.folder / "speeds.png").stat().st_size > 5000
+    assert "--rank" in idealgas("fastest-disc", "run.h5", "--rank", 0, code=2)
+
+
+def test_the_report_has_its_sections_or_says_why_not(idealgas):
+    idealgas("report", "run.h5", "-o", "report.html")
+    page = (idealgas.folder / "report.html").read_text(encoding="utf-8")
+    assert "<h2>The fastest disc</h2>" in page
+    assert "<caption>Of one disc</caption>" in page
+    assert "<li>The disc after a thousand: has 20 discs</li>" in page
+
+
+def test_a_sweep_asks_for_it(idealgas):
+    idealgas("sweep", "sweep.toml", "-o", "out", "--workers", 1)
+    with (idealgas.folder / "out" / "results.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["analysis"] == "fastest-disc"]
+    assert [(row["point"], row["quantity"]) for row in rows] == [("0", "speed"), ("1", "speed")]
+    for row in rows:
+        log = f"out/points/{int(row['point']):04d}.h5"
+        assert float(row["value"]) == json.loads(idealgas("fastest-disc", log, "--json"))["speed"]["value"]
+    (idealgas.folder / "wrong.toml").write_text(SWEEP.replace("fastest-disc", "fastest"))
+    error = idealgas("sweep", "wrong.toml", "--dry-run", code=2)
+    assert error.startswith("wrong.toml:2: sweep.analyses.0: unknown value")
+    assert '"fastest-disc")' in error

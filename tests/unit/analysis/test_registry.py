@@ -1,0 +1,154 @@
+"""What is made from the registry: results by name, tables, sections of a report; and what an analysis has to have."""
+
+import csv
+import inspect
+import io
+import json
+import subprocess
+import sys
+from importlib import import_module
+from pkgutil import iter_modules
+
+import pytest
+
+from idealgas import analysis as package
+from idealgas.analysis import registry
+from idealgas.analysis.core.declaration import Option
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.tables import Number, Table, as_csv, estimates
+from idealgas.analysis.report.sections import make_sections
+from idealgas.errors import UserError
+
+GAS = """
+box.size = [8, 8]
+species = [{name = "gas", count = 30, radius = 0.2, speed = 1.0}]
+run.collisions_per_disc = 60
+"""
+
+SLIT = (
+    "species.0.region=[0,0,4,8]",
+    "wall=[{from=[4,0],to=[4,3]},{from=[4,5],to=[4,8]},{from=[4,3],to=[4,5],opens_at=1.0}]",
+)
+
+every_analysis = pytest.mark.parametrize("analysis", registry.analyses(), ids=lambda analysis: analysis.key)
+
+
+def test_every_folder_that_declares_an_analysis_is_in_the_registry():
+    folders = [module.name for module in iter_modules(package.__path__) if module.ispkg]
+    declared = [name for name in folders if hasattr(import_module(f"{package.__name__}.{name}"), "ANALYSIS")]
+    assert sorted(declared) == sorted(registry.NAMES)
+    assert [analysis.name for analysis in registry.analyses()] == list(registry.NAMES)
+
+
+@every_analysis
+def test_the_code_of_an_analysis_has_the_names_and_arguments_that_are_declared(analysis):
+    def code(module, function):
+        return getattr(import_module(f"{analysis.package}.{module}"), function)
+
+    taken = list(inspect.signature(code("measure", analysis.name)).parameters)
+    assert taken[0] == "log"
+    assert set(taken[1:]) == {"start", "end", "progress", *(option.name for option in analysis.options)}
+    assert callable(code("tables", f"{analysis.name}_tables"))
+    assert callable(code("figure", f"{analysis.name}_figure"))
+    if analysis.several:
+        assert callable(code("combine", f"combine_{analysis.name}"))
+    if analysis.folders:
+        assert callable(code("combine", f"restore_{analysis.name}"))
+    modules = {module.name for module in iter_modules(import_module(analysis.package).__path__)}
+    assert not modules & {name for name, value in vars(import_module(analysis.package)).items() if callable(value)}
+
+
+def test_what_analyses_say_of_themselves_takes_nothing_heavy():
+    heavy = ("numpy", "numba", "scipy", "h5py", "matplotlib", "pydantic", "rich")
+    program = (
+        "import sys\nfrom idealgas.analysis import registry\nregistry.analyses()\n"
+        f"print(*(name for name in {heavy} if name in sys.modules), end='')"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_analyses_by_name(make):
+    log = make()
+    steps = []
+    found = registry.analyse(log, "temperature", 1.0, 3.0, lambda done, total: steps.append((done, total)))
+    assert (found.window.start, found.window.end) == (1.0, 3.0)
+    assert steps
+    by_key, by_name = (registry.analyse(log, name) for name in ("heat-capacity", "heat_capacity"))
+    assert by_key == by_name
+    assert registry.analyse(log, "histogram", quantity="vx").quantity == "vx"
+    assert len(registry.analyse(log, "profile", bins=3).edges) == 4
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "message"),
+    [
+        ("presure", {}, r'unknown analysis, did you mean "pressure"\? \(got presure; allowed pressure, temperature, '),
+        ("speeds of light", {}, r"unknown analysis \(got speeds of light; allowed pressure, "),
+        ("profile", {"bin": 3}, r'unknown option of profile, did you mean "bins"\? \(got bin; allowed start, end, '),
+        ("profile", {"bins": 0}, r"bins: wrong value \(got 0; allowed a whole number >= 1 and <= 1000\)"),
+        ("profile", {"bins": 2.5}, "bins: wrong value"),
+        ("profile", {"along": "z"}, r"along: wrong value \(got 'z'; allowed x, y\)"),
+        ("histogram", {"quantity": None}, "quantity: wrong value"),
+        ("relaxation", {"every": 0}, r"every: wrong value \(got 0; allowed a number > 0\)"),
+        ("relaxation", {"every": True}, "every: wrong value"),
+    ],
+)
+def test_unknown_names_and_wrong_options_are_refused(make, name, options, message):
+    with pytest.raises(UserError, match=message):
+        registry.analyse(make("run.events=50"), name, **options)
+
+
+def test_an_option_takes_its_default():
+    option = Option("along", str, "", choices=("x", "y"))
+    option.check(None)
+    option.check("x")
+
+
+@every_analysis
+def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
+    result = analysis.combine([analysis.measure(make(*(SLIT if analysis.name == "effusion" else ())))])
+    tables = analysis.tables(result)
+    assert any(table.rows for table in tables)
+    rows = list(csv.DictReader(io.StringIO(as_csv(tables))))
+    assert [row["table"] for row in rows] == [table.title for table in tables for _ in table.rows]
+    text = json.dumps(result.as_dict(), allow_nan=False)
+    known = {repr(number) for number in _numbers(json.loads(text))}
+    values = [row["value"] for row in rows if row.get("value") and row.get("standard_error")]
+    assert {repr(float(value)) for value in values} <= known
+    for table in tables:
+        assert all(len(row) == len(table.heads) for row in table.rows)
+
+
+def _numbers(found):
+    if isinstance(found, dict | list):
+        for part in found.values() if isinstance(found, dict) else found:
+            yield from _numbers(part)
+    elif isinstance(found, int | float):
+        yield float(found)
+
+
+def test_a_report_shows_every_section_or_says_why_not(make):
+    titles = [section.title for analysis in registry.analyses() for section in analysis.sections]
+    steps = []
+    sections = make_sections(make(), lambda done, total: steps.append((done, total)))
+    assert [section.title for section in sections] == titles
+    assert steps == [(k + 1, len(titles)) for k in range(len(titles))]
+    assert [section.title for section in sections if section.left_out] == ["Effusion"]
+    assert all(section.picture and section.caption and section.tables for section in sections if not section.left_out)
+    without_positions = make_sections(make('run.method="monte_carlo"', "run.v_ref=5"))
+    left_out = {section.title: section.left_out for section in without_positions if section.left_out}
+    assert left_out["Profile"] == "discs of this method have no positions"
+    assert "Evolution" not in left_out
+
+
+def test_csv_has_all_digits_and_people_see_some():
+    table = Table("t", ("", "n"), [(str(k), Number(k / 7, ".2f")) for k in range(10)], most=3)
+    assert table.shown == [["0", "0.00"], ["4", "0.57"], ["9", "1.29"]]
+    other = estimates("e", [("a, b", Estimate(1 / 3, float("nan"), 5.0))])
+    lines = as_csv([table, other]).splitlines()
+    assert lines[0] == "table,name,n,value,standard_error,independent_samples,theory,deviation"
+    assert lines[2] == f"t,1,{1 / 7!r},,,,,"
+    assert lines[11] == f'e,"a, b",,{1 / 3!r},,5.0,,'
+    assert other.shown == [["a, b", "0.333333", "nan", "5", "", ""]]
+    assert as_csv([Table("empty", ("",), [])]) == "table\n"

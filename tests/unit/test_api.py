@@ -1,0 +1,198 @@
+"""The Python interface: its names, what they import and when, and that results are plain values."""
+
+import ast
+import dataclasses
+import json
+import lzma
+import shutil
+import subprocess
+import sys
+from types import ModuleType, SimpleNamespace
+
+import pytest
+from support import ROOT
+
+import idealgas
+from idealgas.analysis import registry
+
+HEAVY = {"numpy", "numba", "h5py", "scipy", "pydantic", "matplotlib", "pandas", "pymbar", "rich", "click"}
+LOGS = ROOT / "tests" / "cases" / "logs"
+PACKED = ".h5.xz"
+TYPES = ("Estimate", "EventBatch", "Kind", "Log", "LogError", "LogState", "Progress", "Scene", "SceneError", "Summary")
+
+
+def python(code, *arguments, folder=None):
+    """What a Python of its own prints."""
+    done = subprocess.run([sys.executable, "-c", code, *arguments], cwd=folder, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory):
+    """Paths of old logs of many kinds of gas, by name."""
+    folder = tmp_path_factory.mktemp("logs")
+    for packed in LOGS.glob(f"*{PACKED}"):
+        (folder / packed.name.removesuffix(".xz")).write_bytes(lzma.decompress(packed.read_bytes()))
+    return {path.stem: path for path in sorted(folder.glob("*.h5"))}
+
+
+# ── names ──
+
+
+def test_dir_shows_every_name():
+    assert dir(idealgas) == sorted(idealgas.__all__)
+    functions = {"load_scene", "parse_scene", "simulate", "resume", "open_log", "analyse", *registry.NAMES}
+    assert set(idealgas.__all__) == functions | {*TYPES, "UserError", "__version__"}
+    assert all(callable(getattr(idealgas, name)) and getattr(idealgas, name).__doc__ for name in functions)
+    assert all(isinstance(getattr(idealgas, name), type) for name in TYPES)
+
+
+def test_types_are_declared_as_they_are():
+    """What type checkers see of the package is what it gives."""
+    tree = ast.parse((ROOT / "idealgas" / "__init__.py").read_text(encoding="utf-8"))
+    (block,) = (node for node in tree.body if isinstance(node, ast.If) and isinstance(node.test, ast.Name))
+    declared = {}
+    for line in block.body:
+        assert isinstance(line, ast.ImportFrom)
+        module = __import__(line.module, fromlist=["_"])
+        declared |= {alias.name: getattr(module, alias.name) for alias in line.names}
+    assert declared.keys() == set(idealgas.__all__) - {"__version__"}
+    for name, value in declared.items():
+        found = getattr(idealgas, name)
+        assert found is value or found.__wrapped__ is value, name
+
+
+def test_unknown_names():
+    with pytest.raises(AttributeError, match=r"^module 'idealgas' has no attribute 'presure'$"):
+        idealgas.presure  # noqa: B018
+    with pytest.raises(ImportError, match="presure"):
+        exec("from idealgas import presure")
+
+
+def test_nothing_heavy_is_imported_before_it_is_used():
+    code = "import sys, idealgas; dir(idealgas), idealgas.UserError; print(*{m.split('.')[0] for m in sys.modules})"
+    assert not HEAVY & set(python(code).split())
+
+
+def test_no_module_shadows_a_name():
+    """Whatever has been imported before."""
+    code = """if True:
+        import importlib, pkgutil, types, idealgas
+        for module in pkgutil.walk_packages(idealgas.__path__, "idealgas."):
+            if not module.name.endswith("__main__"):
+                importlib.import_module(module.name)
+        print(*(name for name in idealgas.__all__ if isinstance(getattr(idealgas, name), types.ModuleType)))
+        print(idealgas.simulate.__name__, type(idealgas.analysis.pressure).__name__, idealgas.pressure.__name__)
+    """
+    assert python(code) == "\nsimulate module pressure\n"
+
+
+def test_a_line_in_the_registry_is_a_name(monkeypatch):
+    def made_up(log):
+        """Nothing."""
+
+    package = ModuleType("idealgas.analysis.made_up")
+    package.ANALYSIS = SimpleNamespace(function=made_up)
+    monkeypatch.setitem(sys.modules, package.__name__, package)
+    monkeypatch.setattr(registry, "NAMES", (*registry.NAMES, "made_up"))
+    assert "made_up" in dir(idealgas)
+    assert idealgas.made_up is made_up
+    assert idealgas.pressure is idealgas.pressure
+
+
+# ── scenes, runs and logs ──
+
+SCENE = """
+[scene]
+seed = 4
+
+[box]
+size = [6, 4]
+
+[[species]]
+name = "gas"
+count = 60
+radius = 0.1
+temperature = 1.0
+
+[run]
+until = 400
+"""
+
+
+def test_run_resume_and_analyse(tmp_path):
+    path, shares = tmp_path / "run.h5", []
+    scene = idealgas.parse_scene(SCENE)
+    stopped = idealgas.simulate(
+        scene, path, on_progress=lambda progress: shares.append(progress.share), interrupted=lambda: True
+    )
+    assert not stopped.completed
+    assert shares
+    with pytest.raises(idealgas.LogError, match="exists already"):
+        idealgas.simulate(scene, path)
+    idealgas.resume(path)
+    summary = idealgas.resume(path, "run.until=500")
+    assert (summary.completed, summary.end_time) == (True, 500.0)
+    assert json.loads(json.dumps(summary.as_dict())) == dataclasses.asdict(summary)
+    with idealgas.open_log(path) as log:
+        assert log.summary == summary.as_dict()
+        assert len(log) == summary.rows
+        assert idealgas.pressure(log, 50.0).as_dict() == idealgas.analyse(log, "pressure", start=50.0).as_dict()
+
+
+def test_overrides_as_one_text_or_several():
+    assert idealgas.parse_scene(SCENE, overrides="run.until=9").run.until == 9
+    scene = idealgas.parse_scene(SCENE, overrides=["run.until=9", "species.gas.count=5"])
+    assert (scene.run.until, scene.species[0].count) == (9, 5)
+
+
+def test_errors_of_the_user_are_lines(logs):
+    with pytest.raises(idealgas.SceneError) as found:
+        idealgas.parse_scene(SCENE.replace("radius", "radus"))
+    assert isinstance(found.value, idealgas.UserError)
+    assert any("radus" in line for line in found.value.errors)
+    with idealgas.open_log(logs["plain"]) as log:
+        for call in (
+            lambda: idealgas.analyse(log, "presure"),
+            lambda: idealgas.histogram(log, "sped"),
+            lambda: idealgas.profile(log, along="z"),
+            lambda: idealgas.profile(log, bins=0),
+            lambda: idealgas.pressure(log, start=-1.0),
+        ):
+            with pytest.raises(idealgas.UserError) as raised:
+                call()
+            assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("name", registry.NAMES)
+def test_results_are_plain_values(name, logs):
+    """Dataclasses whose `as_dict()` JSON takes as it is; those of analyses that have an answer for a log."""
+    answered = 0
+    for path in logs.values():
+        with idealgas.open_log(path) as log:
+            try:
+                result = getattr(idealgas, name)(log)
+            except idealgas.UserError:
+                continue
+        assert dataclasses.is_dataclass(result)
+        assert json.loads(json.dumps(result.as_dict(), allow_nan=False)) == result.as_dict()
+        answered += 1
+    assert answered
+
+
+def test_the_example_works(tmp_path):
+    shutil.copytree(ROOT / "configs", tmp_path / "configs")
+    lines = [line for line in idealgas.__doc__.splitlines() if line.startswith("    ") or not line]
+    printed = python("\n".join(line[4:] for line in lines), folder=tmp_path)
+    assert "pairs, virial" in printed
+
+
+def test_the_package_is_the_command():
+    run = [sys.executable, "-m", "idealgas"]
+    version = subprocess.run([*run, "--version"], capture_output=True, text=True, check=True).stdout
+    assert version == f"idealgas, version {idealgas.__version__}\n"
+    wrong = subprocess.run([*run, "info", "nowhere.h5"], capture_output=True, text=True)
+    assert (wrong.returncode, wrong.stdout, wrong.stderr.count("\n")) == (2, "", 1)
+    usage = subprocess.run([*run, "--help"], capture_output=True, text=True, check=True).stdout
+    assert usage.startswith("Usage: python -m idealgas ")
