@@ -7,7 +7,7 @@ from rounding import body, exact, gamma
 
 from idealgas.physics.box_side import arrival_delay, centre_range, inward_normal, side_contact
 from idealgas.physics.constants import NEVER
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:.*encountered")]
 

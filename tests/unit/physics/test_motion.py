@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from rounding import body, exact, gamma
 
-from idealgas.physics.motion import Gravity, acceleration_along, advance, position_after, velocity_after
+from idealgas.physics.gravity import Gravity, acceleration_along
+from idealgas.physics.motion import advance, position_after, velocity_after
 
 pytestmark = pytest.mark.interpreted
 

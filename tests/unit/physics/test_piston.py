@@ -8,7 +8,7 @@ import pytest
 from rounding import body, exact, gamma
 
 from idealgas.physics.constants import NEVER
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.piston import (
     advance_piston,
     collide_with_piston,

@@ -9,7 +9,7 @@ import pytest
 from rounding import U, body, exact, gamma
 
 from idealgas.physics.constants import NEVER
-from idealgas.physics.motion import Gravity
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.wall import (
     accelerated_body_delay,
