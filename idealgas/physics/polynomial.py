@@ -16,7 +16,7 @@ def cubic(b, c, d, e, t):
 
 @inline
 def parabola(x, v, a, t):
-    """x + v t + ½ a t²; as x + (v + ½ a t) t it keeps more digits near a return to x than summed term by term."""
+    """Value of x + v t + ½ a t²; as x + (v + ½ a t) t it keeps more digits near a return to x than term by term."""
     return x + (v + 0.5 * a * t) * t
 
 

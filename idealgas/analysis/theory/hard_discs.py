@@ -159,7 +159,7 @@ def finite_speed_factor(dof: float) -> float:
 def mean_speed(temperature: float, mass: float, dof: float = math.inf) -> float: ...
 @overload
 def mean_speed(temperature: float, mass: np.ndarray, dof: float = math.inf) -> np.ndarray: ...
-def mean_speed(temperature, mass, dof=math.inf):
+def mean_speed(temperature: float, mass: float | np.ndarray, dof: float = math.inf) -> float | np.ndarray:
     """⟨v⟩ = √(πT/2m) of discs of a mass, or of each of an array of masses; of a reduced mass a mean relative speed."""
     return np.sqrt(math.pi * temperature / (2 * mass)) * finite_speed_factor(dof)
 
