@@ -1,4 +1,4 @@
-"""Density and temperature in strips across an axis, averaged over time, and the heat that walls give."""
+"""Density and temperature in strips along an axis, averaged over time, and the heat given by walls."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,12 +16,16 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 FEWEST_FRAMES = 32
-"""Frames with a disc in a strip, below which its temperature is not told."""
+"""Smallest number of frames with a disc in a strip for an estimate of its temperature."""
 
 
 @dataclass(frozen=True)
 class SpeciesProfile:
-    """Of one species, a value a strip: discs per area, m v²/2 a disc, and I ω² a disc where discs have spin."""
+    """Profiles of one species, one value for each strip.
+
+    species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, energy. spin: mean I ω² per
+    disc, energy; None for discs without spin.
+    """
 
     species: str
     density: tuple[Estimate, ...]
@@ -37,9 +41,11 @@ class SpeciesProfile:
 
 @dataclass(frozen=True)
 class Profile:
-    """axis: 0 or 1. edges: (K + 1,) of the strips, length. law: of the theory, in words; None without one.
+    """Profiles of all species in K strips along one axis.
 
-    frames: that the averages are taken from. heat: energy per time that each wall gives to the discs, by its name.
+    window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. frames: number
+    of averaged frames. law: name of the theory; None without one. species: profiles of each species. heat: energy per
+    time that each wall gives to the discs, by the name of the wall.
     """
 
     window: Window
@@ -52,7 +58,7 @@ class Profile:
 
     @property
     def middles(self) -> np.ndarray:
-        """(K,)."""
+        """Coordinates (K,) of the centres of the strips, length."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def as_dict(self) -> dict[str, Any]:
@@ -76,10 +82,20 @@ def profile(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Profile:
-    """Measure a log in strips of equal width over all that centres reach, by default from detected equilibrium on.
+    """Measure profiles in strips of equal width over the range of the centres, by default from detected equilibrium.
 
-    along: "x" or "y"; by default the axis along which something changes. Frames are as far apart as the events of a
-    disc, or farther. UserError without events or positions, or if the window is empty.
+    Frames are at least the mean time between two events of a disc apart.
+
+    Args:
+        log: the log to analyse.
+        along: "x" or "y"; None for the axis of gravity or of two thermal sides, else x.
+        bins: number of strips.
+        start: start of the window, time.
+        end: end of the window, time.
+        progress: called with the number of frames read and the number of all frames.
+
+    Raises:
+        UserError: if the log has no events or positions, or if the window is empty.
     """
     if not log.has_positions:
         raise UserError(f"{log.path}: discs of this method have no positions")
@@ -101,7 +117,7 @@ def profile(
 def _collect(
     log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Callable[[int, int], None] | None
 ) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """(F, S, K, 3) sums over the discs of a strip of 1, m v²/2 and I ω²; and what stands still in equilibrium."""
+    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of each strip, and series that equilibrium makes stationary."""
     gas, frame = log.discs, drift(log)
     shape = (len(gas.species_names), len(edges) - 1)
     sums = np.zeros((len(times), *shape, 3))
@@ -126,7 +142,7 @@ def _collect(
 def _of_species(
     name: str, sums: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
 ) -> SpeciesProfile:
-    """sums: (F, K, 3). strip: area."""
+    """Profiles of one species from its sums (F, K, 3); strip: area of a strip, length²."""
     strips = range(sums.shape[1])
     n, t = (None, None) if expected is None else (expected.density, expected.temperature)
 
@@ -144,7 +160,7 @@ def _of_species(
 
 
 def _heat(log: Log, window: Window) -> dict[str, Estimate]:
-    """Energy per time by the account of every wall that gave any, from sample to sample of it in the window."""
+    """Energy per time that each wall gave to the discs, from the stored samples in the window, by the name of the wall."""
     if "wall_energy" not in log.observables:
         return {}
     time, given = log.observables["wall_energy"]
