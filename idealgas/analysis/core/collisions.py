@@ -23,7 +23,7 @@ class CollisionRate:
     rate: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"species": self.species, "other": self.other, "rate": self.rate.as_dict()}
 
 
@@ -41,7 +41,7 @@ class FreePath:
     speed: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"path": self.path.as_dict(), "time": self.time.as_dict(), "speed": self.speed.as_dict()}
         return {"species": self.species, **values}
 

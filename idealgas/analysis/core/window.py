@@ -49,7 +49,7 @@ class Window:
         return sums[self.first :] / self.width
 
     def as_dict(self) -> dict[str, float | bool]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"start": self.start, "end": self.end, "equilibration_detected": self.detected}
 
 

@@ -42,7 +42,7 @@ class Evolution:
     balance: np.ndarray
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         lists = {name: values.tolist() for name, values in vars(self).items() if isinstance(values, np.ndarray)}
         tables = {name: {key: v.tolist() for key, v in getattr(self, name).items()} for name in TABLES}
         law = None

@@ -29,7 +29,7 @@ class Route:
     value: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"route": self.name, "kind": self.kind, "value": self.value.as_dict()}
 
 
@@ -46,7 +46,7 @@ class HeatCapacity:
     logs: tuple[Measured, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "routes": [route.as_dict() for route in self.routes],
             "refused": self.refused,

@@ -58,7 +58,7 @@ class Measured:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "path": self.path,
             "kind": self.kind,

@@ -67,7 +67,7 @@ class Distribution:
     tests: tuple[Test, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         middle = (self.edges[1:] + self.edges[:-1]) / 2
         return {
             "name": self.name,
@@ -92,7 +92,7 @@ class Histogram:
     distributions: tuple[Distribution, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "quantity": self.quantity,
             "unit": self.unit,

@@ -46,7 +46,7 @@ class State:
     henderson: float
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "packing_fraction": self.packing_fraction,
             "number": self.number,
@@ -78,7 +78,7 @@ class EquationOfState:
         return agree(state.infinite for state in self.states)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "states": [state.as_dict() for state in self.states],
             "B2": self.b2.as_dict() if self.b2 else None,

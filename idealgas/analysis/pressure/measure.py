@@ -38,7 +38,7 @@ class Route:
     compressibility: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"pressure": self.pressure.as_dict(), "compressibility": self.compressibility.as_dict()}
         return {"route": self.name, **values}
 
@@ -71,7 +71,7 @@ class Pressure:
         return agree(route.compressibility for route in self.routes if route.name in (WALLS, PAIRS))
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "number": self.number,

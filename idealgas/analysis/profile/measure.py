@@ -33,7 +33,7 @@ class SpeciesProfile:
     spin: tuple[Estimate, ...] | None
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         columns = {"density": self.density, "temperature": self.temperature, "spin": self.spin}
         values = {name: [e.as_dict() for e in column] for name, column in columns.items() if column is not None}
         return {"species": self.species, **values}
@@ -62,7 +62,7 @@ class Profile:
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "axis": "xy"[self.axis],

@@ -30,7 +30,7 @@ class SpeciesTemperature:
     history: np.ndarray
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"x": self.x.as_dict(), "y": self.y.as_dict(), "both": self.both.as_dict()}
         return {"species": self.species, "number": self.number, **values, "history": self.history.tolist()}
 
@@ -53,7 +53,7 @@ class Temperature:
         return self.species[:1] if len(self.species) == 2 else self.species
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "expected": self.expected,

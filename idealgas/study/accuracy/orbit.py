@@ -96,7 +96,7 @@ class OrbitStudy:
     time_per_digit: float
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return asdict(self)
 
     def sentences(self) -> list[str]:

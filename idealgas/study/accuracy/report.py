@@ -196,7 +196,7 @@ def accuracy_dict(found: Accuracy) -> dict[str, Any]:
 
 
 def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
-    """For JSON."""
+    """Plain values by name, ready for JSON."""
     return asdict(found) | {"sentences": found.sentences()}
 
 
