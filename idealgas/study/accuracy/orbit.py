@@ -1,8 +1,9 @@
-"""How long an unstable periodic orbit of three discs lives, by the digits that the arithmetic carries.
+"""Lifetime of an unstable periodic orbit of three discs, by the number of digits of the arithmetic.
 
-Discs that meet with the line of centres at 45° to their motion are both turned by 90°. The middle disc dances in turn
-with the disc on its right and with that on its left: they meet, one goes down and one up, the sides send them back, and
-they meet again. Box sides, radius and speed are free; all else follows from the wish to arrive at the same time.
+Two discs that collide with the line of centres at 45° to their motion are both deflected by 90°. The middle disc
+collides in turn with the disc on its right and with the disc on its left: after the collision one moves down and one
+up, the sides reflect them, and they collide again. Box sides, radius and speed are free; all other lengths follow from
+the condition that the discs arrive at the same time.
 """
 
 import math
@@ -22,18 +23,21 @@ DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-
 """Decimal digits of a number in each precision."""
 
 PLACEMENTS = 25
-SPREAD = 0.25  # relative: how much box sides and radii differ among placements
-LEAST_ROOM = 0.1  # radii: shortest flights between meetings and before a wall
-MOST_PERIODS = 200  # of a trial; what has not broken by then never will
-AGREEMENT = 1e-9  # of the box: how well a scene must fit
+SPREAD = 0.25  # relative variation of box sides and radii
+LEAST_ROOM = 0.1  # radii: shortest flights between collisions and before a wall
+MOST_PERIODS = 200  # length of a run; an orbit that is not broken by then never breaks
+AGREEMENT = 1e-9  # largest deviation of the start of a scene from the orbit, relative to the box
 
 LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4
 DANCE = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
-"""Whom each disc meets, in a period."""
+"""Partners (discs or sides) that each disc meets in one period, in order."""
 
 
 class Orbit(NamedTuple):
-    """An orbit at its start, with 50 digits. x, y: positions, length. The middle disc flies right, the others left."""
+    """Start of an orbit at speed 1, with 50 digits; the middle disc moves right, the others left.
+
+    x, y: coordinates of the discs, length. period: time. room: shortest flight, length.
+    """
 
     x: tuple[Decimal, ...]
     y: tuple[Decimal, ...]
@@ -42,10 +46,10 @@ class Orbit(NamedTuple):
 
 
 def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
-    """The orbit in a box at speed 1; there is one if the room for its flights is positive.
+    """Orbit in a box of width and height `box` at speed 1; it exists if the room for its flights is positive.
 
-    d is how far discs in contact are apart along x and y; drop how long a disc is away below or above; flight how far
-    the middle disc flies between its two dances.
+    In the code, d is the distance along x and along y of two discs in contact, drop the path of a disc below or above,
+    and flight the path of the middle disc from one partner to the other.
     """
     with localcontext() as context:
         context.prec = 50
@@ -60,7 +64,7 @@ def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
 
 
 def is_on_orbit(gas: Gas) -> bool:
-    """Whether the discs stand and move, to rounding, as on the orbit that fits their box and radius."""
+    """Whether positions and velocities of a gas are, within rounding, those of the orbit in its box."""
     if len(gas) != 3 or np.ptp(gas.radius) or np.ptp(gas.mass):
         return False
     orbit = three_disc_orbit(gas.box, float(gas.radius[0]))
