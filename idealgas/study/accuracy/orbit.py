@@ -76,10 +76,11 @@ def is_on_orbit(gas: Gas) -> bool:
 
 @dataclass(frozen=True)
 class Survival:
-    """Of the orbit in one precision: time units at speed 1 until the first meeting that the exact motion has not.
+    """Lifetime of the orbit in one precision: time at speed 1 until the first collision that the exact motion lacks.
 
-    scene: in the scene's own box; None if it never broke. times: in other boxes, those that broke. unbroken: the number
-    of those that did not in MOST_PERIODS. median: of all, with so many periods for these.
+    precision: name of the arithmetic. digits: its decimal digits. scene: lifetime in the box of the scene; None if the
+    orbit never broke. times: lifetimes in other boxes, for orbits that broke. unbroken: number of orbits in other boxes
+    that did not break in MOST_PERIODS periods. median: of all lifetimes, with MOST_PERIODS periods for unbroken orbits.
     """
 
     precision: str
@@ -92,7 +93,11 @@ class Survival:
 
 @dataclass(frozen=True)
 class OrbitStudy:
-    """The survival in each precision, and time per decimal digit by a line through the medians."""
+    """Lifetime of the orbit in every precision.
+
+    period: of the orbit in the scene, time at speed 1. placements: number of other boxes and radii. survivals: lifetime
+    in each precision. time_per_digit: slope of a line through the medians, time per decimal digit.
+    """
 
     period: float
     placements: int
@@ -104,7 +109,7 @@ class OrbitStudy:
         return asdict(self)
 
     def sentences(self) -> list[str]:
-        """What was found, in words."""
+        """Results in sentences."""
         found = self.survivals
         medians = ", ".join(f"{s.median:.3g} in {s.precision} ({s.digits:.1f} digits)" for s in found)
         unbroken = sum(s.unbroken for s in found)
@@ -121,7 +126,7 @@ class OrbitStudy:
 
 
 def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
-    """The start of an orbit with all the digits of a precision; gas: its discs, rounded."""
+    """Start of an orbit with all digits of a precision; gas: the same discs in float64."""
 
     def column(values: tuple[Decimal, ...]) -> np.ndarray:
         high = np.array([float(value) for value in values])
@@ -137,7 +142,7 @@ def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
 
 
 def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
-    """The discs of an orbit, rounded."""
+    """Gas of the discs of an orbit, rounded to float64."""
     return Gas(
         box=box,
         position=np.array([orbit.x, orbit.y], float).T.copy(),
@@ -150,7 +155,7 @@ def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
 
 
 def survival(box: tuple[float, float], radius: float, precision: str) -> float:
-    """Time until a disc first meets what it would not in the exact motion; infinite if it never does."""
+    """Time until the first collision that the exact motion lacks; infinite if there is none in MOST_PERIODS periods."""
     orbit = three_disc_orbit(box, radius)
     gas = orbit_gas(orbit, box, radius)
     simulation = Simulation(gas, PreciseBruteForce(precision, columns_at(orbit, gas, precision)))
@@ -168,7 +173,7 @@ def survival(box: tuple[float, float], radius: float, precision: str) -> float:
 
 
 def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, float], float]]:
-    """Boxes and radii around those of a scene, for which there is an orbit."""
+    """Random boxes and radii near those of a gas for which the orbit exists."""
     random = np.random.default_rng(seed)
     found: list[tuple[tuple[float, float], float]] = []
     while len(found) < number:
@@ -182,7 +187,11 @@ def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, floa
 def study_orbit(
     gas: Gas, number: int = PLACEMENTS, seed: int = 0, progress: Callable[[str, float], None] = lambda what, share: None
 ) -> OrbitStudy:
-    """Survival of the orbit of a gas that `is_on_orbit`, and of others like it, in every precision."""
+    """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in every precision.
+
+    gas: start on the orbit (`is_on_orbit`). seed: of the random boxes. progress: called with the name of the work that
+    is being done and its share that is done.
+    """
     boxes = placements(gas, number, seed)
     period = float(three_disc_orbit(gas.box, float(gas.radius[0])).period)
     found = []
