@@ -1,4 +1,4 @@
-"""How often discs of each species meet, how far they fly in between, and what kinetic theory says."""
+"""Collision rates and mean free paths of each species of discs, measured and by kinetic theory."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,20 +16,24 @@ from idealgas.analysis.theory import hard_discs
 
 @dataclass(frozen=True)
 class CollisionRate:
-    """Collisions per time of one disc of `species` with discs of the species `other`."""
+    """Collision rate of one disc of `species` with all discs of the species `other`, in 1/time."""
 
     species: str
     other: str
     rate: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"species": self.species, "other": self.other, "rate": self.rate.as_dict()}
 
 
 @dataclass(frozen=True)
 class FreePath:
-    """Mean path and mean time of a disc between collisions with discs, and its mean speed."""
+    """Mean free path, mean free time and mean speed of the discs of one species.
+
+    path: mean length of path between successive collisions of a disc with other discs, length. time: mean time between
+    them, time. speed: mean speed of a disc, length/time.
+    """
 
     species: str
     path: Estimate
@@ -37,7 +41,7 @@ class FreePath:
     speed: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"path": self.path.as_dict(), "time": self.time.as_dict(), "speed": self.speed.as_dict()}
         return {"species": self.species, **values}
 
@@ -49,12 +53,21 @@ def expected_rates(
     periodic: tuple[bool, bool] = (False, False),
     has_positions: bool = True,
 ) -> np.ndarray:
-    """Γ_ij (S, S) by theory for all discs of a box, or of a gas without one; not a number where the fluid freezes.
+    """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, in 1/time.
 
-    periodic: which axes of the box are periodic.
+    The product of the contacts per relative speed, from which the pressure follows as well
+    (`hard_discs.box_compressibility`), and of the mean relative speed, which is a little larger at fixed total energy
+    than by Maxwell-Boltzmann's law.
 
-    The contacts that the pressure comes from (`hard_discs.box_compressibility`), met at relative speeds that a fixed
-    total energy makes a little larger than Maxwell and Boltzmann's.
+    Args:
+        discs: the S species of the gas.
+        box: width and height of the box, length.
+        equilibrium: the ensemble that the gas belongs to.
+        periodic: whether the box is periodic along x and along y.
+        has_positions: False for a method whose discs have no positions.
+
+    Returns:
+        Rates of shape (S, S); not a number above the freezing density, where the theory of the fluid ends.
     """
     if has_positions:
         contacts = hard_discs.box_contacts(discs.radius, discs.number, box, periodic)
@@ -66,7 +79,10 @@ def expected_rates(
 def collision_rates(
     discs: Composition, expected: np.ndarray, window: Window, impacts: Impacts
 ) -> tuple[CollisionRate, ...]:
-    """Rates of all pairs of species. expected: as `expected_rates` gives them."""
+    """Measured collision rates of all ordered pairs of species, in 1/time.
+
+    expected: (S, S) rates by theory, from `expected_rates`.
+    """
     counts = window.of(impacts.collisions)
 
     def rate(i: int, j: int) -> Estimate:
@@ -81,7 +97,10 @@ def collision_rates(
 def free_paths(
     discs: Composition, expected: np.ndarray, equilibrium: Ensemble, window: Window, moments: Moments, impacts: Impacts
 ) -> tuple[FreePath, ...]:
-    """Mean free path λ = ⟨v⟩/Γ and time 1/Γ of each species. expected: as `expected_rates` gives them."""
+    """Mean free path λ = ⟨v⟩/Γ, mean free time 1/Γ and mean speed ⟨v⟩ of each species.
+
+    expected: (S, S) collision rates by theory in 1/time, from `expected_rates`.
+    """
     counts = window.of(impacts.collisions)
     paths = []
     for i, (name, mass, number) in enumerate(zip(discs.name, discs.mass, discs.number, strict=True)):

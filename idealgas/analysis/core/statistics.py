@@ -16,26 +16,26 @@ from scipy import stats
 
 from idealgas.errors import UserError
 
-logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
+logging.getLogger("pymbar").setLevel(logging.ERROR)  # pymbar logs at import that JAX would be faster
 from pymbar import timeseries  # noqa: E402
 
 ENOUGH_REPLICATES = 20
-"""Independent runs from which the spread among them tells the error; with fewer their own errors do."""
+"""Number of independent runs from which on the error comes from their spread; with fewer, from their own errors."""
 
 LONG_BLOCKS = 32
-"""Blocks that errors of anticorrelated series are taken from."""
+"""Number of long blocks from which the errors of anticorrelated series are computed."""
 
 TOLERANCE = 4.0
-"""Standard errors by which measurement and theory may differ where they are checked."""
+"""Largest allowed deviation between measurement and theory in a check, in standard errors."""
 
 
 @dataclass(frozen=True)
 class Estimate:
     """A measured number with its error bar.
 
-    value: in the unit of the quantity. standard_error: of the value, nan if there are too few samples for one.
-    independent_samples: number of them that the error comes from, inf for what is known exactly. theory: value that
-    theory expects of this gas; None where no theory applies.
+    value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
+    there are too few samples. independent_samples: number of independent samples behind the error; inf for a quantity
+    that is known exactly. theory: value expected by theory, in the same unit; None where no theory applies.
     """
 
     value: float
@@ -45,19 +45,19 @@ class Estimate:
 
     @property
     def deviation(self) -> float | None:
-        """(value - theory) in standard errors; None without theory or without an error bar."""
+        """Deviation value - theory in standard errors; None without theory or without an error bar."""
         if self.theory is None or not self.standard_error > 0:
             return None
         return (self.value - self.theory) / self.standard_error
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval of a level, 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
+        """Confidence interval at a level between 0 and 1, by Student's t with independent_samples - 1 degrees of freedom."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
 
     @classmethod
     def from_dict(cls, found: Mapping[str, float | None]) -> "Estimate":
-        """What `as_dict` was made from."""
+        """Make an estimate again from the values of `as_dict`."""
         value, error, samples = (found[name] for name in ("value", "standard_error", "independent_samples"))
         return cls(
             math.nan if value is None else value,
@@ -67,13 +67,17 @@ class Estimate:
         )
 
     def as_dict(self) -> dict[str, float | None]:
-        """Fields and deviation by name, for JSON: None for what is not finite."""
+        """Fields and deviation by name, ready for JSON; None for numbers that are not finite."""
         fields = asdict(self) | {"deviation": self.deviation}
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
 
 
 def agree(found: Iterable[Estimate]) -> bool:
-    """Whether every value is within TOLERANCE standard errors of its theory. UserError if that cannot be said."""
+    """Whether every value agrees with its theory within TOLERANCE standard errors.
+
+    Raises:
+        UserError: if no value has both a theory and an error bar.
+    """
     deviations = [one.deviation for one in found]
     if any(deviation is None or not math.isfinite(deviation) for deviation in deviations):
         raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
@@ -81,21 +85,27 @@ def agree(found: Iterable[Estimate]) -> bool:
 
 
 def inefficiency(series: np.ndarray) -> float:
-    """Statistical inefficiency g ≥ 1: samples per independent sample; 1 for a series too short or constant to tell."""
+    """Statistical inefficiency g ≥ 1 of a series: samples per independent sample; 1 if it is too short or constant."""
     if len(series) < 4 or not np.ptp(series) > 1e-12 * np.abs(series).max():
         return 1.0
     return float(timeseries.statistical_inefficiency(series))
 
 
 def ensemble_inefficiency(series: np.ndarray) -> float:
-    """The same from many series of one process, such as all discs of a species. series: (samples, members)."""
+    """Statistical inefficiency g ≥ 1 from many series of one process, such as all discs of a species.
+
+    series: array of shape (samples, members).
+    """
     if len(series) < 4 or np.ptp(series) == 0:
         return 1.0
     return float(timeseries.statistical_inefficiency_multiple(list(series.T)))
 
 
 def equilibration(*series: np.ndarray) -> int:
-    """Index from which every series is stationary: the start that leaves the most independent samples."""
+    """Index from which all series are stationary: the start that leaves the largest number of independent samples.
+
+    Source: Chodera, J. Chem. Theory Comput. 12, 1799 (2016).
+    """
     start = 0
     for values in series:
         if len(values) >= 16 and np.ptp(values) > 1e-12 * np.abs(values).max():
@@ -104,15 +114,15 @@ def equilibration(*series: np.ndarray) -> int:
 
 
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | None = None) -> Estimate:
-    """function(mean of each series), its error by linear propagation through the series' joint fluctuations.
+    """Estimate of function(means of the series), with its error by linear propagation of their joint fluctuations.
 
-    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is one correlated series, so that covariances need no bookkeeping: a mean is
+    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. Examples: a mean is
     `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`.
     """
     columns = np.array(series, float)
     means = columns.mean(axis=1)
     influence = np.zeros(columns.shape[1])
-    with np.errstate(divide="ignore", invalid="ignore"):  # a ratio of what never happened is not a number
+    with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives not a number
         for k, column in enumerate(columns):
             if (step := 1e-3 * column.std()) > 0:
                 shift = np.zeros(len(means))
@@ -125,11 +135,11 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | 
 
 
 def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
-    """Standard error and independent samples of a mean.
+    """Standard error of the mean of a series, and its number of independent samples.
 
-    Inefficiencies below 1 are beyond pymbar; yet what walls receive swings back and forth with the sound in the box.
-    So longer blocks decide where they give an error clearly smaller than chance would (Flyvbjerg & Petersen, J. Chem.
-    Phys. 91, 461 (1989)).
+    pymbar never gives an inefficiency below 1, but the momentum that walls receive is anticorrelated by sound waves in
+    the box. Therefore the error comes from longer blocks where these give a clearly smaller error than chance would:
+    Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
     """
     if len(series) < 2:
         return math.nan, float(len(series))
@@ -143,26 +153,26 @@ def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
 
 
 def mean(series: np.ndarray, theory: float | None = None) -> Estimate:
-    """Mean of one series."""
+    """Estimate of the mean of one correlated series."""
     return estimate(lambda a: a, series, theory=theory)
 
 
 def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: float | None = None) -> Estimate:
-    """Ratio of two means."""
+    """Estimate of the ratio of the means of two correlated series."""
     return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
 
 
 def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Kolmogorov and Smirnov's distance: the largest between the distribution function of samples and a law's, `cdf`.
+    """Kolmogorov-Smirnov distance: largest difference between the distribution function of samples and that of a law.
 
-    Where its probability by chance is asked for as well, `scipy.stats.kstest` gives both.
+    samples: (n,), values. cdf: distribution function of the law. `scipy.stats.kstest` gives the p-value as well.
     """
     law, steps = cdf(np.sort(samples)), np.arange(len(samples) + 1) / len(samples)
     return float(max((steps[1:] - law).max(), (law - steps[:-1]).max()))
 
 
 def block_averages(series: np.ndarray, blocks: int) -> np.ndarray:
-    """Averages over `blocks` equal stretches of a series; samples that do not fill the last one are left out."""
+    """Averages of a series over `blocks` blocks of equal length; samples that remain at the end are left out."""
     length = len(series) // blocks
     return np.asarray(series)[: length * blocks].reshape(blocks, length).mean(axis=1)
 
@@ -175,10 +185,10 @@ def bootstrap(
     resamples: int = 2000,
     theory: float | None = None,
 ) -> Estimate:
-    """function(replicates) with its error from resampling independent replicates (first axis) with replacement.
+    """Estimate of function(replicates), with its error by bootstrap over the independent replicates on the first axis.
 
-    The spread of a bootstrap is that of n - 1 degrees of freedom over n, which is made good: Efron & Tibshirani, An
-    Introduction to the Bootstrap (1993), eq. 5.12.
+    The bootstrap variance is multiplied by n/(n - 1), as it underestimates the variance of n replicates by this factor:
+    Efron & Tibshirani, An Introduction to the Bootstrap (1993), eq. 5.12.
     """
     replicates = np.asarray(replicates)
     n = len(replicates)
@@ -188,7 +198,7 @@ def bootstrap(
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
-    """Mean of the same quantity over independent runs: with enough of them by bootstrap, else by their own errors."""
+    """Mean of one quantity over independent runs; its error by bootstrap with enough runs, else from their own errors."""
     values, theory = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory=theory)
@@ -197,6 +207,6 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:
-    """Mean of what theory says of each run; None if it is silent on one."""
+    """Mean of the theoretical values of all runs; None if one run has no theoretical value."""
     known = [theory for theory in theories if theory is not None]
     return sum(known) / len(known) if len(known) == len(theories) else None

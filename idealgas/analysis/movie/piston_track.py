@@ -1,4 +1,4 @@
-"""Where a piston is: known where discs hit it and where it was sampled, and falling in between."""
+"""Position of a piston in time: known at hits and samples, in between it moves on a parabola."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class PistonTrack:
     outward: float
 
     def at(self, time: float) -> float:
-        """Coordinate at a time: on the parabola through the knots before and after it, if no end stop is in its way."""
+        """Coordinate of the piston at a time, on the parabola through the known positions before and after it."""
         k = int(np.clip(self.time.searchsorted(time, "right") - 1, 0, len(self.time) - 2))
         before, after = time - self.time[k], time - self.time[k + 1]
         step = self.time[k + 1] - self.time[k]
@@ -32,7 +32,10 @@ class PistonTrack:
 
 
 def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
-    """Of the piston between two times; None if there is none, or too little to tell. Discs that hit it touch it."""
+    """Track of the piston between two times, from its samples and from the positions of discs that hit it.
+
+    None if there is no piston, or if its position is not known.
+    """
     piston = log.scene.piston
     if piston is None:
         return None

@@ -1,8 +1,9 @@
-"""Pressure from the walls and from the virial, and PV = NkT with its error bar.
+"""Pressure from the walls and from the virial, and the compressibility factor Z = PA/NT with its error bar.
 
-Clausius: in equilibrium 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ, pairs on the left, walls on the right. Each side gives
-Z = PA/NT by its own events; they agree up to what Σ r·p happens to be at the ends. The plain force per length of wall
-is larger by a wall correction, as the walls act on the discs' centres, a radius inwards.
+Virial theorem of Clausius, in equilibrium over a time τ: 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ, with pair collisions on the
+left and wall hits on the right. Each side gives Z by its own events; they differ only by the change of Σ r·p between
+the start and the end. The force per length of wall is larger than the pressure, as walls act on the centres of the
+discs one radius inside the box.
 """
 
 from collections.abc import Callable
@@ -25,26 +26,31 @@ from idealgas.log import Log
 from idealgas.sides import OUTWARD, SIDES, axis_of
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
-"""Names of the routes that theory is checked against."""
+"""Names of the two routes that `Pressure.check` compares with theory."""
 
 
 @dataclass(frozen=True)
 class Route:
-    """A pressure, and Z = PA/NT beside theory, by one way of measuring."""
+    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring."""
 
     name: str
     pressure: Estimate
     compressibility: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"pressure": self.pressure.as_dict(), "compressibility": self.compressibility.as_dict()}
         return {"route": self.name, **values}
 
 
 @dataclass(frozen=True)
 class Pressure:
-    """All routes; Z by each theory that applies; collision rates and free paths from the same events."""
+    """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
+
+    window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
+    packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
+    that applies. collision_rates: of each pair of species. free_paths: of each species.
+    """
 
     window: Window
     number: int
@@ -57,11 +63,15 @@ class Pressure:
     free_paths: tuple[FreePath, ...]
 
     def check(self) -> bool:
-        """Whether Z by the walls' and by the pairs' virial agrees with theory. UserError if it cannot be said."""
+        """Whether Z by the virial of the walls and of the pairs agrees with theory within TOLERANCE standard errors.
+
+        Raises:
+            UserError: if neither has both a theory and an error bar.
+        """
         return agree(route.compressibility for route in self.routes if route.name in (WALLS, PAIRS))
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "number": self.number,
@@ -118,7 +128,7 @@ IN_BOX = "hard discs, this box and N"
 
 
 def hard_disc_theories(discs: Composition, gas: Gas, periodic: tuple[bool, bool] = (False, False)) -> dict[str, float]:
-    """Z at the gas's packing fraction: of an ideal gas, and where they apply of hard discs."""
+    """Compressibility factor Z at the packing fraction of a gas, by the name of each theory that applies to it."""
     phi = gas.packing_fraction
     if phi > hard_discs.FREEZING:
         return {"ideal gas": 1.0}
@@ -149,7 +159,7 @@ def _routes(
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall: dict[int, float] = {}
-    if in_box is not None and np.ptp(discs.radius) == 0:  # walls act on centres, which reach a radius less far
+    if in_box is not None and np.ptp(discs.radius) == 0:  # walls act on the centres, one radius inside
         at_wall = {k: in_box * gas.box[axis_of(k)] / (gas.box[axis_of(k)] - 2 * discs.radius[0]) for k in sides}
     series: dict[str, tuple[np.ndarray, float | None]] = {
         f"{SIDES[k]} wall": (push[k] / length[k], at_wall.get(k)) for k in sides

@@ -1,4 +1,4 @@
-"""What kinetic theory expects of a scene before it is run."""
+"""Forecast of a run by kinetic theory: collision rates, number of events and size of the log."""
 
 import math
 from dataclasses import dataclass
@@ -15,15 +15,20 @@ from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
-"""Size of an event's row in the log, by compression..."""
+"""Bytes of one event row in the log, by the kind of compression."""
 
 MORE_BYTES = {"angular_velocity": {"gzip": 7, "none": 8}, "image": {"gzip": 2, "none": 8}}
-"""...and what further columns add to it."""
+"""Bytes that each further column adds to an event row, by the kind of compression."""
 
 
 @dataclass(frozen=True)
 class SpeciesForecast:
-    """One species at the start; collision_rate: collisions per disc and time in equilibrium, None if not known."""
+    """One species: its discs at the start, and its collision rate in equilibrium.
+
+    name: of the species. number: of its discs. radius: length. mass: mass. packing_fraction: area of its discs over the
+    area of the box. temperature: mean kinetic energy of its discs at the start, energy. collision_rate: collisions of
+    one disc with other discs per time, 1/time; None if theory does not know it.
+    """
 
     name: str
     number: int
@@ -36,10 +41,15 @@ class SpeciesForecast:
 
 @dataclass(frozen=True)
 class Forecast:
-    """The gas in equilibrium: rates per time, collision_rate per disc too. Of the run: duration to bytes.
+    """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    None stands for what the theory of a uniform gas that keeps its energy does not know; beyond: the effects that make
-    it so.
+    Values are None if the theory, which is that of a uniform gas of constant energy, does not know them.
+
+    number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
+    the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
+    discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
+    duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
+    bytes: size of the log. species: forecast of each species.
     """
 
     number: int
@@ -57,11 +67,15 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
-"""Properties of the gases that the theory knows."""
+"""Properties that a scene needs for the theory to apply."""
 
 
 class _Rates(NamedTuple):
-    """In equilibrium. per_disc: (species,), collisions per disc and time; pairs, hits, trials: numbers per time."""
+    """Rates of a gas in equilibrium, in 1/time.
+
+    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials: pair collisions,
+    wall hits and Monte Carlo trials of the whole gas.
+    """
 
     temperature: float
     per_disc: np.ndarray
@@ -71,7 +85,7 @@ class _Rates(NamedTuple):
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
-    """Rates by Enskog's theory at the temperature all species will share; sizes by the stop rule met first."""
+    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule."""
     beyond = scene.lacking(*KNOWN)
     rates = None if beyond else _rates(scene, gas)
     duration = _duration(scene, len(gas), rates)
@@ -106,7 +120,7 @@ def _bytes_a_row(scene: Scene) -> int:
 
 
 def _spin_energy(scene: Scene) -> float:
-    """At the start."""
+    """Total energy of the spins of all discs at the start, energy."""
     if (factor := scene.properties.inertia) is None:
         return 0.0
     energy = 0.0
@@ -126,7 +140,7 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, radius, mass, number)
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
-    per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # no disc meets itself
+    per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits)
 
@@ -134,7 +148,7 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
 def _rates_without_positions(
     scene: Scene, gas: Gas, temperature: float, radius: np.ndarray, mass: np.ndarray, number: np.ndarray
 ) -> _Rates:
-    """Of a gas without positions, whose pairs are tried at the rate of the fastest there may be."""
+    """Rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
     contacts = hard_discs.contacts_without_positions(radius, number, gas.box)
     per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
@@ -165,7 +179,10 @@ def _wall_hit_rate(
     temperature: float,
     periodic: tuple[bool, bool],
 ) -> float:
-    """Flux onto the lines that the centres reach; hard discs stand Z times as dense there as in the gas."""
+    """Wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
+
+    The density of hard discs at a wall is Z times the mean density.
+    """
     crowding = hard_discs.mixture_compressibility(radius, number, gas.area)
     rate = 0.0
     for r, m, n in zip(radius, mass, number, strict=True):
@@ -179,7 +196,7 @@ def _wall_hit_rate(
 
 
 def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
-    """Time at which the first stop rule is met."""
+    """Simulated time at which the first stop rule is met; None if theory does not know it."""
     run = scene.run
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None
