@@ -13,7 +13,7 @@ SPLITTER = 134217729.0  # 2^27 + 1
 
 @inline
 def two_sum(a, b):
-    """a + b and what rounding took from it, exactly."""
+    """A + b and what rounding took from it, exactly."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
@@ -36,7 +36,7 @@ def split(a):
 
 @inline
 def two_product(a, b):
-    """a * b and what rounding took from it, exactly."""
+    """A * b and what rounding took from it, exactly."""
     product = a * b
     a_high, a_low = split(a)
     b_high, b_low = split(b)
@@ -45,7 +45,7 @@ def two_product(a, b):
 
 @inline
 def add(a, b):
-    """a + b."""
+    """A + b."""
     high, low = two_sum(a[0], b[0])
     more, rest = two_sum(a[1], b[1])
     high, low = quick_two_sum(high, low + more)
@@ -54,20 +54,20 @@ def add(a, b):
 
 @inline
 def subtract(a, b):
-    """a - b."""
+    """A - b."""
     return add(a, (-b[0], -b[1]))
 
 
 @inline
 def multiply(a, b):
-    """a * b."""
+    """A * b."""
     high, low = two_product(a[0], b[0])
     return quick_two_sum(high, low + (a[0] * b[1] + a[1] * b[0]))
 
 
 @inline
 def divide(a, b):
-    """a / b, by long division; b is not 0."""
+    """A / b, by long division; b is not 0."""
     first = a[0] / b[0]
     rest = subtract(a, multiply(b, (first, 0.0)))
     second = rest[0] / b[0]
@@ -89,5 +89,5 @@ def root(a):
 
 @inline
 def less(a, b):
-    """a < b."""
+    """A < b."""
     return (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1]))

@@ -10,7 +10,7 @@ BISECTIONS = 200  # more than enough to close any interval of floats
 
 @inline
 def cubic(b, c, d, e, t):
-    """b t³ + c t² + d t + e."""
+    """B t³ + c t² + d t + e."""
     return ((b * t + c) * t + d) * t + e
 
 

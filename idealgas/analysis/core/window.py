@@ -114,7 +114,9 @@ def stationary_series(moments: Moments) -> list[np.ndarray]:
     """Series of block averages that are stationary in equilibrium and change before it."""
     energy = moments.flights[:, :, 1] + moments.flights[:, :, 2]
     fourth = moments.flights[:, :, 3].sum(axis=1)
-    shares = [share for share in energy.T if np.ptp(share) > 1e-9 * share.max()]  # without series that change only by rounding
+    shares = [
+        share for share in energy.T if np.ptp(share) > 1e-9 * share.max()
+    ]  # without series that change only by rounding
     return [fourth, *shares, *moments.events.T.astype(float)]
 
 
