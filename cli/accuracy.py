@@ -103,10 +103,8 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
     click.echo(
         "path error: distance from the double-double motion after 1 collision per disc; lost after: collisions per disc"
     )
-    click.echo("until this distance is 0.1; way back: distance from the start after reversing all velocities at 1 collision"
-    )
-    click.echo(
-        "per disc. All distances are rms, in diameters.")
+    click.echo("until this distance is 0.1; way back: distance from the start after reversing all velocities at 1")
+    click.echo("collision per disc. All distances are rms, in diameters.")
 
 
 def _number(value: float | None, form: str, factor: float = 1.0) -> str:

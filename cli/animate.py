@@ -17,8 +17,8 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
 @click.command()
 @log_argument
 @click.option("-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif.")
-@click.option("--from", "start", type=float, metavar="T", help="Start of the film, in simulated time.  [default: the log's start]")
-@click.option("--to", "end", type=float, metavar="T", help="End of the film, in simulated time.  [default: 20 seconds of film]")
+@click.option("--from", "start", type=float, metavar="T", help="Start, simulated time.  [default: the log's start]")
+@click.option("--to", "end", type=float, metavar="T", help="End, simulated time.  [default: 20 seconds of film]")
 @click.option(
     "--fps", default=25.0, show_default=True, type=click.FloatRange(1, 120), help="Frames per second of film."
 )
@@ -26,7 +26,7 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     "--speed", type=click.FloatRange(min=0, min_open=True), metavar="X",
     help="Simulated time per second of film.  [default: a disc crosses the box in 5 s]",
 )  # fmt: skip
-@click.option("--size", default="960x540", show_default=True, callback=_pixels, help="Width and height of a frame, pixels.")
+@click.option("--size", default="960x540", show_default=True, callback=_pixels, help="Size of a frame, pixels.")
 @click.option(
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species"]),
     help="Quantity shown by the colour of a disc.",

@@ -8,7 +8,7 @@ from ._analysis import log_argument, open_log, reading
 @click.command()
 @log_argument
 @click.option("-o", "--output", required=True, metavar="REPORT.html", help="The page to write.")
-@click.option("--from", "start", type=float, metavar="T", help="First time in the player, in simulated time.  [default: the log's start]")
+@click.option("--from", "start", type=float, metavar="T", help="First time in the player.  [default: the log's start]")
 def report(path: str, output: str, start: float | None) -> None:
     """Write one page with every analysis that applies, and a player that moves the discs.
 

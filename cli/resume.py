@@ -12,7 +12,9 @@ from ._options import json_option
 @log_argument
 @click.option("--until", type=float, metavar="T", help="End at this simulated time.")
 @click.option("--events", type=int, metavar="N", help="End after this number of events since time 0.")
-@click.option("--collisions-per-disc", type=float, metavar="X", help="End after this number of collisions per disc since time 0.")
+@click.option(
+    "--collisions-per-disc", type=float, metavar="X", help="End after this number of collisions per disc since time 0."
+)
 @click.option("--trials", type=int, metavar="N", help="With monte_carlo: end after this number of trials since time 0.")
 @json_option
 def resume(path: str, as_json: bool, **ends: Any) -> None:

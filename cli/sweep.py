@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("path", metavar="SWEEP.toml")
 @click.option("-o", "--output", metavar="DIR", help="Folder for logs and results; an existing one is continued.")
-@click.option("--workers", type=click.IntRange(1), metavar="N", help="Number of processes on this machine.  [default: its cores]")
+@click.option("--workers", type=click.IntRange(1), metavar="N", help="Local processes.  [default: its cores]")
 @click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
 @click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
 def sweep(path: str, output: str | None, workers: int | None, scheduler: str | None, dry_run: bool) -> None:

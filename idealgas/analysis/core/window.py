@@ -29,14 +29,17 @@ class Window:
 
     @property
     def start(self) -> float:
+        """Start of the window, time."""
         return float(self.edges[self.first])
 
     @property
     def end(self) -> float:
+        """End of the window, time."""
         return float(self.edges[-1])
 
     @property
     def duration(self) -> float:
+        """Length of the window, time."""
         return self.end - self.start
 
     @property
@@ -114,7 +117,7 @@ def stationary_series(moments: Moments) -> list[np.ndarray]:
     """Series of block averages that are stationary in equilibrium and change before it."""
     energy = moments.flights[:, :, 1] + moments.flights[:, :, 2]
     fourth = moments.flights[:, :, 3].sum(axis=1)
-    shares = [share for share in energy.T if np.ptp(share) > 1e-9 * share.max()]  # without series that change only by rounding
+    shares = [share for share in energy.T if np.ptp(share) > 1e-9 * share.max()]  # not those of rounding only
     return [fourth, *shares, *moments.events.T.astype(float)]
 
 

@@ -57,7 +57,9 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         position, velocity = series["piston_position"], series["piston_velocity"]
         pull = scene.piston.acceleration(scene.box.size, scene.gravity)
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
-    moving = [series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()]  # without series that change only by rounding
+    moving = [
+        series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()
+    ]  # not rounding only
     first = 0 if start is not None else equilibration(*moving)
     if len(at) - first < FEWEST:
         raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")

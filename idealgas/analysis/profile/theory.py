@@ -39,7 +39,7 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     properties, discs = log.scene.properties, composition(log.discs)
     if start < properties.clear_from or not properties.fixed_walls or log.gravity[1 - axis]:
         return None
-    reach = np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius  # distance of the centres from the sides
+    reach = np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius  # centres from sides
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
     size = np.diff(inside)
     places = inside[:, :-1, None] + size[:, :, None] * (np.arange(POINTS) + 0.5) / POINTS

@@ -33,7 +33,7 @@ HORIZON = 40.0
 SAMPLES = 320
 GROUPS = 20  # groups of discs for the jackknife
 CELLS = 32  # cells of equal probability for H
-LEAST_RELAXATION = 4.0  # smallest deviation of the kurtosis at the start for a fit, in its standard deviations in equilibrium
+LEAST_RELAXATION = 4.0  # standard deviations in equilibrium by which the kurtosis must deviate at the start for a fit
 SETTLED = 3.0
 """Relaxation times after which a gas counts as settled: 5 % of the distance is left."""
 

@@ -46,7 +46,7 @@ def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
     """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files; return their paths."""
     rows = [row for point in read_points(folder) for row in _rows(point)]
     names = list(dict.fromkeys(name for row in rows for name in row))
-    names.sort(key=lambda name: name in ("analysis", "quantity", *ESTIMATE))  # columns that identify the point come first
+    names.sort(key=lambda name: name in ("analysis", "quantity", *ESTIMATE))  # columns of the point come first
     tables = [Path(folder) / "results.csv"]
     part = tables[0].with_name("results.csv.part")
     with part.open("w", newline="") as file:
