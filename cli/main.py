@@ -1,7 +1,8 @@
 """The command `idealgas`: one command for each module here and for each analysis of the registry.
 
-Command NAME is the function NAME of the module NAME, imported when the command is called; modules whose name starts with an
-underscore, and this one, are no commands. Commands that analyse a log are made from the declarations of the analyses.
+Command NAME is the function NAME of the module NAME, which is imported when the command is called; modules whose name
+starts with an underscore, and this one, are no commands. Commands that analyse a log are made from the declarations of
+the analyses.
 """
 
 from importlib import import_module

@@ -21,7 +21,7 @@ def make_tracks(gas: Gas, start: float) -> np.ndarray:
 
 
 class Moments:
-    """Time integrals of velocity moments, summed over the discs of each species, and event counts in each block of time.
+    """Time integrals of velocity moments, summed over the discs of each species, and event counts in each block.
 
     flights: (B, S, 4), integrals of |v|, m vx², m vy² and (m v²)² over time for B blocks and S species.
     events: (B, 2), numbers of pair collisions and of wall hits.
@@ -34,6 +34,7 @@ class Moments:
         self.gravity = gravity
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
         self.flights = np.zeros((len(edges) - 1, len(gas.species_names), 4))
         self.events = np.zeros((len(edges) - 1, 2), np.int64)
@@ -42,12 +43,14 @@ class Moments:
         self._block = 0
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_moments(
             rows.time, rows.disc, rows.partner, rows.velocity, self.gravity,
             self._species, self._mass, self._tracks, self.edges, self._block, self.flights, self.events,
         )  # fmt: skip
 
     def finish(self) -> None:
+        """Add the last part of the flight of every disc, up to time edges[-1]."""
         _finish_moments(self.gravity, self._species, self._mass, self._tracks, self.edges, self.flights)
 
 
@@ -136,6 +139,7 @@ class VelocityHistogram:
         self.sampled = sampled
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
         self.counts = np.zeros((len(edges) - 1, len(gas.species_names), self.bins + 2))
         self.sums = np.zeros((len(edges) - 1, len(gas.species_names)))
@@ -147,12 +151,14 @@ class VelocityHistogram:
         self._block = 0
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_histogram(
             rows.time, rows.disc, rows.velocity, self.quantity, self._species, self._mass, self._slot,
             self._tracks, self.edges, self._block, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
         )  # fmt: skip
 
     def finish(self) -> None:
+        """Add the last part of the flight of every disc, up to time edges[-1]."""
         _finish_histogram(
             self.quantity, self._species, self._mass, self._slot,
             self._tracks, self.edges, self.low, self.per_unit, self.counts, self.sums, self.snapshots,

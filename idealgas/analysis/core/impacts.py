@@ -29,6 +29,7 @@ class Impacts:
         self.walls, self.periodic = walls, periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         blocks, species = len(edges) - 1, len(gas.species_names)
         self.edges = edges
         self.pair_virial = np.zeros(blocks)
@@ -43,6 +44,7 @@ class Impacts:
         self._block = 0
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_impacts(
             rows.time, rows.disc, rows.partner, rows.position, rows.velocity,
             self._middle, self._box, self.periodic, self._species, self._mass, self._tracks, self.edges, self._block,

@@ -60,6 +60,7 @@ class FreeFlights(_Intervals):
         self.path = path
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
         self._species = gas.species
         # time of the last event, speed (1 if times are measured), path since the last collision, time of that collision
@@ -67,6 +68,7 @@ class FreeFlights(_Intervals):
         self._tracks[:, 3] = -np.inf
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_free_flights(
             rows.time, rows.disc, rows.partner, rows.velocity, self.path, self._species, self._tracks, self.edges,
             self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,
@@ -101,10 +103,12 @@ class Waits(_Intervals):
     columns = ("time", "disc", "partner")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
         self._last = -np.inf
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block, self._last = _add_waits(
             rows.time, rows.disc, rows.partner, self._last, self.edges,
             self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,

@@ -20,7 +20,7 @@ logging.getLogger("pymbar").setLevel(logging.ERROR)  # pymbar logs at import tha
 from pymbar import timeseries  # noqa: E402
 
 ENOUGH_REPLICATES = 20
-"""Number of independent runs from which on the error comes from their spread; with fewer, from their own errors."""
+"""Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
 
 LONG_BLOCKS = 32
 """Number of long blocks from which the errors of anticorrelated series are computed."""
@@ -51,7 +51,7 @@ class Estimate:
         return (self.value - self.theory) / self.standard_error
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval at a level between 0 and 1, by Student's t with independent_samples - 1 degrees of freedom."""
+        """Confidence interval at a level from 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
 
@@ -198,7 +198,7 @@ def bootstrap(
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
-    """Mean of one quantity over independent runs; its error by bootstrap with enough runs, else from their own errors."""
+    """Mean of one quantity over independent runs; error by bootstrap with enough runs, else from their own errors."""
     values, theory = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory=theory)

@@ -29,14 +29,17 @@ class Window:
 
     @property
     def start(self) -> float:
+        """Start of the window, time."""
         return float(self.edges[self.first])
 
     @property
     def end(self) -> float:
+        """End of the window, time."""
         return float(self.edges[-1])
 
     @property
     def duration(self) -> float:
+        """Length of the window, time."""
         return self.end - self.start
 
     @property

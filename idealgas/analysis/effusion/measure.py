@@ -118,7 +118,7 @@ def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) 
     """
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Change of the shares of discs and energy: a side with shares n, e loses √(ne) of discs, 3/2 √(e³/n) of energy."""
+        """Rates of the shares of discs and energy: a side with n, e loses √(ne) of discs, 3/2 √(e³/n) of energy."""
         (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
         discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
         return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])

@@ -7,7 +7,7 @@ from idealgas.analysis.evolution.measure import Evolution
 
 
 def evolution_figure(result: Evolution) -> Figure:
-    """Picture of the temperature, its law dashed; then, if any, discs beyond the gate, piston and energy of the walls."""
+    """Picture of the temperature, its law dashed, and of discs beyond a gate, piston and energy given by walls."""
     shown = [result.beyond, result.piston is not None, result.given]
     figure, axes = panels(1 + sum(map(bool, shown)))
     _temperature(axes[0], result)

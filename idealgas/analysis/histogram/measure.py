@@ -178,7 +178,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
 
 
 def _mean(series: np.ndarray, scale: float, expected: float) -> Estimate:
-    """Mean of a series of values of magnitude `scale`; a conserved quantity varies only by rounding and has no error."""
+    """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error."""
     if np.ptp(series) < 1e-12 * scale:
         return Estimate(float(series.mean()), 0.0, 1.0, expected)
     return mean(series, theory=expected)

@@ -66,7 +66,7 @@ def make_palette() -> np.ndarray:
 
 
 def nearest_colours(palette: np.ndarray) -> np.ndarray:
-    """Palette index (32768,) uint8 of the nearest colour to every 15-bit colour, five bits of red, green and blue each."""
+    """Palette indices (32768,) uint8 of the nearest colours to all colours with five bits of red, green and blue."""
     levels = np.arange(32) * 8 + 4.0
     colours = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 1, 3)
     used = palette[:SAME].astype(float)

@@ -31,7 +31,7 @@ COLOUR_MAP = "cividis"
 
 DPI = 100
 USUAL, LEAST_ZOOM = (960, 540), 0.5
-"""Frame size in pixels for the usual size of text and margins, which scale with the frame by at least one half."""
+"""Frame size in pixels at which text and margins have their usual size, and smallest factor of that size."""
 
 SHADES = 64
 PALEST = 0.93  # used part of the colour map: its last yellow is invisible on white
@@ -56,7 +56,7 @@ Rectangle = tuple[float, float, float, float]
 
 
 class Layout(NamedTuple):
-    """Rectangles (left, bottom, width, height) of the box and of the speeds in pixels, and pixels per unit of length."""
+    """Rectangles (left, bottom, width, height) of box and speeds in pixels, and scale in pixels per unit of length."""
 
     box: Rectangle
     speeds: Rectangle

@@ -9,7 +9,7 @@ from idealgas.analysis.profile.measure import Profile
 
 
 def profile_figure(result: Profile) -> Figure:
-    """Picture of density (above) and temperature (below) against position, theory dashed; spin temperature as crosses."""
+    """Picture of density and temperature against position, theory dashed; spin temperature as crosses."""
     figure, (density, temperature) = panels(2)
     for entry, colour in zip(result.species, COLOURS * len(result.species), strict=False):
         points = {"fmt": "o", "ms": 4, "color": colour, "capsize": 2}

@@ -111,7 +111,7 @@ def profile(
 def _collect(
     log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Callable[[int, int], None] | None
 ) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of each strip, and series that equilibrium makes stationary."""
+    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, and series to detect equilibrium."""
     gas, frame = log.discs, drift(log)
     shape = (len(gas.species_names), len(edges) - 1)
     sums = np.zeros((len(times), *shape, 3))
@@ -154,7 +154,7 @@ def _of_species(
 
 
 def _heat(log: Log, window: Window) -> dict[str, Estimate]:
-    """Energy per time that each wall gave to the discs, from the stored samples in the window, by the name of the wall."""
+    """Energy per time that each wall gave to the discs, by its name, from the stored samples in the window."""
     if "wall_energy" not in log.observables:
         return {}
     time, given = log.observables["wall_energy"]

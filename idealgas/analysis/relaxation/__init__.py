@@ -13,7 +13,7 @@ ANALYSIS = Analysis(
         Option(
             "every",
             float,
-            "Also show the speed distribution every X trials of a Monte Carlo run, or every X units of time of other runs.",
+            "Also show the speed distribution every X trials (Monte Carlo) or X units of time (other runs).",
             positive=True,
             metavar="X",
         ),

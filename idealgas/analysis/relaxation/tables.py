@@ -47,7 +47,7 @@ def _row(result: Relaxation, fit: Estimate | None, series: np.ndarray) -> tuple[
 
 
 def _trials(tried: dict[str, Acceptance]) -> list[Table]:
-    """Tables of the acceptance of each log, compared with theory and, for the published run, with its published value."""
+    """Tables of the acceptance of each log, compared with theory and with the value of the published run."""
     counts = [
         (path, Number(found.number, ","), Number(found.collisions, ","), Number(found.collisions_per_disc, ".5g"))
         for path, found in tried.items()

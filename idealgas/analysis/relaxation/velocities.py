@@ -22,7 +22,7 @@ def check_steady(log: Log) -> None:
 
 
 def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """Mean number (K,) of collisions of a disc from time[0] up to each of the times; a collision counts for both discs."""
+    """Mean number (K,) of collisions of a disc from time[0] up to each time; a collision counts for both discs."""
     rows_until = np.zeros(len(time))
     for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
         instant = np.searchsorted(time, rows.time[rows.partner >= 0])

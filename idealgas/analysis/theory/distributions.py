@@ -202,7 +202,7 @@ class FreePathLaw(_FlightLaw):
 
 @dataclass(frozen=True)
 class WaitLaw:
-    """Distribution of the time between successive events of the whole gas: exponential if many discs collide independently.
+    """Distribution of the time between events of the whole gas: exponential if many discs collide independently.
 
     rate: events per time, 1/time.
     """

@@ -55,7 +55,7 @@ def henderson_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
 
 
 def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:
-    """Contact value χ = (Z - 1)/2φ of equal discs by the resummed virial series, in a closed system of `number` discs."""
+    """Contact value χ = (Z - 1)/2φ of equal discs by the resummed virial series, for `number` discs in all."""
     return float((compressibility(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
@@ -108,7 +108,7 @@ def confinement(
 def box_contacts(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> np.ndarray:
-    """Collision rate per relative speed 2 σ_ij n_j χ_ij (S, S) of a disc of species i with species j in a box, 1/length.
+    """Collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of a disc of species i with species j, 1/length.
 
     A disc does not collide with itself, and walls confine the discs (`confinement`). Equal discs have the contact value
     (Z - 1)/2φ of the resummed virial series, mixtures that of Jenkins & Mancini (1987). Not a number above freezing.
@@ -212,7 +212,7 @@ def mean_free_path(diameter: float, number_density: float, packing_fraction: flo
 
 
 def effusion_flux(number_density: float, temperature: float, mass: float) -> float:
-    """Flux n⟨v⟩/π of discs through a slit in one direction, in discs per length and time; also the hit rate of a wall."""
+    """Flux n⟨v⟩/π through a slit in one direction, in discs per length and time; also the hit rate of a wall."""
     return number_density * mean_speed(temperature, mass) / math.pi
 
 

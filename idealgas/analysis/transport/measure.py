@@ -232,7 +232,7 @@ def autocorrelation(velocities: np.ndarray) -> np.ndarray:
 
 
 def mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """Mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and the times t of each segment, length².
+    """Mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and times t of a segment, length².
 
     places: (segments, L, discs, 2), at equal steps. It is computed from Σ r² and the autocorrelation of the
     positions: Calandrini et al., Collection SFN 12, 201 (2011).

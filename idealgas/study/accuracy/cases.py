@@ -73,7 +73,7 @@ class Start:
 
 
 def compared_cases(gas: Gas, precise: bool) -> list[Case]:
-    """Cases for a gas: event-driven, time steps from long to short and, with `precise`, brute force in all precisions."""
+    """Cases for a gas: event-driven, time steps from long to short, with `precise` brute force in all precisions."""
     speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
     first = FIRST_STEP * 2 * float(gas.radius.min()) / speed
     steps = [Case("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]

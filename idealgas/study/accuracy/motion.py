@@ -42,8 +42,8 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
     """Count the collisions that each case misses, compared with the event-driven motion over a mean free time.
 
     Only collisions of two discs without an earlier collision with other discs are compared. A collision is missed if,
-    in the case, neither disc has collided by the end of the next time step. rate: collisions per disc and time. progress:
-    called with the share of the work that is done.
+    in the case, neither disc has collided by the end of the next time step. rate: collisions per disc and time.
+    progress: called with the share of the work that is done.
     """
     reference = start.simulation(EventDriven())
     compared, missed = np.zeros((2, len(cases)), int)
@@ -64,7 +64,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
 
 
 def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Time of the first collision of each disc (N,), infinite if there is none, and index of its partner (N,), or -1."""
+    """Times (N,) of the first collision of each disc, infinite if there is none, and partners (N,), or -1."""
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
     simulation = start.simulation(case.make())

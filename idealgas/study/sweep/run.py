@@ -52,7 +52,7 @@ class Progress:
 class Outcome:
     """Outcome of a sweep.
 
-    ran: number of points run now. before: number of points that were done before. failures: reason by index of the point.
+    ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
     """
 
     ran: int
