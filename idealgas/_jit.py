@@ -67,7 +67,7 @@ def _read(path: str) -> tuple[bytes, list[tuple[str, str]]]:
     source = content.decode("utf-8", "replace").replace("\r\n", "\n").replace("\\\n", " ")
     if "TYPE_CHECKING" in source:
         source = _FOR_TYPE_CHECKERS.sub("", source)
-    imports = []
+    imports: list[tuple[str, str]] = []
     for found in _IMPORT.finditer(source):
         line = source.rfind("\n", 0, found.start()) + 1
         if before := _ORIGIN.search(source[line : found.start()]):
