@@ -1,7 +1,7 @@
-"""Numbers of about 32 digits as pairs (high, low) of floats, high the float nearest to their sum.
+"""Numbers of about 32 digits as pairs (high, low) of floats, where `high` is the float nearest to their sum.
 
 Without a fused multiply-add: sums by Knuth, products by Dekker, and the arithmetic of Hida, Li & Bailey, Proc. 15th
-IEEE Symposium on Computer Arithmetic, 155 (2001). Relative errors: a few 2^-104, 5e-32.
+IEEE Symposium on Computer Arithmetic, 155 (2001). Relative errors are a few times 2^-104 = 5e-32.
 """
 
 import math
@@ -21,14 +21,14 @@ def two_sum(a, b):
 
 @inline
 def quick_two_sum(a, b):
-    """The same for |a| >= |b|."""
+    """Rounded sum of two floats with |a| >= |b|, and its rounding error: fewer operations than `two_sum`."""
     total = a + b
     return total, b - (total - a)
 
 
 @inline
 def split(a):
-    """Two floats of 26 bits whose sum is a."""
+    """Two floats of 26 bits whose sum is exactly a."""
     t = SPLITTER * a
     high = t - (t - a)
     return high, a - high
@@ -79,7 +79,10 @@ def divide(a, b):
 
 @inline
 def root(a):
-    """√a for a >= 0: one step of Newton's method from the float's (Karp & Markstein, ACM TOMS 23, 561 (1997))."""
+    """Square root of a pair a >= 0: one step of Newton's method from the root of its high part; 0 for a < 0.
+
+    Source: Karp & Markstein, ACM TOMS 23, 561 (1997).
+    """
     if a[0] <= 0.0:
         return 0.0, 0.0
     guess = math.sqrt(a[0])
