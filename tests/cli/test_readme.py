@@ -287,7 +287,7 @@ def test_the_page_of_tests_knows_them():
             assert f'"{marker}: ' in markers
         for path in re.findall(r"tests/\w+", command):
             assert (ROOT / path).is_dir()
-    listed = {name for name in re.findall(r"^\| `(\w+)` \|", PAGES[TESTS], re.MULTILINE)}
+    listed = set(re.findall(r"^\| `(\w+)` \|", PAGES[TESTS], re.MULTILINE))
     assert listed == {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name[0] not in "._"}
 
 

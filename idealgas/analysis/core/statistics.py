@@ -51,7 +51,7 @@ class Estimate:
         return (self.value - self.theory) / self.standard_error
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval at a level from 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
+        """Confidence interval at a level (0 to 1), by Student's t with independent_samples - 1 degrees of freedom."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
 

@@ -124,7 +124,7 @@ def test_pressure_by_hand(log):
     blocks = list(log.chunks(columns, log.row_at(start)))
     time, disc, partner, position, velocity = (np.concatenate(column) for column in zip(*blocks, strict=True))
     before = np.empty_like(velocity)
-    last = {k: v for k, v in enumerate(log.state_at(start).velocity)}
+    last = dict(enumerate(log.state_at(start).velocity))
     for row, own in enumerate(disc):
         before[row] = last[own]
         last[own] = velocity[row]
