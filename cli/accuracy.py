@@ -82,14 +82,14 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
         motion.add_column(head, justify="right")
     for row in rows:
         averages.add_row(
-            row["rung"],
+            row["case"],
             f"{1e3 * row['cpu_s_per_time']:.3g}",
             _number(row["cpu_s_per_collision"], "{:.3g}", 1e6),
             *(_percent(row, name) for name in ("rate_bias", "z_pairs_bias", "z_walls_bias")),
             _number(row["ks_distance"], "{:.3f}") + _number(row["ks_chance"], " ({:.3f})"),
         )
         motion.add_row(
-            row["rung"],
+            row["case"],
             _number(row["missed_share"], "{:.3g}", 100),
             _number(row["deepest_overlap"], "{:.1e}"),
             _number(row["energy_drift"], "{:.1e}"),

@@ -42,7 +42,7 @@ def test_its_files_hold_all_numbers(small):
     with (folder / "out/accuracy.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     result = json.loads((folder / "out/accuracy.json").read_text())
-    assert [row["rung"] for row in rows] == [row["rung"] for row in result["rows"]]
+    assert [row["case"] for row in rows] == [row["case"] for row in result["rows"]]
     assert [row["method"] for row in rows] == ["event_driven"] + ["time_driven"] * 8
     assert rows[0]["rate_bias"] == ""
     coarse = rows[1]

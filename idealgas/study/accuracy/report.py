@@ -28,7 +28,7 @@ def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
     """Row of the CSV file for one case; None where a number was not measured."""
     averages, at = row.averages, nearest(found.collisions, 1.0)
     return {
-        "rung": row.case.name,
+        "case": row.case.name,
         "method": row.case.method,
         "dt": row.case.dt,
         "precision": row.case.precision,
