@@ -28,6 +28,7 @@ def small(tmp_path_factory):
     return folder, idealgas("accuracy", "small.toml", "-o", "out", "--repeats", 1, folder=folder)
 
 
+@pytest.mark.slow
 def test_it_prints_tables_and_sentences_and_nothing_else(small):
     _, done = small
     assert (done.returncode, done.stderr) == (0, "")
@@ -53,6 +54,7 @@ def test_its_files_hold_all_numbers(small):
     assert (folder / "out/accuracy.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_the_orbit_of_three_discs(tmp_path):
     scene = ROOT / "configs" / "three-discs.toml"
     done = called("accuracy", scene, "--json", "-o", tmp_path)
