@@ -1,4 +1,4 @@
-"""What commands that read a log share, and the commands that analyse one, made from the registry of analyses."""
+"""Common parts of commands that read a log, and commands of the analyses, made from their registry."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 
 def log_argument(command: Callable) -> Callable:
-    """`RUN.h5` as `path`."""
+    """Add the argument `RUN.h5`, the path of a log, as `path`."""
     return click.argument("path", metavar="RUN.h5")(command)
 
 
 def open_log(path: str) -> "Log":
-    """A log to read from; tells of one that was not closed, in one line."""
+    """Open a log for reading; print one line if it was not closed."""
     from idealgas import log
 
     opened = log.open_log(path)
@@ -35,7 +35,7 @@ def open_log(path: str) -> "Log":
 
 @contextmanager
 def reading(what: str = "events") -> Iterator[Callable[[int, int], None]]:
-    """Yield progress(done, in all) of what is read, shown as a bar on a terminal and nowhere else."""
+    """Yield progress(done, total), which shows a progress bar on a terminal; what: what is counted."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -46,7 +46,7 @@ def reading(what: str = "events") -> Iterator[Callable[[int, int], None]]:
 
 
 def print_json(result: dict[str, Any]) -> None:
-    """Print a result for machines."""
+    """Print a result as JSON."""
     import json
 
     click.echo(json.dumps(result, indent=2, allow_nan=False))
@@ -56,7 +56,7 @@ def print_json(result: dict[str, Any]) -> None:
 
 
 def analysis_command(analysis: "Analysis") -> click.Command:
-    """The command of an analysis: its logs, its own options, and those that all analyses have."""
+    """Make the command of an analysis: its logs, its own options, and the options of all analyses."""
 
     def command(**arguments: Any) -> None:
         _analyse(analysis, **arguments)
@@ -75,7 +75,7 @@ def _logs(analysis: "Analysis") -> Callable:
 
 
 def _option(option: "Option") -> Callable:
-    """One of an analysis' own options."""
+    """Command-line option for an option of an analysis."""
     kind: Any = option.kind
     if option.choices:
         kind = click.Choice(option.choices)
@@ -103,15 +103,15 @@ def _common_options(analysis: "Analysis") -> Iterator[Callable]:
     for name, variable, where, default in (
         ("--from", "start", "Start", analysis.start), ("--to", "end", "End", analysis.end),
     ):  # fmt: skip
-        words = f"{where} of the window, time.  [default: {default}]"
+        words = f"{where} of the window, in simulated time.  [default: {default}]"
         yield click.option(name, variable, type=float, metavar="T", help=words)
     words = "Draw a picture (.png, .pdf or .svg)."
     yield click.option("--plot", metavar="FILE.png", callback=_check_ending, help=words)
     yield json_option
-    words = "Print the rows of the tables as CSV instead, with all digits."
+    words = "Print the rows of the tables as CSV with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.checked:
-        words = "Exit with 1 if measurement and theory differ by more than 4 s.e.; 0 as well where there is no theory."
+        words = "Exit with code 1 if measurement and theory differ by more than 4 standard errors, 0 without a theory."
         yield click.option("--check", is_flag=True, help=words)
 
 
@@ -126,7 +126,7 @@ def _analyse(
     check: bool = False,
     **options: Any,
 ) -> None:
-    """Analyse logs and print or draw what is asked for."""
+    """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
         raise UserError("--csv: not together with --json")
     try:
@@ -159,7 +159,7 @@ def _analyse(
 
 
 def _print_no_theory(error: NotApplicableError, as_json: bool) -> None:
-    """Say that there is nothing to check a gas against, to which the analysis does not even apply."""
+    """Print the result of a check of a gas to which the analysis does not apply."""
     from idealgas.analysis.core.statistics import Verdict
 
     verdict = Verdict(None, why_not=str(error))
@@ -177,7 +177,7 @@ def _results(
     progress: Callable[[int, int], None],
     options: dict[str, Any],
 ) -> Iterator[Any]:
-    """The result of a log, or those of a sweep's points from its folder."""
+    """Yield the result of a log, or the results of all points of a sweep from its folder."""
     if analysis.folders and os.path.isdir(path):
         from idealgas.study.sweep.results import stored
 

@@ -6,7 +6,7 @@ import click
 
 
 def scene_argument(command: Callable) -> Callable:
-    """`SCENE.toml [--set TABLE.KEY=VALUE]...` as `path` and `overrides`, ready for `load_scene`."""
+    """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, ready for `load_scene`."""
     overrides = click.option(
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
         help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
@@ -14,4 +14,4 @@ def scene_argument(command: Callable) -> Callable:
     return click.argument("path", metavar="SCENE.toml")(overrides(command))
 
 
-json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON for machines instead of tables.")
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables.")

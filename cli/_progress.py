@@ -1,4 +1,4 @@
-"""A progress bar on a terminal, nothing elsewhere."""
+"""Progress bar of a run, shown on a terminal only."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -25,7 +25,7 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
     )
     console = Console(stderr=True)
     started = time.perf_counter()
-    first: list[int] = []  # a run that was resumed does not begin at no events
+    first: list[int] = []  # number of events at the first call, not 0 for a resumed run
     with Bars(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
         task = bar.add_task("loading machine code, or compiling it once for these effects; remaining", total=1.0)
 

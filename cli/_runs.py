@@ -1,4 +1,4 @@
-"""What the commands that simulate share: Ctrl-C, a progress bar, and the summary."""
+"""Common parts of commands that simulate: Ctrl-C, progress bar and summary."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -10,9 +10,10 @@ if TYPE_CHECKING:
 
 
 def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
-    """Call `simulate` with what a terminal can give it, and print the summary of the log it wrote.
+    """Call `simulate` with a progress bar and a stop at Ctrl-C, and print the summary of its log.
 
-    from_start: whether all events of the log are of this run.
+    simulate: function that runs a scene. path: of the log. as_json: whether to print JSON. from_start: whether this run
+    wrote all events of the log.
     """
     import json
     import shlex

@@ -1,4 +1,4 @@
-"""Tables of results on the terminal."""
+"""Printing of result tables on the terminal."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from idealgas.analysis.core.tables import Table
 
 MANY_COLUMNS = 8
-"""Columns beyond which a table has no lines between them, to be less wide."""
+"""Largest number of columns of a table with lines between them; wider tables have none."""
 
 
 def print_tables(tables: "Iterable[Table]") -> None:

@@ -1,4 +1,4 @@
-"""`idealgas accuracy`: how wrong is each way of running a scene, and what does it cost?"""
+"""Command `idealgas accuracy`: errors and CPU time of the methods for a scene."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 @click.command()
 @scene_argument
 @click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and a picture (PNG).")
-@click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Timings of each rung, in turn.")
+@click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
 @json_option
 def accuracy(path: str, overrides: tuple[str, ...], output: str | None, repeats: int, as_json: bool) -> None:
-    """Run a scene event-driven, by time steps and in several precisions: CPU time against errors.
+    """Measure errors and CPU time of a scene event-driven, with time steps and in several precisions.
 
-    Discs that stand on the unstable periodic orbit of three (configs/three-discs.toml) are followed until their
-    orbit breaks, in boxes of many sizes.
+    Three discs on their unstable periodic orbit (configs/three-discs.toml) are followed until the orbit breaks, in
+    boxes of many sizes.
     """
     from idealgas.gas.build import make_gas
     from idealgas.scene import load_scene
@@ -59,7 +59,7 @@ def accuracy(path: str, overrides: tuple[str, ...], output: str | None, repeats:
 
 @contextmanager
 def _progress_bar() -> Iterator[Callable[[str, float], None]]:
-    """Yield the function that shows what is being done and how far it is, on a terminal and nowhere else."""
+    """Yield the function that shows on a terminal which work is being done, and its share that is done."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
@@ -82,14 +82,14 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
         motion.add_column(head, justify="right")
     for row in rows:
         averages.add_row(
-            row["rung"],
+            row["case"],
             f"{1e3 * row['cpu_s_per_time']:.3g}",
             _number(row["cpu_s_per_collision"], "{:.3g}", 1e6),
             *(_percent(row, name) for name in ("rate_bias", "z_pairs_bias", "z_walls_bias")),
             _number(row["ks_distance"], "{:.3f}") + _number(row["ks_chance"], " ({:.3f})"),
         )
         motion.add_row(
-            row["rung"],
+            row["case"],
             _number(row["missed_share"], "{:.3g}", 100),
             _number(row["deepest_overlap"], "{:.1e}"),
             _number(row["energy_drift"], "{:.1e}"),
@@ -101,9 +101,12 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
     console.print(averages)
     console.print(motion)
     click.echo(
-        "path error: from the double-double motion after 1 collision a disc; lost: 0.1 diameters off, after these"
+        "path error: distance from the double-double motion after 1 collision per disc; lost after: collisions per disc"
     )
-    click.echo("collisions a disc; way back: after 1 collision a disc, all velocities reversed. All rms, in diameters.")
+    click.echo(
+        "until this distance is 0.1; way back: distance from the start after reversing all velocities at 1 collision"
+    )
+    click.echo("per disc. All distances are rms, in diameters.")
 
 
 def _number(value: float | None, form: str, factor: float = 1.0) -> str:

@@ -1,4 +1,4 @@
-"""`idealgas animate`: a log as a film."""
+"""Command `idealgas animate`: film of a log."""
 
 import re
 
@@ -17,8 +17,12 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
 @click.command()
 @log_argument
 @click.option("-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif.")
-@click.option("--from", "start", type=float, metavar="T", help="Start, time.  [default: the log's start]")
-@click.option("--to", "end", type=float, metavar="T", help="End, time.  [default: 20 seconds of film]")
+@click.option(
+    "--from", "start", type=float, metavar="T", help="Start of the film, in simulated time.  [default: the log's start]"
+)
+@click.option(
+    "--to", "end", type=float, metavar="T", help="End of the film, in simulated time.  [default: 20 seconds of film]"
+)
 @click.option(
     "--fps", default=25.0, show_default=True, type=click.FloatRange(1, 120), help="Frames per second of film."
 )
@@ -26,10 +30,12 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     "--speed", type=click.FloatRange(min=0, min_open=True), metavar="X",
     help="Simulated time per second of film.  [default: a disc crosses the box in 5 s]",
 )  # fmt: skip
-@click.option("--size", default="960x540", show_default=True, callback=_pixels, help="Of a frame, pixels.")
+@click.option(
+    "--size", default="960x540", show_default=True, callback=_pixels, help="Width and height of a frame, pixels."
+)
 @click.option(
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species"]),
-    help="What the colour of a disc tells.",
+    help="Quantity shown by the colour of a disc.",
 )  # fmt: skip
 def animate(
     path: str,
@@ -41,9 +47,9 @@ def animate(
     size: tuple[int, int],
     colour: str,
 ) -> None:
-    """Make a film: the discs, exactly where they were at every frame, and beside them their speeds.
+    """Make a film of a log: the discs at their exact positions, and beside them the distribution of their speeds.
 
-    MP4 takes the program ffmpeg; without it the film becomes a GIF.
+    MP4 needs the program ffmpeg; without it the film becomes a GIF.
     """
     from idealgas.analysis.movie.film import animate as make
 

@@ -1,4 +1,4 @@
-"""`idealgas bench`: how fast is the engine on this machine?"""
+"""Command `idealgas bench`: speed of the engine on this machine."""
 
 import click
 
@@ -19,14 +19,14 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 @click.option(
     "--phi", "fractions", default="0.01,0.1,0.5", show_default=True, callback=_numbers, help="Packing fractions φ."
 )
-@click.option("--collisions", default=1_000_000, show_default=True, help="Fewest collisions of a run.")
-@click.option("--repeats", default=3, show_default=True, help="Runs of each kind; the median counts.")
-@click.option("--effects", is_flag=True, help="Instead: what each effect costs, against the plain box.")
+@click.option("--collisions", default=1_000_000, show_default=True, help="Smallest number of pair collisions of a run.")
+@click.option("--repeats", default=3, show_default=True, help="Number of runs of each kind; the median is shown.")
+@click.option("--effects", is_flag=True, help="Measure instead the cost of each effect, relative to the plain box.")
 @json_option
 def bench(
     numbers: list[float], fractions: list[float], collisions: int, repeats: int, effects: bool, as_json: bool
 ) -> None:
-    """Time the event-driven engine over a grid of N and φ, without the event log and with it."""
+    """Measure the speed of the event-driven engine for several N and φ, without the event log and with it."""
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
         raise click.UsageError("N, collisions and repeats are 1 or more, φ is above 0 and 0.9 at most")
     if effects:

@@ -1,4 +1,4 @@
-"""`idealgas check`: is this scene sound, and what will running it cost?"""
+"""Command `idealgas check`: errors of a scene, and cost estimate of its run."""
 
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @scene_argument
 @json_option
 def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Check a scene; show it in full, with what kinetic theory expects of it."""
+    """Check a scene and show it in full, with the rates and the size of the run expected by kinetic theory."""
     from idealgas.document.dump import dump_document
     from idealgas.scene import load_scene
 

@@ -1,4 +1,4 @@
-"""`idealgas export`: a log for other programs."""
+"""Command `idealgas export`: files for other programs from a log."""
 
 import click
 
@@ -9,9 +9,13 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
 @click.command()
 @log_argument
-@click.option("--format", "kind", type=click.Choice(KINDS), required=True, help="Kind of file.")
-@click.option("--events", is_flag=True, help="All events (csv, parquet).")
-@click.option("--frames", metavar="N|every=DT", help="All discs at N times from start to end, or every DT of time.")
+@click.option("--format", "kind", type=click.Choice(KINDS), required=True, help="Format of the file.")
+@click.option("--events", is_flag=True, help="Write all events (csv, parquet).")
+@click.option(
+    "--frames",
+    metavar="N|every=DT",
+    help="Write all discs at N times from start to end, or every DT in simulated time.",
+)
 @click.option("-o", "--output", metavar="OUT", help="The file to write.  [default: RUN with the format's ending]")
 @click.option("--force", is_flag=True, help="Replace the file if it exists.")
 def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:

@@ -1,4 +1,4 @@
-"""`idealgas follow`: watch a run."""
+"""Command `idealgas follow`: status of a run that goes on."""
 
 from typing import TYPE_CHECKING
 
@@ -12,17 +12,17 @@ if TYPE_CHECKING:
     from idealgas.analysis.status import Status
     from idealgas.log import Log
 
-SECONDS = 1.0  # between two looks
+SECONDS = 1.0  # between two updates
 WIDTH = 50
 
 
 @click.command()
 @log_argument
-@click.option("--once", is_flag=True, help="Show one state and end.")
+@click.option("--once", is_flag=True, help="Show the status once and end.")
 def follow(path: str, once: bool) -> None:
-    """Show how far a run has come, while it goes on and until it ends; elsewhere than on a terminal, its end only.
+    """Show the status of a run until it ends; if the output is not a terminal, only the final status.
 
-    Pressure and Z are those of the last events, the speeds those of the last state.
+    Pressure and Z are measured from the latest events, the speeds are those of the latest state.
     """
     import time
 
@@ -46,7 +46,7 @@ def follow(path: str, once: bool) -> None:
                 break
             if console.is_terminal:
                 screen.update(_view(log, seen, rate), refresh=True)
-    with open_log(path) as log:  # anew, as it may have been closed
+    with open_log(path) as log:  # opened again, as it may have been closed
         if log.complete:
             rate = log.summary["events"] / log.summary["seconds"]
         shown = _view(log, status(log), rate)
@@ -75,7 +75,7 @@ def _view(log: "Log", seen: "Status", rate: float | None) -> "Group":
 
 
 def _histogram(seen: "Status") -> str:
-    """Bars of the speeds' density, and a mark where Maxwell-Boltzmann's would end."""
+    """Text histogram of the speeds, with a mark at Maxwell-Boltzmann's density in each line."""
     if seen.density is None:
         return "nothing moves"
     highest = max(seen.density.max(), seen.expected.max())

@@ -1,18 +1,21 @@
-"""`idealgas info`: what is in a log?"""
+"""Command `idealgas info`: contents of a log."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ._analysis import log_argument, open_log, print_json
 from ._options import json_option
 
+if TYPE_CHECKING:
+    from rich.table import Table
+
 
 @click.command()
 @log_argument
 @json_option
 def info(path: str, as_json: bool) -> None:
-    """Show what a log holds: its scene, its discs, and how far the run came."""
+    """Show the contents of a log: its scene, its discs, and the state of its run."""
     from rich.console import Console
 
     from idealgas.analysis.info import info as describe_log
@@ -29,7 +32,7 @@ def info(path: str, as_json: bool) -> None:
         console.print("species: " + ", ".join(f"{key} {_text(value)}" for key, value in species.items()))
 
 
-def _table(title: str, values: dict[str, Any]):
+def _table(title: str, values: dict[str, Any]) -> "Table":
     from rich.table import Table
     from rich.text import Text
 

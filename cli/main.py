@@ -1,7 +1,8 @@
 """The command `idealgas`: one command for each module here and for each analysis of the registry.
 
-Command NAME is the function NAME of the module NAME, imported when it is called for; modules whose name starts with an
-underscore, and this one, are no commands. Those that analyse a log are made from what the analyses say of themselves.
+Command NAME is the function NAME of the module NAME, which is imported when the command is called; modules whose name
+starts with an underscore, and this one, are no commands. Commands that analyse a log are made from the declarations of
+the analyses.
 """
 
 from importlib import import_module
@@ -19,14 +20,16 @@ from ._analysis import analysis_command
 
 
 class Commands(click.Group):
-    """Finds commands among the modules of this folder and the analyses; prints a user's errors as plain lines."""
+    """Group of all commands: modules of this folder and analyses. It prints errors of the user as plain lines."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all commands in alphabetical order."""
         names = (module.name for module in iter_modules(folder))
         modules = (name.replace("_", "-") for name in names if name != "main" and not name.startswith("_"))
         return sorted([*modules, *registry.commands()])
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """Command of a name; None if there is none."""
         if name not in self.list_commands(ctx):
             return None
         if name in registry.commands():
@@ -35,6 +38,7 @@ class Commands(click.Group):
         return getattr(import_module(f".{module}", __package__), module)
 
     def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; print a UserError as one line and exit with its code."""
         try:
             return super().invoke(ctx)
         except UserError as error:

@@ -1,4 +1,4 @@
-"""`idealgas recover`: close the log of a writer that died."""
+"""Command `idealgas recover`: close the log of a run that was killed."""
 
 import click
 
@@ -7,11 +7,11 @@ from ._analysis import log_argument
 
 @click.command()
 @log_argument
-@click.option("-o", "--output", metavar="OUT.h5", help="Leave the log as it is and make a copy.")
+@click.option("-o", "--output", metavar="OUT.h5", help="Write the closed log to OUT.h5 and leave RUN.h5 unchanged.")
 def recover(path: str, output: str | None) -> None:
-    """Make the log of a run that was killed open in any HDF5 program again, with every row that was committed.
+    """Close the log of a run that was killed, so that every HDF5 program can read its committed rows.
 
-    No command of idealgas needs this: they read such a log as it is.
+    The commands of idealgas do not need this: they read such a log without it.
     """
     from idealgas.log import recover as close
 

@@ -1,4 +1,4 @@
-"""`idealgas report`: a log as one page."""
+"""Command `idealgas report`: one page with all results of a log."""
 
 import click
 
@@ -8,11 +8,17 @@ from ._analysis import log_argument, open_log, reading
 @click.command()
 @log_argument
 @click.option("-o", "--output", required=True, metavar="REPORT.html", help="The page to write.")
-@click.option("--from", "start", type=float, metavar="T", help="Start of the player, time.  [default: the log's start]")
+@click.option(
+    "--from",
+    "start",
+    type=float,
+    metavar="T",
+    help="First time in the player, in simulated time.  [default: the log's start]",
+)
 def report(path: str, output: str, start: float | None) -> None:
     """Write one page with every analysis that applies, and a player that moves the discs.
 
-    The page needs no network and no other file. It has as many events as fit: the player says which part of the run.
+    The page needs no network and no other file. A long run is shown in part: the player says which times it shows.
     """
     from idealgas.analysis.report.page import write_report
 

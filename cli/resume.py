@@ -1,4 +1,4 @@
-"""`idealgas resume`: go on with a run."""
+"""Command `idealgas resume`: continue a run."""
 
 from typing import Any
 
@@ -10,15 +10,17 @@ from ._options import json_option
 
 @click.command()
 @log_argument
-@click.option("--until", type=float, metavar="T", help="End at this time.")
+@click.option("--until", type=float, metavar="T", help="End at this simulated time.")
 @click.option("--events", type=int, metavar="N", help="End after this number of events since time 0.")
-@click.option("--collisions-per-disc", type=float, metavar="X", help="End after these collisions a disc since time 0.")
+@click.option(
+    "--collisions-per-disc", type=float, metavar="X", help="End after this number of collisions per disc since time 0."
+)
 @click.option("--trials", type=int, metavar="N", help="With monte_carlo: end after this number of trials since time 0.")
 @json_option
 def resume(path: str, as_json: bool, **ends: Any) -> None:
-    """Go on with a run that was interrupted, was killed, or is to end later, from its last checkpoint.
+    """Continue a run from its last checkpoint, if it was interrupted or killed, or if it is to end later.
 
-    The log becomes what a run without a break would have written, bit for bit. A new end replaces all stop rules of the
+    The log is the same, bit for bit, as that of a run without interruption. A new end replaces all stop rules of the
     scene.
     """
     from functools import partial

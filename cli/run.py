@@ -1,4 +1,4 @@
-"""`idealgas run`: from a scene to its event log."""
+"""Command `idealgas run`: event log of a scene."""
 
 import click
 
@@ -11,7 +11,7 @@ from ._options import json_option, scene_argument
 @click.option("--force", is_flag=True, help="Replace the log if it exists.")
 @json_option
 def run(path: str, overrides: tuple[str, ...], output: str, force: bool, as_json: bool) -> None:
-    """Run a scene and write every event into an HDF5 log. Ctrl-C ends the run with a log that `resume` goes on with."""
+    """Run a scene and write every event into an HDF5 log. After Ctrl-C, `resume` continues the run from its log."""
     from idealgas.scene import load_scene
 
     scene = load_scene(path, overrides)

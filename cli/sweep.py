@@ -1,4 +1,4 @@
-"""`idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
+"""Command `idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,15 +15,17 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("path", metavar="SWEEP.toml")
-@click.option("-o", "--output", metavar="DIR", help="Folder for logs and results; continued if it is there.")
-@click.option("--workers", type=click.IntRange(1), metavar="N", help="Processes on this machine.  [default: its cores]")
-@click.option("--scheduler", metavar="ADDRESS", help="A dask scheduler whose workers take the runs.")
-@click.option("--dry-run", is_flag=True, help="Show the points, and the time and space they will take; run nothing.")
+@click.option("-o", "--output", metavar="DIR", help="Folder for logs and results; an existing one is continued.")
+@click.option(
+    "--workers", type=click.IntRange(1), metavar="N", help="Number of processes on this machine.  [default: its cores]"
+)
+@click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
+@click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
 def sweep(path: str, output: str | None, workers: int | None, scheduler: str | None, dry_run: bool) -> None:
-    """Run a scene at many points and collect what its analyses find in DIR/results.csv.
+    """Run a scene at many points and collect the results of its analyses in DIR/results.csv.
 
-    What was done stays done: the same command goes on where it was stopped. A point that fails is tried again twice and
-    then reported; the others run on.
+    The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
+    twice more and then reported; the other points are run.
     """
     from idealgas.study.sweep.plan import load_sweep
 
@@ -57,7 +59,7 @@ def sweep(path: str, output: str | None, workers: int | None, scheduler: str | N
 
 @contextmanager
 def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
-    """Yield the function that shows how many points are done and failed, on a terminal and nowhere else."""
+    """Yield the function that shows on a terminal how many points are finished and failed."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar

@@ -90,21 +90,19 @@ __all__ = [
 if not TYPE_CHECKING:  # which knows all names from above, so that it can tell those that are wrong
 
     def __getattr__(name: str) -> Any:
-        """What is asked for by one of the names above or of an analysis, imported at its first use (PEP 562)."""
+        """What has one of the names above or that of an analysis, imported at its first use (PEP 562)."""
         for home, names in _HOMES.items():
             if name in names:
-                value = getattr(import_module(home), name)
-                break
-        else:
-            from idealgas.analysis import registry
+                globals()[name] = value = getattr(import_module(home), name)
+                return value
+        from idealgas.analysis import registry
 
-            if name not in registry.NAMES:
-                raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-            value = registry.find(name).function
-        globals()[name] = value
-        return value
+        if name not in registry.NAMES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return registry.find(name).function
 
     def __dir__() -> list[str]:
+        """All names of the interface, those of analyses as the registry has them."""
         from idealgas.analysis import registry
 
         return sorted({*__all__, *registry.NAMES})

@@ -1,8 +1,8 @@
-"""Compilation, in one place: `njit` caches machine code under a digest of the sources it is made from.
+"""Compilation, in one place: `njit` caches machine code under a digest of the sources from which it is made.
 
-numba's own cache looks at one file only and serves stale code when a callee in another file changes. Here an entry
-point's folder is named after its module's source, the sources of all that this imports, and the versions of what
-compiles them; the processor numba itself keeps apart. Of each module's folders the last ones used stay.
+numba's own cache looks at one file only and serves outdated code when a callee in another file changes. Here the folder
+of an entry point is named after the source of its module, the sources of all that this imports, and the versions of the
+compilers; numba itself separates processors. The folders of each module used last are kept.
 """
 
 import atexit
@@ -32,52 +32,53 @@ from numba.core.types.containers import BaseTuple
 from numba.extending import lower_builtin, overload, register_jitable, type_callable
 
 if numba.config.DISABLE_JIT:
-    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # as silent as compiled code
+    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
 
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
-"""Without numba's runtime arrays are not reference-counted, and none can be made: the caller keeps them alive. Counting
-takes an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time, and a fifth of the
-compilation's."""
+"""Without numba's runtime, arrays are not reference-counted, and none can be made: the caller keeps them alive.
+
+Counting takes an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time, and a
+fifth of the compilation's.
+"""
 
 CACHE_LINE = 64  # bytes
 
-_KEPT = 3  # folders of a module
+_KEPT = 3  # folders of a module that are not removed
 _FOLDER = re.compile(r"[0-9a-f]{16}")  # the name of such a folder; nothing else is ever removed
 _COMPILERS = f"{sys.implementation.cache_tag} {numba.__version__} {llvmlite.__version__} {np.__version__}"
 
 _FOR_TYPE_CHECKERS = re.compile(
     r"^([ \t]*)if (?:typing\.)?TYPE_CHECKING:.*\n(?:(?:\1[ \t]+\S.*|[ \t]*)\n)*", re.MULTILINE
 )
-_IMPORT = re.compile(r"import\b(?=[ \t]*(?:\(((?:#.*|[^)#])*)|([^;\n]*)))")  # with what follows it
-_ORIGIN = re.compile(r"(?:^|[;:])[ \t]*(?:from[ \t]+([\w.]+)[ \t]*)?\Z")  # before it, in its line
+_IMPORT = re.compile(r"import\b(?=[ \t]*(?:\(((?:#.*|[^)#])*)|([^;\n]*)))")  # the keyword, with what is imported
+_ORIGIN = re.compile(r"(?:^|[;:])[ \t]*(?:from[ \t]+([\w.]+)[ \t]*)?\Z")  # what precedes the keyword in its line
 _COMMENT = re.compile(r"#.*")
 
 
 @cache
 def _read(path: str) -> tuple[bytes, list[tuple[str, str]]]:
-    """Digest of a source and what it imports anywhere in it: modules, each with the name taken from it or with none.
+    """Digest of a source file and all its imports: modules, each with the name imported from it or an empty one.
 
-    Found by patterns: to parse all sources of an engine takes a tenth of a second. A text that looks like an import
-    merely adds to a digest; what is imported for type checkers alone is never compiled.
+    Imports are found by patterns: to parse all sources of an engine takes a tenth of a second. A text that looks like
+    an import merely adds to a digest; what is imported for type checkers alone is never compiled.
     """
     with open(path, "rb") as file:
         content = file.read()
     source = content.decode("utf-8", "replace").replace("\r\n", "\n").replace("\\\n", " ")
     if "TYPE_CHECKING" in source:
         source = _FOR_TYPE_CHECKERS.sub("", source)
-    imports = []
+    imports: list[tuple[str, str]] = []
     for found in _IMPORT.finditer(source):
         line = source.rfind("\n", 0, found.start()) + 1
         if before := _ORIGIN.search(source[line : found.start()]):
-            for item in _COMMENT.sub("", found[1] or found[2]).split(","):
-                if words := item.split():
-                    imports.append((before[1], words[0]) if before[1] else (words[0], ""))
+            items = map(str.split, _COMMENT.sub("", found[1] or found[2]).split(","))
+            imports.extend((before[1], words[0]) if before[1] else (words[0], "") for words in items if words)
     return hashlib.sha256(content).digest(), imports
 
 
 @cache
 def _file_of(module: str) -> str | None:
-    """The source of a module of a package that is imported already; none where there is no such module."""
+    """Path of the source of a module, whose package is imported already; None if there is no such module."""
     top, *names = module.split(".")
     for folder in getattr(sys.modules.get(top), "__path__", ()):
         path = os.path.join(folder, *names)
@@ -89,15 +90,15 @@ def _file_of(module: str) -> str | None:
 
 @cache
 def _imported(module: str, file: str, packages: frozenset[str]) -> dict[str, str]:
-    """The modules of these packages that a module imports, with their sources.
+    """Modules of these packages that a module imports, by name, with the paths of their sources.
 
-    A name taken from a package is its submodule of that name, else something from its `__init__`. The `__init__` of
+    A name imported from a package is its submodule of that name, else something from its `__init__`. The `__init__` of
     other packages is run as well, but gives the importing module nothing to call.
     """
     package = module if os.path.basename(file) == "__init__.py" else module.rpartition(".")[0]
     found = {}
     for origin, name in _read(file)[1]:
-        with suppress(ImportError):  # relative, where there is no package
+        with suppress(ImportError):  # a relative import outside a package
             origin = resolve_name(origin, package)
         if origin.split(".")[0] in packages:
             for candidate in (f"{origin}.{name}", origin) if name else (origin,):
@@ -109,7 +110,7 @@ def _imported(module: str, file: str, packages: frozenset[str]) -> dict[str, str
 
 @cache
 def _sources(module: str, file: str) -> dict[str, str]:
-    """`compiled_from` of the functions of a module."""
+    """Modules that determine the machine code of a module's functions, see `compiled_from`."""
     packages = frozenset({__name__.split(".")[0], module.split(".")[0]})
     sources = {__name__: __file__, module: file}
     new = list(sources)
@@ -123,18 +124,18 @@ def _sources(module: str, file: str) -> dict[str, str]:
 
 
 def compiled_from(function: Callable) -> dict[str, str]:
-    """The modules whose sources determine a function's machine code, and their files.
+    """Modules whose sources determine a function's machine code, by name, with the paths of their sources.
 
-    They are this one, the function's own and all that these import of this package and the function's own, directly or
-    not: by statements anywhere in them, but not by those for type checkers alone.
+    They are this module, the function's own, and all modules of these two packages that they import, directly or not:
+    by statements anywhere in them, but not by those for type checkers alone.
     """
     return _sources(function.__module__, function.__code__.co_filename)
 
 
 def _digest(module: str, file: str) -> str:
-    """Of all that determines the machine code of a module's functions."""
+    """Digest of everything that determines the machine code of a module's functions."""
     digest = hashlib.sha256(_COMPILERS.encode())
-    if _file_of(module) is None:  # in no package: what it imports from beside it is not looked at
+    if _file_of(module) is None:  # in no package: imports from its own folder are not followed
         digest.update(file.encode())
     for name, source in sorted(_sources(module, file).items()):
         digest.update(name.encode() + _read(source)[0])
@@ -143,20 +144,20 @@ def _digest(module: str, file: str) -> str:
 
 @cache
 def _temporary_base() -> Path:
-    """A folder for this process alone, removed at its end."""
+    """Temporary folder of this process, removed at its end."""
     folder = Path(tempfile.mkdtemp(prefix="idealgas-"))
     atexit.register(_remove_if_own, folder, os.getpid())
     return folder
 
 
 def _remove_if_own(folder: Path, process: int) -> None:
-    """Remove a process's temporary folder; its forked children run this too, and leave it."""
+    """Remove a process's temporary folder; its forked children call this too, and leave the folder."""
     if os.getpid() == process:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def _make(folder: Path) -> Path:
-    """Mark a folder of machine code as used, before anything else, so that no other process takes it for an old one."""
+    """Mark a folder of machine code as used, before anything else, so that no other process removes it."""
     try:
         os.utime(folder)
     except FileNotFoundError:
@@ -166,7 +167,7 @@ def _make(folder: Path) -> Path:
 
 
 def _remove_old(new: Path) -> None:
-    """Remove a module's folders but the new one and those last used; another process may be doing so as well."""
+    """Remove a module's folders but the new one and those used last; another process may be doing so as well."""
     with suppress(OSError):
         others = [
             entry
@@ -180,15 +181,15 @@ def _remove_old(new: Path) -> None:
 
 @cache
 def _folder(module: str, file: str) -> Path:
-    """`cache_folder` of the functions of a module."""
+    """Folder of the machine code of a module's functions, see `cache_folder`."""
     base = os.environ.get("NUMBA_CACHE_DIR") or os.path.join(
         os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "idealgas"
     )
-    place = Path(module, _digest(module, file))
+    path = Path(module, _digest(module, file))
     try:
-        return _make(base / place)
+        return _make(base / path)
     except OSError:
-        return _make(_temporary_base() / place)
+        return _make(_temporary_base() / path)
 
 
 def cache_folder(function: Callable) -> Path:
@@ -197,14 +198,14 @@ def cache_folder(function: Callable) -> Path:
 
 
 def _fields(kind: Any) -> tuple:
-    """Names of the fields of all named tuples in a signature, which numba tells apart by class and fields' types."""
+    """Names of the fields of all named tuples in a signature, which numba compares by class and fields' types only."""
     if not isinstance(kind, tuple | BaseTuple):
         return ()
     return getattr(getattr(kind, "instance_class", None), "_fields", ()), *map(_fields, kind)
 
 
 class _Locator(_CacheLocator):
-    """Tells numba where a function's machine code is. Its folder already says which sources it is made from."""
+    """Gives numba the folder of a function's machine code, whose name depends on all sources already."""
 
     def __init__(self, function: Callable, file: str) -> None:
         self._py_file = file
@@ -230,9 +231,9 @@ class _Code(CompileResultCacheImpl):
 
 
 class _Files(IndexDataCacheFile):
-    """numba's files, where whatever cannot be read counts as absent and is written anew.
+    """numba's files of machine code, where a file that cannot be read counts as absent and is written anew.
 
-    Each piece of machine code has its key and a digest with it, as two processes that save at once may give two pieces
+    Each piece of machine code is stored with its key and a digest: two processes that save at once may give two pieces
     the same name, and a damaged one would crash.
     """
 
@@ -241,7 +242,7 @@ class _Files(IndexDataCacheFile):
         try:
             digest, content = super().load(key)
             saved, data = pickle.loads(content) if hashlib.sha256(content).digest() == digest else (None, None)
-        except Exception:  # absent, or damaged, which shows as almost any error
+        except Exception:  # absent or damaged, which may raise almost any error
             return None
         return data if saved == key else None
 
@@ -273,7 +274,7 @@ class _Cache(FunctionCache):
 
 
 def njit(function: Callable) -> Any:
-    """Compile an entry point: no fastmath, no GIL, cached on disk if its source is a file."""
+    """Compile an entry point: without fastmath and without the GIL, cached on disk if its source is a file."""
     compiled = numba.njit(function, **_OPTIONS)
     if not numba.config.DISABLE_JIT and os.path.isfile(function.__code__.co_filename):
         compiled._cache = _Cache(function)
@@ -284,19 +285,19 @@ _INLINE: dict[str, Any] = {"forceinline": True, "no_cfunc_wrapper": True, **_OPT
 
 
 def inline(function: Callable) -> Any:
-    """A small part that LLVM pastes into the entry points that call it; called from Python it stays Python."""
+    """Compile a small function that LLVM inserts into the entry points that call it; in Python it stays as it is."""
     return register_jitable(**_INLINE)(function)
 
 
 def inline_by_type(function: Callable) -> Callable:
-    """Decorate what chooses the code of such a part by the types of its arguments; `function` is what Python calls."""
+    """Decorate a function that chooses inlined code by the types of its arguments; `function` is what Python calls."""
     return overload(function, jit_options=_INLINE)
 
 
 def fetch_next_line(array: Any, row: Any) -> None:
-    """Bring the memory one cache line behind a row near, as it is about to be written; does nothing in Python.
+    """Prefetch the memory one cache line after a row, as it will be written soon; does nothing in Python.
 
-    Stores take effect in order: while one waits for far memory, all behind it wait too.
+    Stores take effect in order: while one waits for memory that is not in a cache, all later ones wait too.
     """
 
 
@@ -310,21 +311,21 @@ def _code_of_fetch(context: Any, builder: Any, signature: Any, arguments: Any) -
     kind, (value, row) = signature.args[0], arguments
     array = context.make_array(kind)(context, builder, value)
     element = cgutils.get_item_pointer(context, builder, kind, array, [row] + [row.type(0)] * (kind.ndim - 1))
-    place = builder.gep(builder.bitcast(element, cgutils.voidptr_t), [cgutils.intp_t(CACHE_LINE)])
+    address = builder.gep(builder.bitcast(element, cgutils.voidptr_t), [cgutils.intp_t(CACHE_LINE)])
     i32 = cgutils.int32_t
-    prefetch = ir.FunctionType(ir.VoidType(), [place.type, i32, i32, i32])
-    function = builder.module.declare_intrinsic("llvm.prefetch", [place.type], prefetch)
-    builder.call(function, [place, i32(1), i32(3), i32(1)])  # to be written, into all caches, data
+    prefetch = ir.FunctionType(ir.VoidType(), [address.type, i32, i32, i32])
+    function = builder.module.declare_intrinsic("llvm.prefetch", [address.type], prefetch)
+    builder.call(function, [address, i32(1), i32(3), i32(1)])  # for writing, into all cache levels, data
     return context.get_dummy_value()
 
 
 def compile_timer() -> AbstractContextManager[TimingListener]:
-    """Measure, as `duration` if `done`, the seconds spent on making machine code or loading it."""
+    """Measure the seconds spent on making machine code or loading it, as `duration` once `done` is true."""
     return install_listener("numba:compile", TimingListener())
 
 
 def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
-    """Zeroed array on a cache-line boundary; a structured one as a record array."""
+    """Array of n zeros that begins on a cache-line boundary; a record array if the dtype is structured."""
     raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
     start = -raw.ctypes.data % boundary
     array = raw[start : start + n * dtype.itemsize].view(dtype)

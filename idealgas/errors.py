@@ -1,11 +1,11 @@
-"""Errors that a user can mend: printed as plain lines, never as a traceback."""
+"""Errors that a user can correct: printed as plain lines, never as a traceback."""
 
 
 class UserError(Exception):
-    """Something outside the program is wrong; `exit_code` is what the command ends with."""
+    """An input or the environment is wrong; `exit_code` is the exit code of the command."""
 
     exit_code = 2
 
 
 class NotApplicableError(UserError):
-    """An analysis has no answer for this gas."""
+    """An analysis does not apply to this gas."""

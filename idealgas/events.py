@@ -1,6 +1,6 @@
-"""What an event is: the columns of the event log and the batches in which they travel from an engine to a log.
+"""Events: the columns of the event log, and the batches in which rows go from an engine to a log.
 
-A column is declared here once. Batches, the tables of a log, checkpoints, snapshots and exports are made from that.
+A column is declared once, here. Batches, the tables of a log, checkpoints, snapshots and exports are made from that.
 """
 
 from collections.abc import Collection, Sequence
@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 BLOCK = 65_536
-"""Rows of a full batch, and of a chunk in the file."""
+"""Number of rows of a full batch, and of a chunk in the file."""
 
 
 class Kind(IntEnum):
-    """What a disc met. Stored in the log as `events/kind`."""
+    """What a disc collided with; stored in the log as `events/kind`."""
 
     DISC = 0
     WALL = 1
@@ -23,10 +23,15 @@ class Kind(IntEnum):
 
 
 class Column(NamedTuple):
-    """One column of a table: `shape` is that of a row's entry, `dtype` and `unit` those of its numbers.
+    """One column of a table.
 
-    when: what discs must have for events to have this column, one of the words below; empty for every event. parts:
-    names of the components of an entry, for tables in which a column is one number.
+    Attributes:
+        name: name of the column.
+        dtype: NumPy type of its numbers.
+        shape: shape of one row's entry.
+        unit: unit of its numbers; empty if they have none.
+        when: property of the discs (one of the words below) without which events lack this column; empty for none.
+        parts: names of the components of an entry, for tables in which every column is one number.
     """
 
     name: str
@@ -38,7 +43,7 @@ class Column(NamedTuple):
 
 
 POSITIONS, SPINS, IMAGES, TRIALS = "positions", "spins", "images", "trials"
-"""What discs may have: a place, an angular velocity, images through periodic sides, and pairs tried by Monte Carlo."""
+"""Properties that discs may have: positions, spins, images through periodic sides, and Monte Carlo trials."""
 
 POSITION = Column("position", "f8", (2,), "length", POSITIONS, ("x", "y"))
 VELOCITY = Column("velocity", "f8", (2,), "length/time", parts=("vx", "vy"))
@@ -56,17 +61,22 @@ EVENT_COLUMNS = (
     IMAGE,
     Column("trial", "u8", when=TRIALS),
 )
-"""All that an event may have, in the order of an `EventBatch`."""
+"""All columns that events may have, in the order of an `EventBatch`."""
 
 
 class EventBatch(NamedTuple):
-    """Rows of the event log, in order of time; a pair collision is two rows, the smaller id first.
+    """Rows of the event log in order of time; a collision of two discs has two rows, the smaller id first.
 
-    time: (n,) f8, time. disc: (n,) u4, id. partner: (n,) i4, the other disc's id, or -1 - k for wall k.
-    kind: (n,) u1, a `Kind`. position, velocity: (n, 2) f8, length and length/time, after the event; no position
-    where the method has none. Only where discs spin: angular_velocity: (n,) f8, 1/time, after the event. Only with
-    periodic sides: image: (n, 2) i4, box lengths that unwrap the position. Only with Monte Carlo: trial: (n,) u8,
-    number of the trial, from 1.
+    Attributes:
+        time: (n,) f8, time.
+        disc: (n,) u4, id of the disc.
+        partner: (n,) i4, id of the other disc, or -1 - k for wall k.
+        kind: (n,) u1, a `Kind`.
+        position: (n, 2) f8, length, after the event; None where the method has no positions.
+        velocity: (n, 2) f8, length/time, after the event.
+        angular_velocity: (n,) f8, 1/time, after the event; None where discs do not spin.
+        image: (n, 2) i4, box lengths to add to the position to unwrap it; None without periodic sides.
+        trial: (n,) u8, number of the Monte Carlo trial, from 1; None for other methods.
     """
 
     time: np.ndarray
@@ -80,17 +90,17 @@ class EventBatch(NamedTuple):
     trial: np.ndarray | None = None
 
     def rows(self, start: int, stop: int) -> "EventBatch":
-        """View of some of the rows."""
+        """View of the rows from `start` to before `stop`."""
         return EventBatch(*(None if column is None else column[start:stop] for column in self))  # type: ignore[arg-type]
 
 
 def event_columns(*has: str) -> tuple[Column, ...]:
-    """Columns of the events of discs that have these things."""
+    """Columns of the events of discs that have these properties."""
     return tuple(column for column in EVENT_COLUMNS if not column.when or column.when in has)
 
 
 def columns_named(names: Collection[str]) -> tuple[Column, ...]:
-    """Columns of events by their names, in the order of the declaration."""
+    """Columns of events with these names, in the order of the declaration."""
     return tuple(column for column in EVENT_COLUMNS if column.name in names)
 
 
@@ -99,6 +109,6 @@ PLAIN_COLUMNS = event_columns(POSITIONS)
 
 
 def empty_batch(rows: int = BLOCK, columns: Sequence[Column] = PLAIN_COLUMNS) -> EventBatch:
-    """A batch of so many rows with these columns, for an engine to fill; None in the place of the others."""
+    """Batch of `rows` rows with these columns, for an engine to fill; None for all other columns."""
     made = {column.name: np.empty((rows, *column.shape), column.dtype) for column in columns}
     return EventBatch(*(made.get(name) for name in EventBatch._fields))  # type: ignore[arg-type]

@@ -4,7 +4,7 @@ Hypothesis sets no deadlines: the first example of a test may have to compile.
 """
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 from hypothesis import settings
@@ -43,3 +43,11 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         if name in metafunc.fixturenames:
             paths = sorted(folder.glob("*.toml"))
             metafunc.parametrize(name, paths, ids=[path.stem for path in paths])
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Every worker sets out with tests that lie together, so that few fixtures and kernels are made twice."""
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)

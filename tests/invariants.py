@@ -1,4 +1,4 @@
-"""A witness of a run: an account of the motion of its own, held against the engine after every event.
+"""An invariant checker: an account of the motion of its own, held against the engine after every event.
 
 Paths follow from the rows of the log alone. Between two events no two discs may come closer than their radii, and no
 disc to a wall, a side or the piston; at each event the discs must touch and part as the law says; energies must add up.

@@ -1,1 +1,1 @@
-"""What is measured from a log, and what theory says of it."""
+"""Measurements from event logs, each compared with theory."""

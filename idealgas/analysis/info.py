@@ -1,4 +1,4 @@
-"""What is in a log, without reading its events."""
+"""Contents of a log: file, scene, discs and run, without reading its events."""
 
 import os
 from typing import Any
@@ -8,7 +8,7 @@ from idealgas.log import Log
 
 
 def info(log: Log) -> dict[str, Any]:
-    """Nested plain values, ready for JSON: the file, the scene, the discs and what was stored of the run."""
+    """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
     gas, discs = log.discs, composition(log.discs)
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
     return {

@@ -1,4 +1,4 @@
-"""All analyses, one line each: a command, its `--json` and `--csv`, sections of the report and a key of sweeps.
+"""Registry of all analyses: each line gives a command with `--json` and `--csv`, report sections and a sweep key.
 
 NAME is a folder beside this file; `idealgas.analysis.core.declaration` tells what is in it.
 """
@@ -22,21 +22,25 @@ NAMES: tuple[str, ...] = (
     "heat_capacity",
     "effusion",
 )
-"""Folders of the analyses, in the order of a report."""
+"""Names of the folders of all analyses, in the order of the report."""
 
 
 def analyses() -> tuple[Analysis, ...]:
-    """What every analysis says of itself; nothing of its code is imported."""
+    """Declarations of all analyses; the code that computes them is not imported."""
     return tuple(import_module(f"idealgas.analysis.{name}").ANALYSIS for name in NAMES)
 
 
 def commands() -> tuple[str, ...]:
-    """The names of their commands, which are those in the file of a sweep."""
+    """Names of the commands of all analyses, also used in the file of a sweep."""
     return tuple(name.replace("_", "-") for name in NAMES)
 
 
 def find(name: str) -> Analysis:
-    """The analysis of a name, heat_capacity or heat-capacity. UserError with the names there are for any other."""
+    """Declaration of the analysis with a name such as "heat_capacity" or "heat-capacity".
+
+    Raises:
+        UserError: for an unknown name; the message lists all known names.
+    """
     folder = name.replace("-", "_")
     if folder not in NAMES:
         raise unknown("analysis", name, commands())
@@ -51,9 +55,17 @@ def analyse(
     progress: Progress | None = None,
     **options: Any,
 ) -> Any:
-    """Result of an analysis of a log between two times: a dataclass with `as_dict()`.
+    """Analyse a log and return the result, a dataclass with `as_dict()`.
 
-    options: those of the command `idealgas NAME`, as keywords. progress(done, in all) is called as the log is read.
-    UserError for an unknown name or option, or if the analysis does not apply to the log.
+    Args:
+        log: the log to analyse.
+        name: name of the analysis, such as "pressure".
+        start: start of the window, time; None for the default of the analysis.
+        end: end of the window, time; None for the default of the analysis.
+        progress: called as progress(done, total) while the log is read.
+        options: options of the command `idealgas NAME`, as keyword arguments.
+
+    Raises:
+        UserError: if the name or an option is unknown, or if the analysis does not apply to the log.
     """
     return find(name).measure(log, start, end, progress, **options)

@@ -1,4 +1,4 @@
-"""What a log tells at a glance, of a run that may still go on: its latest state and the events just before."""
+"""Status of a run that may still go on: the latest state in its log, and the pressure from the latest events."""
 
 from dataclasses import dataclass
 
@@ -10,19 +10,22 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 ROWS = 2**20
-"""Event rows that a glance reads at most, twice."""
+"""Largest number of event rows that are read for the state, and again for the pressure."""
 
 BINS, HIGHEST = 20, 4.0
 
 
 @dataclass(frozen=True)
 class Status:
-    """The latest state of a log.
+    """Latest state of the gas in a log.
 
-    time: of the last event. rows: of events; None where none are kept. events: so far, to the accuracy of their share
-    in the rows at the last checkpoint. temperature: kinetic, of all discs. pressure, compressibility: from the virial
-    of the last pair collisions; None if that says nothing. ks_distance: of the speeds in units of √(T/m) from
-    Maxwell-Boltzmann's; edges (BINS + 1,), density and expected (BINS,): of these speeds; None if nothing moves.
+    time: end of the log, time. rows: number of event rows; None if the log has no events. events: number of events so
+    far, from the number of rows and the ratio of events to rows at the last checkpoint. temperature: mean kinetic
+    energy of all discs, energy. pressure, compressibility: pressure (energy/length²) and Z = PA/NT from the virial of
+    the latest pair collisions; None if they cannot be measured. ks_distance: Kolmogorov-Smirnov distance of the speeds,
+    in units of √(T/m), from Maxwell-Boltzmann's distribution; None if no disc moves. edges: (BINS + 1,), edges of the
+    bins of these speeds. density: (BINS,), their measured probability density, None if no disc moves. expected:
+    (BINS,), Maxwell-Boltzmann's density.
     """
 
     time: float
@@ -38,7 +41,7 @@ class Status:
 
 
 def status(log: Log) -> Status:
-    """Look at the last state and events, of which no more are read than a bounded number."""
+    """Status of a log, from its latest state and a bounded number of its latest events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
     squares = mass * (state.velocity**2).sum(axis=1)
@@ -61,7 +64,7 @@ def status(log: Log) -> Status:
 
 
 def _time_seen(log: Log) -> float:
-    """The last time, or one before if too many events separate it from the last checkpoint."""
+    """End of the log, or an earlier time if more than ROWS event rows follow the last checkpoint."""
     if not log.has_events:
         return float(log.checkpoints.times[-1]) if len(log.checkpoints) else log.start_time
     last = int(log.checkpoints.rows[-1]) + ROWS if len(log.checkpoints) else ROWS
@@ -71,7 +74,7 @@ def _time_seen(log: Log) -> float:
 
 
 def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
-    """Since an earlier checkpoint, or the last."""
+    """Pressure and Z from the pair collisions since a checkpoint at most ROWS event rows before time `seen`."""
     if not log.has_events:
         return None, None
     first = int(log.checkpoints.rows.searchsorted(log.row_at(seen) - ROWS))

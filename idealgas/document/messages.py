@@ -1,4 +1,4 @@
-"""From faults and pydantic's findings to lines for people: `place: table.key: what is wrong (got …; allowed …)`."""
+"""Issues and pydantic's findings as lines for a user: `place: table.key: what is wrong (got …; allowed …)`."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches

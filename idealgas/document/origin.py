@@ -1,4 +1,4 @@
-"""Where the keys of a scene were written: what turns a fault into a line for people."""
+"""Where the keys of a scene were written: what turns an issue into a line with file and line number."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ class Origin:
     above: Key = field(default=(), compare=False)
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """One line a fault, in order of the file's lines, those of overrides last."""
+        """One line for each issue, in the order of the file's lines; issues of overrides come last."""
         lines = []
         for issue in issues:
             blamed = next((o for key in issue.keys if (o := self._override(key)) is not None), None)

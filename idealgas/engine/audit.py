@@ -1,4 +1,4 @@
-"""What must hold, measured when all discs stand at one time."""
+"""Conserved quantities and overlaps of a gas, measured when all discs are at one time."""
 
 import math
 from typing import NamedTuple
@@ -13,10 +13,14 @@ U = np.uintp
 
 
 class Audit(NamedTuple):
-    """kinetic_energy: energy. momentum: (2,), mass * velocity.
+    """Conserved quantities and overlaps of a gas at one time.
 
-    overlap: deepest overlap of two discs, in units of the sum of their radii, or 0. outside: how far any disc
-    reaches beyond a side of the box, in units of its diameter, or 0.
+    Attributes:
+        kinetic_energy: sum over the discs, mass length²/time².
+        momentum: (2,) f8, sum over the discs, mass length/time.
+        overlap: deepest overlap of two discs, divided by the sum of their radii; 0 without any.
+        outside: largest distance by which a disc reaches beyond a side of the box, divided by its diameter; 0 without
+            any.
     """
 
     kinetic_energy: float
@@ -27,14 +31,14 @@ class Audit(NamedTuple):
 
 @inline
 def overlap_of(a, b, periodic):
-    """Depth to which two discs overlap, as a share of the sum of their radii; negative if they do not."""
+    """Overlap of two discs divided by the sum of their radii; negative if they are apart."""
     x, y = separation(a, b, periodic)
     return 1.0 - math.hypot(x, y) / (a.r + b.r)
 
 
 @njit
 def deepest_overlap_of_all(record, periodic):
-    """The same over all pairs."""
+    """Deepest overlap of all pairs of discs, divided by the sum of their radii; 0 without any."""
     deepest = 0.0
     for i in range(record.shape[0]):
         for j in range(i):
@@ -43,7 +47,7 @@ def deepest_overlap_of_all(record, periodic):
 
 
 def audit(gas: Gas, overlap: float) -> Audit:
-    """The audit of a gas whose deepest overlap is known."""
+    """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
     reach = np.maximum(gas.radius[:, None] - gas.position, gas.position + gas.radius[:, None] - np.array(gas.box))
     outside = float(max((reach / (2 * gas.radius[:, None])).max(), 0.0))
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)

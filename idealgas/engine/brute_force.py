@@ -1,6 +1,7 @@
-"""The brute-force method: before every event all pairs, walls and images are asked for the next one, O(N²).
+"""The brute-force method: before every event, all pairs, walls and images are searched for the next one, O(N²).
 
-It is the oracle of the event-driven method: the same laws, the same rule for ties, nothing remembered.
+It is the reference for the event-driven method: the same laws, the same rule for simultaneous events, no stored
+predictions.
 """
 
 import numpy as np
@@ -26,7 +27,10 @@ PAIR, SIDE, SEGMENT, PISTON, STOP, BOUNDARY_CROSSING = range(6)
 
 @inline
 def wall_event(record, i, effects, length_x, length_y, best):
-    """The earlier of `best`, as `next_event` gives it, and disc i's meetings with sides, piston and segments."""
+    """The earlier of the event `best` and disc i's next contact with a side, the piston or a wall segment.
+
+    best: an event as `next_event` returns it. length_x, length_y: size of the box.
+    """
     disc = record[U(i)]
     for side in range(4):
         along_y = side >= 2
@@ -43,7 +47,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
 
 @inline
 def piston_hit(disc, piston, gravity):
-    """When a disc meets the piston."""
+    """Local time at which a disc touches the piston; NEVER if it does not or there is no piston."""
     if piston is not None:
         return piston_contact(disc, piston[0], gravity)
     return NEVER
@@ -51,7 +55,7 @@ def piston_hit(disc, piston, gravity):
 
 @inline
 def segment_event(disc, i, segments, effects, best):
-    """The earlier of `best` and disc i's meetings with wall segments in every image."""
+    """The earlier of the event `best` and disc i's next contact with a wall segment, in all images."""
     if segments is not None:
         for k in range(segments.shape[0]):
             if segments[U(k)].active:
@@ -68,7 +72,7 @@ def segment_event(disc, i, segments, effects, best):
 
 @inline
 def pair_event(record, i, j, effects, best):
-    """The earlier of `best` and the meetings of discs i and j in every image."""
+    """The earlier of the event `best` and the next collision of discs i and j, in all images."""
     for image_x in range(*image_range(effects.periodic, False)):
         for image_y in range(*image_range(effects.periodic, True)):
             images = images_between(effects.periodic, i, j, (image_x, image_y))
@@ -82,13 +86,16 @@ def pair_event(record, i, j, effects, best):
 
 @inline
 def image_range(periodic, along_y):
-    """The images of a neighbour along an axis."""
+    """Range of the neighbouring images along an axis: -1 to 1 where it is periodic, else 0 alone."""
     return (-1, 2) if is_periodic(periodic, along_y) else (0, 1)
 
 
 @inline
 def boundary_crossing_event(record, i, effects, periodic, best):
-    """The earlier of `best` and disc i's way through joined sides: no record changes, but the images to look at do."""
+    """The earlier of the event `best` and disc i's next crossing of a periodic side.
+
+    A crossing changes no record, but the images in which the disc has to be searched for contacts.
+    """
     if periodic is not None:
         disc = record[U(i)]
         for axis in range(2):
@@ -105,7 +112,7 @@ def boundary_crossing_event(record, i, effects, periodic, best):
 
 @inline
 def stop_event(piston, best):
-    """The earlier of `best` and the piston's arrival at its end stop, which precedes all events of its time."""
+    """The earlier of the event `best` and the piston's arrival at its end stop, which comes first if they tie."""
     if piston is not None:
         time = stop_contact(piston[0])
         if time <= best[0] and time < NEVER:
@@ -115,9 +122,10 @@ def stop_event(piston, best):
 
 @inline
 def next_event(record, box, effects):
-    """Time, what it is, disc, partner and image of the earliest event; records are in order of id.
+    """Earliest event as (local time, sort of event, disc, partner, image_x, image_y); records are in order of id.
 
-    The search goes through the events in the order that decides ties: smaller id, then walls, then the other id.
+    For a BOUNDARY_CROSSING the partner is the axis, and image_x the direction. Events are compared in the order that
+    decides between simultaneous ones: the smaller id first, then walls, then the other id.
     """
     best = (NEVER, PAIR, 0, 0, 0, 0)
     for i in range(record.shape[0]):
@@ -130,14 +138,18 @@ def next_event(record, box, effects):
 
 @inline
 def cross_boundary(periodic, i, axis, forward):
-    """Count a way through joined sides."""
+    """Count disc i's crossing of a periodic side along an axis; forward: 1 or -1."""
     if periodic is not None:
         periodic.boundary_crossings[U(i), axis] += np.int32(forward)
 
 
 @njit
 def advance_events(record, ids, box, effects, limits, epoch_start, batch, counters):
-    """As `event_driven.advance_events`, for records in order of id."""
+    """Process events up to the limits, or until the batch is full; records are in order of id.
+
+    Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
+    no log is kept. counters: (1,) COUNTERS, updated.
+    """
     rows = 0
     events = 0
     collisions = 0
@@ -181,7 +193,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
 
 
 class BruteForce:
-    """The method as an object: what an epoch needs between its start and its end."""
+    """The brute-force method: its records and effects between the start and the end of an epoch."""
 
     without_positions = False
     single_epoch = False
@@ -194,10 +206,10 @@ class BruteForce:
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """See `advance_events`."""
+        """Process events, see `advance_events`."""
         record, ids, box = self.discs
         return advance_events(record, ids, box, self._effects, limits, epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
-        """Deepest overlap at the start of the epoch; call it before `advance`."""
+        """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
         return deepest_overlap_of_all(self.discs.record, self._effects.periodic)

@@ -1,4 +1,4 @@
-"""The methods by which an engine finds events, and the one place where one is chosen."""
+"""The methods by which an engine finds events, and the one place where one of them is chosen."""
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
@@ -17,11 +17,11 @@ def make_method(
     seed: int = 0,
     one_sided: bool = False,
 ) -> Method:
-    """A fresh method by its name in a scene.
+    """Make a method by its name in a scene; ValueError for an unknown name or a missing parameter.
 
-    precision: of `brute_force`. dt: step of `time_driven`, time. Of `monte_carlo`: v_ref, relative
-    speed at which a pair collides for certain, length/time; seed; one_sided, whether impact parameters have one sign.
-    ValueError for another name.
+    precision: number type of `brute_force`. dt: step of `time_driven`, time. v_ref: relative speed at which
+    `monte_carlo` accepts a pair of the largest discs for certain, length/time. seed: of its random numbers. one_sided:
+    whether its impact parameters have one sign only.
     """
     match name:
         case "event_driven":

@@ -1,9 +1,9 @@
-"""The Monte Carlo method: discs of a homogeneous gas, without positions, that meet at random.
+"""The Monte Carlo method: discs of a homogeneous gas, without positions, that collide at random.
 
-Trials come as a Poisson process; each takes any pair and accepts it in the ratio of its collision rate to the largest
-there may be, so that the gas jumps exactly at the rates of its pairs. Such a process has no memory: an epoch begins
-with a fresh wait and with random numbers of its own, keyed by the seed and the epoch's start. Nothing but velocities
-has to be kept to go on from there.
+Trials are a Poisson process; each takes any pair and accepts it in the ratio of its collision rate to the largest
+possible one, so that collisions happen exactly at the rates of their pairs. Such a process has no memory: an epoch
+begins with a new waiting time and with random numbers of its own, keyed by the seed and the epoch's start. So the
+velocities alone are enough to continue a run.
 """
 
 import math
@@ -24,18 +24,18 @@ from idealgas.physics.random_pair import mean_trial_time, touch_at_random
 from idealgas.physics.restitution import record_collision
 
 U = np.uintp
-DRAWS = np.uint64(5)  # random numbers a trial may need
+DRAWS = np.uint64(5)  # random numbers reserved for a trial
 
 
 @inline
 def draw(start, k):
-    """Number k of a trial, in (0, 1]."""
+    """Random number in (0, 1] of a trial; start: counter of the trial, k: index of the number."""
     return unit_interval(mix(start + np.uint64(k) * GOLDEN))
 
 
 @inline
 def random_pair(number, start):
-    """Two different places, all pairs alike."""
+    """Two different indices of discs, all pairs with the same probability; start: counter of the trial."""
     i = np.int64(number * (1.0 - draw(start, 1)))
     j = np.int64((number - 1) * (1.0 - draw(start, 2)))
     return i, j + (j >= i)
@@ -43,7 +43,7 @@ def random_pair(number, start):
 
 @inline
 def collide_at_random(record, ids, i, j, time, offset, effects):
-    """A trial is accepted; offset: impact parameter over the sum of the radii."""
+    """Collide discs i and j at a local time; offset: impact parameter divided by the sum of the radii."""
     a = record[U(i)]
     b = record[U(j)]
     touch_at_random(a, b, offset)
@@ -61,11 +61,12 @@ def advance_trials(
 ):  # fmt: skip
     """Try pairs up to local time `until`, or to a limit, or until the batch is full.
 
-    Return the number of rows written, whether everything up to `until` has happened, and 0, or the relative speed
-    times the sum of the radii of a pair that has more than `fastest` of it.
+    Returns the number of rows written, whether everything up to `until` has happened, and a rate: relative speed times
+    sum of the radii (length²/time) of a pair that exceeds `fastest`, else 0.
 
-    key: of the epoch's random numbers. trial_time: mean. batch: None where no log is kept. counters: (1,) COUNTERS,
-    updated.
+    most_collisions, most_trials: numbers still allowed. key: of the epoch's random numbers. trial_time: mean time
+    between trials. fastest: largest relative speed times sum of the radii, length²/time. one_sided: whether impact
+    parameters have one sign only. batch: None where no log is kept. counters: (1,) COUNTERS, updated.
     """
     counter = counters[0]
     number = record.shape[0]
@@ -105,15 +106,15 @@ def advance_trials(
 
 
 class MonteCarlo:
-    """The method as an object: what an epoch needs between its start and its end."""
+    """The Monte Carlo method: its records and effects between the start and the end of an epoch."""
 
     without_positions = True
     single_epoch = False
 
     def __init__(self, seed: int, v_ref: float, one_sided: bool = False) -> None:
-        """v_ref: relative speed at which a pair of the largest discs is accepted for certain.
+        """Set the seed and v_ref, the relative speed at which a pair of the largest discs is accepted for certain.
 
-        one_sided: impact parameters of one sign only.
+        v_ref: length/time. one_sided: whether impact parameters have one sign only.
         """
         self._seed, self._v_ref, self._one_sided = seed, v_ref, one_sided
 
@@ -127,7 +128,7 @@ class MonteCarlo:
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """See `advance_trials`. UserError if a pair is faster than v_ref allows."""
+        """Try pairs, see `advance_trials`; UserError if a pair is faster than v_ref allows."""
         record, ids, _ = self.discs
         rows, reached, excess = advance_trials(
             record, ids, self._effects, limits.until, min(limits.events, limits.collisions), limits.trials,
@@ -143,11 +144,11 @@ class MonteCarlo:
         return rows, reached
 
     def deepest_overlap(self) -> float:
-        """None: nobody is anywhere."""
+        """Always 0: discs without positions do not overlap."""
         return 0.0
 
 
 def epoch_key(seed: int, epoch_start: float) -> np.uint64:
-    """Where the random numbers of an epoch begin."""
+    """Key of an epoch's random numbers, from the seed and the epoch's start (time)."""
     words = np.array([seed, np.float64(epoch_start).view(np.uint64)], np.uint64)
     return np.random.SeedSequence(words.view(np.uint32).tolist()).generate_state(1, np.uint64)[0]

@@ -1,9 +1,8 @@
 """The brute-force method in numbers of any length, for smooth elastic discs in a reflecting box.
 
-The laws are those of every method, compiled for each type of number of `physics.arithmetic`; the rule for ties is that
-of `brute_force`. All pairs are asked for the next event; as an answer follows from the two records
-alone, it is asked for anew only when one of them has changed. Local times count from the start of the run: one epoch is
-all.
+The laws are those of every method, compiled for each number type of `physics.arithmetic`; simultaneous events are
+ordered as in `brute_force`. All pairs are searched for the next event; as a contact depends on two records only, it is
+computed again only when one of them has changed. Local times count from the start of the run, which is a single epoch.
 """
 
 from typing import Any, NamedTuple
@@ -24,12 +23,23 @@ from idealgas.physics.effects import Effects
 from idealgas.physics.motion import position_after
 from idealgas.physics.periodic import NO_IMAGES
 
-NOBODY = -5  # beyond the sides, which are -1 to -4
+NO_PARTNER = -5  # the sides are -1 to -4
 ELASTIC = 2.0  # 1 + the coefficient of restitution
 
 
 class Columns(NamedTuple):
-    """The discs, in order of id: (N,) f4 or f8, or (N, 2) f8 of pairs. box: the same with its two lengths."""
+    """The discs as columns in order of id: each (N,) f4 or f8, or (N, 2) f8 for pairs of floats.
+
+    Attributes:
+        x: position along x, length.
+        y: position along y, length.
+        vx: velocity along x, length/time.
+        vy: velocity along y, length/time.
+        t: local time of position and velocity, time.
+        r: radius, length.
+        m: mass.
+        box: width and height of the box, length; (2,), or (2, 2) for pairs.
+    """
 
     x: np.ndarray
     y: np.ndarray
@@ -42,7 +52,17 @@ class Columns(NamedTuple):
 
 
 class Disc(NamedTuple):
-    """One disc: position, velocity, time of the record, radius and mass, as numbers of one length."""
+    """One disc as the laws take it; all numbers are of one type.
+
+    Attributes:
+        x: position along x, length.
+        y: position along y, length.
+        vx: velocity along x, length/time.
+        vy: velocity along y, length/time.
+        t: local time of position and velocity, time.
+        r: radius, length.
+        m: mass.
+    """
 
     x: Any
     y: Any
@@ -54,14 +74,19 @@ class Disc(NamedTuple):
 
 
 class Next(NamedTuple):
-    """The next event of each disc. time: a column. partner: (N,) i4, another disc, -1 - k for side k, or NOBODY."""
+    """The next event of each disc.
+
+    Attributes:
+        time: column of local times, time.
+        partner: (N,) i4, id of the other disc, -1 - k for side k, or NO_PARTNER.
+    """
 
     time: np.ndarray
     partner: np.ndarray
 
 
 def column_of(values: np.ndarray, precision: str) -> np.ndarray:
-    """Floats as a column of numbers."""
+    """Floats (n,) as a column of numbers of a precision: "float32", "float64" or "double-double"."""
     if precision == "float32":
         return np.array(values, np.float32)
     if precision == "float64":
@@ -70,34 +95,34 @@ def column_of(values: np.ndarray, precision: str) -> np.ndarray:
 
 
 def make_columns(gas: Gas, precision: str) -> Columns:
-    """The discs of a gas at local time 0."""
+    """The discs of a gas at local time 0, as columns of a precision."""
     arrays = (*gas.position.T, *gas.velocity.T, np.zeros(len(gas)), gas.radius, gas.mass, np.array(gas.box))
     return Columns(*(column_of(values, precision) for values in arrays))
 
 
 @inline
 def disc_at(c, i):
-    """Disc i as the laws take it."""
+    """Disc i of the columns."""
     return Disc(load(c.x, i), load(c.y, i), load(c.vx, i), load(c.vy, i), load(c.t, i), load(c.r, i), load(c.m, i))
 
 
 @inline
 def pair_time(c, i, j):
-    """Time of the next collision of discs i and j; NEVER if there is none."""
+    """Local time of the next collision of discs i and j; NEVER if there is none."""
     return contact_time(disc_at(c, i), disc_at(c, j), i, j, None, None, None, NO_IMAGES)
 
 
 @inline
 def side_time(c, i, side):
-    """Time at which disc i meets a side of the box; NEVER if it does not."""
+    """Local time at which disc i touches a side of the box; NEVER if it does not."""
     return side_contact(disc_at(c, i), side, load(c.box, side >> 1), None)
 
 
 @inline
-def find_next(c, coming, i):
-    """Ask all sides and discs for the next event of disc i, walls first, then by id."""
+def find_next(c, upcoming, i):
+    """Find and store the next event of disc i: sides come before discs, and these are in order of id."""
     best = number(NEVER, load(c.t, i))
-    partner = NOBODY
+    partner = NO_PARTNER
     for side in range(4):
         time = side_time(c, i, side)
         if time < best:
@@ -107,42 +132,42 @@ def find_next(c, coming, i):
             time = pair_time(c, i, j)
             if time < best:
                 best, partner = time, j
-    store(coming.time, i, best)
-    coming.partner[i] = partner
+    store(upcoming.time, i, best)
+    upcoming.partner[i] = partner
 
 
 @inline
-def offer(c, coming, i, j):
-    """Disc j has a new record: whether it meets disc i before all others."""
-    time, best = pair_time(c, i, j), load(coming.time, i)
-    if time < best or (j < coming.partner[i] and time <= best):
-        store(coming.time, i, time)
-        coming.partner[i] = j
+def offer(c, upcoming, i, j):
+    """Store the contact of disc i with disc j, whose record has changed, if it is disc i's next event."""
+    time, best = pair_time(c, i, j), load(upcoming.time, i)
+    if time < best or (j < upcoming.partner[i] and time <= best):
+        store(upcoming.time, i, time)
+        upcoming.partner[i] = j
 
 
 @njit
-def find_all(c, coming):
-    """The next event of every disc."""
+def find_all(c, upcoming):
+    """Find and store the next event of every disc."""
     for i in range(c.t.shape[0]):
-        find_next(c, coming, i)
+        find_next(c, upcoming, i)
 
 
 @inline
-def find_again(c, coming, i, j):
-    """What has become of all next events after one of discs i and j; j < 0: of disc i and a side."""
+def find_again(c, upcoming, i, j):
+    """Update all next events after an event of discs i and j, or of disc i and a side if j < 0."""
     for k in range(c.t.shape[0]):
-        partner = coming.partner[k]
+        partner = upcoming.partner[k]
         if k in (i, j) or partner == i or (j >= 0 and partner == j):
-            find_next(c, coming, k)
+            find_next(c, upcoming, k)
         else:
-            offer(c, coming, k, i)
+            offer(c, upcoming, k, i)
             if j >= 0:
-                offer(c, coming, k, j)
+                offer(c, upcoming, k, j)
 
 
 @inline
 def move(c, i, time):
-    """Bring disc i to a time."""
+    """Move disc i in free flight to a local time."""
     delay = time - load(c.t, i)
     store(c.x, i, position_after(load(c.x, i), load(c.vx, i), None, delay))
     store(c.y, i, position_after(load(c.y, i), load(c.vy, i), None, delay))
@@ -150,22 +175,22 @@ def move(c, i, time):
 
 
 @inline
-def turn(velocity, i):
-    """Reverse a component of disc i's velocity."""
+def reverse(velocity, i):
+    """Reverse one component of disc i's velocity; velocity: column."""
     speed = load(velocity, i)
     store(velocity, i, number(0.0, speed) - speed)
 
 
 @inline
 def resolve_side(c, i, side, time):
-    """Disc i meets a side of the box."""
+    """Move disc i to a local time and reflect it at a side of the box."""
     move(c, i, time)
-    turn(c.vx if side < 2 else c.vy, i)
+    reverse(c.vx if side < 2 else c.vy, i)
 
 
 @inline
 def resolve_pair(c, i, j, time):
-    """Discs i and j meet."""
+    """Move discs i and j to a local time and collide them."""
     move(c, i, time)
     move(c, j, time)
     a, b = disc_at(c, i), disc_at(c, j)
@@ -178,7 +203,7 @@ def resolve_pair(c, i, j, time):
 
 @inline
 def write_record(c, i, disc):
-    """Round disc i to a record."""
+    """Round disc i's numbers to float64 and write them into its record."""
     disc.x = rounded(load(c.x, i))
     disc.y = rounded(load(c.y, i))
     disc.vx = rounded(load(c.vx, i))
@@ -187,8 +212,12 @@ def write_record(c, i, disc):
 
 
 @njit
-def advance_precisely(c, coming, record, ids, effects, limits, epoch_start, batch, counters):
-    """As `brute_force.advance_events`; record: the discs rounded, kept so."""
+def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, batch, counters):
+    """Process events up to the limits, or until the batch is full; discs are in order of id.
+
+    Returns the number of rows written, and whether everything up to the limit of time has happened. record: the discs
+    rounded to float64, updated. batch: None where no log is kept. counters: (1,) COUNTERS, updated.
+    """
     rows = 0
     events = 0
     collisions = 0
@@ -198,15 +227,15 @@ def advance_precisely(c, coming, record, ids, effects, limits, epoch_start, batc
     capacity = batch_capacity(batch)
     while events < limits.events and collisions < limits.collisions and rows < capacity:
         i = 0
-        time = load(coming.time, 0)
+        time = load(upcoming.time, 0)
         for k in range(1, record.shape[0]):
-            if load(coming.time, k) < time:
-                i, time = k, load(coming.time, k)
+            if load(upcoming.time, k) < time:
+                i, time = k, load(upcoming.time, k)
         clock = rounded(time)
         if clock > limits.until:
             reached = True
             break
-        j = np.int64(coming.partner[i])
+        j = np.int64(upcoming.partner[i])
         if j >= 0:
             resolve_pair(c, i, j, time)
             write_record(c, i, record[i])
@@ -217,7 +246,7 @@ def advance_precisely(c, coming, record, ids, effects, limits, epoch_start, batc
             resolve_side(c, i, -1 - j, time)
             write_record(c, i, record[i])
             rows += write_side_hit(batch, rows, epoch_start + clock, i, -1 - j, record[i], effects)
-        find_again(c, coming, i, j)
+        find_again(c, upcoming, i, j)
         events += 1
         events_at_this_time = check_clock(clock, now, events_at_this_time, record.shape[0])
         now = clock
@@ -227,43 +256,50 @@ def advance_precisely(c, coming, record, ids, effects, limits, epoch_start, batc
 
 @njit
 def turn_back(c, time):
-    """Bring all discs to a local time, reverse their velocities and count time from there."""
+    """Move all discs to a local time, reverse their velocities, and make local times count from there."""
     end = number(time, load(c.t, 0))
     for i in range(c.t.shape[0]):
         move(c, i, end)
-        turn(c.vx, i)
-        turn(c.vy, i)
+        reverse(c.vx, i)
+        reverse(c.vy, i)
         store(c.t, i, number(0.0, end))
 
 
 class PreciseBruteForce:
-    """The method as an object. columns: the discs as they are, with all their digits."""
+    """The brute-force method in numbers of any length.
+
+    Attributes:
+        columns: the discs with all their digits.
+    """
 
     without_positions = False
     single_epoch = True
 
     def __init__(self, precision: str, start: Columns | None = None) -> None:
-        """precision: "float32", "float64" or "double-double". start: the discs, if the gas has not all their digits."""
+        """Set the precision: "float32", "float64" or "double-double".
+
+        start: the discs at the start of the run, if they have more digits than those of a gas.
+        """
         self._precision, self._start = precision, start
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin."""
+        """Begin the run's only epoch."""
         self.discs = make_discs(gas, np.arange(len(gas)))
         start = self._start or make_columns(gas, self._precision)
         self.columns = Columns(*(column.copy() for column in start))
-        self._coming = Next(np.empty_like(start.t), np.empty(len(gas), np.int32))
+        self._upcoming = Next(np.empty_like(start.t), np.empty(len(gas), np.int32))
         self._effects = effects
-        find_all(self.columns, self._coming)
+        find_all(self.columns, self._upcoming)
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """See `advance_precisely`."""
+        """Process events, see `advance_precisely`."""
         record, ids, _ = self.discs
         return advance_precisely(
-            self.columns, self._coming, record, ids, self._effects, limits, epoch_start, batch, counters
+            self.columns, self._upcoming, record, ids, self._effects, limits, epoch_start, batch, counters
         )
 
     def deepest_overlap(self) -> float:
-        """Deepest overlap at the start; call it before `advance`."""
+        """Deepest overlap at the start, divided by the sum of the radii; to be called before `advance`."""
         return deepest_overlap_of_all(self.discs.record, None)

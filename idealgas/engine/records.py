@@ -1,4 +1,4 @@
-"""The arrays the engines work on: one 64-byte record a disc, in an order of memory that is not the order of ids."""
+"""Arrays of the engines: one 64-byte record for each disc, in an order that is not the order of ids."""
 
 from typing import NamedTuple
 
@@ -12,33 +12,41 @@ from idealgas.physics.periodic import wrap
 
 DISC = np.dtype(
     [
-        ("x", "f8"), ("y", "f8"), ("vx", "f8"), ("vy", "f8"),
+        ("x", "f8"), ("y", "f8"), ("vx", "f8"), ("vy", "f8"),  # position, length; velocity, length/time
         ("t", "f8"),  # local time of the record, from the start of the epoch
-        ("r", "f8"), ("m", "f8"),
-        ("column", "i2"), ("row", "i2"),  # cell
+        ("r", "f8"), ("m", "f8"),  # radius, length; mass
+        ("column", "i2"), ("row", "i2"),  # of its cell
         ("count", "u4"),  # events of this disc in this epoch
     ],
     align=True,
 )  # fmt: skip
 
-MOST_AT_ONCE = 100_000  # events a disc at one instant, far beyond what any pile-up of discs needs
+MOST_AT_ONCE = 100_000  # events per disc at one instant: far more than touching discs ever need
 
 COUNTERS = np.dtype(
     [
-        ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),
-        ("crossings", "i8"), ("stale", "i8"), ("time", "f8"),  # local time of the last event
-        ("events_at_this_time", "i8"),  # events since the clock last moved
-        ("trials", "i8"), ("trial_time", "f8"),  # of Monte Carlo: since time 0; local time of the last one
+        ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),  # numbers in this epoch
+        ("crossings", "i8"), ("stale", "i8"),  # numbers of cell crossings and of stale contacts in this epoch
+        ("time", "f8"),  # local time of the last event
+        ("events_at_this_time", "i8"),  # number of events in a row at that time
+        ("trials", "i8"), ("trial_time", "f8"),  # Monte Carlo trials since time 0; local time of the last trial
     ]
 )  # fmt: skip
 
 
 class EventCascadeError(Exception):
-    """A disc collides without end at one instant."""
+    """A disc has collisions without end at one instant."""
 
 
 class Limits(NamedTuple):
-    """until: local time. events, collisions, trials: how many more of them."""
+    """When a call of an engine's kernel ends: at a time, or after a number of events.
+
+    Attributes:
+        until: local time, time.
+        events: largest number of events in this call.
+        collisions: largest number of collisions of two discs in this call.
+        trials: largest number of Monte Carlo trials in this call.
+    """
 
     until: float
     events: int
@@ -47,7 +55,13 @@ class Limits(NamedTuple):
 
 
 class Discs(NamedTuple):
-    """record: (N,) DISC. id: (N,) u4, the id of the disc at each place. box: (Lx, Ly)."""
+    """Records of the discs in memory order.
+
+    Attributes:
+        record: (N,) DISC by index.
+        id: (N,) u4, id of the disc at each index.
+        box: (Lx, Ly), length.
+    """
 
     record: np.recarray
     id: np.ndarray
@@ -55,7 +69,7 @@ class Discs(NamedTuple):
 
 
 def make_discs(gas: Gas, order: np.ndarray) -> Discs:
-    """Records at local time 0; `order` (N,) lists the ids in their order of memory."""
+    """Records of a gas at local time 0; order: (N,) the ids in their order in memory."""
     record = aligned(len(gas), DISC)
     record.x, record.y = gas.position[order].T
     record.vx, record.vy = gas.velocity[order].T
@@ -67,9 +81,9 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 @inline
 def check_clock(time, now, events_at_this_time, n):
-    """How many events in a row have happened at one instant.
+    """Number of events in a row at one instant, after an event at local time `time` that follows one at `now`.
 
-    Raises StandingClock if it is to be without end, ValueError if time runs backwards.
+    EventCascadeError if they are too many to end, ValueError if time runs backwards. n: number of discs.
     """
     if time < now:
         raise ValueError("time ran backwards")
@@ -82,7 +96,10 @@ def check_clock(time, now, events_at_this_time, n):
 
 @inline
 def add_to_counters(counter, events, disc_collisions, crossings, stale, now, events_at_this_time):
-    """Count what happened in one call of a kernel; still: events since the clock last moved."""
+    """Add the events of one call of a kernel to the counters.
+
+    now: local time of the last event. events_at_this_time: number of events in a row at that time.
+    """
     counter.events += events
     counter.disc_collisions += disc_collisions
     counter.wall_hits += events - disc_collisions
@@ -94,13 +111,11 @@ def add_to_counters(counter, events, disc_collisions, crossings, stale, now, eve
 
 @njit
 def synchronise(record, ids, time, gravity, periodic):
-    """Bring every disc to one local time."""
+    """Move every disc to one local time, and wrap its position into the box."""
     for i in range(record.shape[0]):
         advance(record[i], time, gravity)
         wrap(record[i], ids[i], periodic)
 
 
-UNLIMITED = 1 << 62
-
-
-LATEST = 0.25 * NEVER
+UNLIMITED = 1 << 62  # number of events, where there is no limit
+LATEST = 0.25 * NEVER  # time, where there is no limit

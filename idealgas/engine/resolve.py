@@ -1,4 +1,4 @@
-"""What an event does to the records: both discs, or disc and wall, are brought to its time, collide, and are noted."""
+"""Effect of an event on the records: the discs, or disc and wall, are moved to its time, collide, and are counted."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ U = np.uintp
 
 @inline
 def energy_of(disc, own, rotation):
-    """Kinetic energy of a disc."""
+    """Kinetic energy of a disc, spin included, mass length²/time²."""
     energy = 0.5 * disc.m * (disc.vx * disc.vx + disc.vy * disc.vy)
     if rotation is not None:
         energy += 0.5 * rotation.inertia[U(own)] * rotation.omega[U(own)] ** 2
@@ -27,14 +27,14 @@ def energy_of(disc, own, rotation):
 
 @inline
 def record_wall_energy(wall_energy, wall, energy):
-    """Add to the energy that a wall gave."""
+    """Add an energy (mass length²/time²) to what a wall has given to discs, where that is recorded."""
     if wall_energy is not None:
         wall_energy[U(wall)] += energy
 
 
 @inline
 def finish(disc, own, time, effects):
-    """What follows every change of a record."""
+    """Wrap a disc's record after an event, store the time of the collision, and count the event."""
     wrap(disc, own, effects.periodic)
     record_collision(effects.restitution, own, time)
     disc.count += np.uint32(1)
@@ -42,7 +42,10 @@ def finish(disc, own, time, effects):
 
 @inline
 def resolve_pair(a, b, a_id, b_id, time, images, effects):
-    """Two discs meet; images: box lengths between their records."""
+    """Collide two discs at a local time.
+
+    images: numbers of box lengths (x, y) between their records, where sides are periodic.
+    """
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
     collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
@@ -52,7 +55,10 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
 @inline
 def bounce(disc, own, nx, ny, wall, time, effects):
-    """A disc that stands at the contact meets a wall at rest with unit normal (nx, ny)."""
+    """Reflect or emit a disc, whose record is at the time of contact, at a wall at rest; record the wall's energy.
+
+    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
+    """
     before = energy_of(disc, own, effects.rotation)
     collide_with_wall(disc, own, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
     record_wall_energy(effects.wall_energy, wall, energy_of(disc, own, effects.rotation) - before)
@@ -61,7 +67,7 @@ def bounce(disc, own, nx, ny, wall, time, effects):
 
 @inline
 def resolve_side(disc, own, side, time, effects):
-    """A disc meets a side of the box."""
+    """Collide a disc with a side of the box at a local time."""
     advance(disc, time, effects.gravity)
     nx, ny = inward_normal(side)
     bounce(disc, own, nx, ny, side, time, effects)
@@ -69,7 +75,10 @@ def resolve_side(disc, own, side, time, effects):
 
 @inline
 def resolve_segment(disc, own, segment, time, images, segments, effects):
-    """A disc meets a wall segment, `images` box lengths away from its record; returns whether it met an end."""
+    """Collide a disc with a wall segment at a local time; return whether it touches an end of the segment.
+
+    images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic.
+    """
     if segments is not None:
         advance(disc, time, effects.gravity)
         nx, ny, at_end = segment_normal(disc, segments[U(segment)], effects.periodic, images)
@@ -80,7 +89,7 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
 
 @inline
 def resolve_piston(disc, own, time, piston, effects):
-    """A disc meets the piston."""
+    """Collide a disc with the piston at a local time."""
     if piston is not None:
         p = piston[0]
         advance(disc, time, effects.gravity)
@@ -93,7 +102,7 @@ def resolve_piston(disc, own, time, piston, effects):
 
 @inline
 def resolve_stop(time, piston):
-    """The piston meets its end stop and turns back."""
+    """Reverse the piston's velocity at its end stop, which it reaches at a local time."""
     if piston is not None:
         p = piston[0]
         advance_piston(p, time)

@@ -1,4 +1,4 @@
-"""Writing events into a batch; each function returns the rows it wrote, none where no log is kept."""
+"""Writing events into a batch; each function returns the number of rows it wrote, 0 where no log is kept."""
 
 import numpy as np
 
@@ -7,12 +7,12 @@ from idealgas.events import Kind
 from idealgas.sides import FIRST_SEGMENT
 
 DISC, WALL, WALL_END, PISTON = int(Kind.DISC), int(Kind.WALL), int(Kind.WALL_END), int(Kind.PISTON)
-NO_END = 1 << 62
+NO_END = 1 << 62  # rows, where no log is kept
 
 
 @inline
 def batch_capacity(batch):
-    """Rows that may be written before a last event is."""
+    """Number of rows that may be full when an event is processed: a pair needs two more."""
     if batch is not None:
         return batch.time.shape[0] - 1
     return NO_END
@@ -20,7 +20,7 @@ def batch_capacity(batch):
 
 @inline
 def write_position(column, row, disc):
-    """Where the disc is, if it is anywhere."""
+    """Write a disc's position (length) into a row, where the batch has positions."""
     if column is not None:
         column[row, 0] = disc.x
         column[row, 1] = disc.y
@@ -28,14 +28,14 @@ def write_position(column, row, disc):
 
 @inline
 def write_spin(column, row, own, rotation):
-    """The angular velocity, where there is one."""
+    """Write a disc's angular velocity (1/time) into a row, where discs spin."""
     if rotation is not None:
         column[row] = rotation.omega[np.uintp(own)]
 
 
 @inline
 def write_image(column, row, own, periodic):
-    """The image, where sides are periodic."""
+    """Write a disc's image (box lengths along x and y) into a row, where sides are periodic."""
     if periodic is not None:
         column[row, 0] = periodic.image[np.uintp(own), 0]
         column[row, 1] = periodic.image[np.uintp(own), 1]
@@ -43,7 +43,7 @@ def write_image(column, row, own, periodic):
 
 @inline
 def write_row(batch, row, time, own, partner, kind, disc, effects):
-    """One disc's row: its state after the event."""
+    """Write one disc's row of an event: its state after the event."""
     u = np.uintp(row)
     batch.time[u] = time
     batch.disc[u] = own
@@ -58,14 +58,14 @@ def write_row(batch, row, time, own, partner, kind, disc, effects):
 
 @inline
 def fetch_column(column, row):
-    """Bring the memory of a column's coming rows near, if there is the column."""
+    """Prefetch the memory of a column's next rows, if the batch has the column."""
     if column is not None:
         fetch_next_line(column, row)
 
 
 @inline
 def fetch_next_rows(batch, row):
-    """Bring the memory of the rows to come near: the next pair is written sooner for it."""
+    """Prefetch the memory of the next rows, so that the next pair is written sooner."""
     fetch_column(batch.time, row)
     fetch_column(batch.disc, row)
     fetch_column(batch.partner, row)
@@ -79,7 +79,7 @@ def fetch_next_rows(batch, row):
 
 @inline
 def write_pair(batch, row, time, record, ids, i, j, effects):
-    """Two discs met: the row of the smaller id comes first."""
+    """Write both rows of a collision of discs i and j, that of the smaller id first."""
     if batch is not None:
         fetch_next_rows(batch, np.uintp(row))
         a, b = (i, j) if ids[np.uintp(i)] < ids[np.uintp(j)] else (j, i)
@@ -93,7 +93,7 @@ def write_pair(batch, row, time, record, ids, i, j, effects):
 
 @inline
 def write_trial(batch, row, trial):
-    """The number of a Monte Carlo trial, into both rows of a pair."""
+    """Write the number of a Monte Carlo trial into both rows of a pair."""
     if batch is not None:
         batch.trial[np.uintp(row)] = trial
         batch.trial[np.uintp(row + 1)] = trial
@@ -101,7 +101,7 @@ def write_trial(batch, row, trial):
 
 @inline
 def write_side_hit(batch, row, time, own, side, disc, effects):
-    """A disc met a side of the box."""
+    """Write the row of a disc that hit a side of the box."""
     if batch is not None:
         write_row(batch, row, time, np.int64(own), -1 - side, WALL, disc, effects)
         return 1
@@ -110,7 +110,7 @@ def write_side_hit(batch, row, time, own, side, disc, effects):
 
 @inline
 def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
-    """A disc met a wall segment."""
+    """Write the row of a disc that hit a wall segment."""
     if batch is not None:
         kind = WALL_END if at_end else WALL
         write_row(batch, row, time, np.int64(own), -1 - FIRST_SEGMENT - segment, kind, disc, effects)
@@ -120,7 +120,7 @@ def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
 
 @inline
 def write_piston_hit(batch, row, time, own, piston, disc, effects):
-    """A disc met the piston."""
+    """Write the row of a disc that hit the piston."""
     if batch is not None and piston is not None:
         write_row(batch, row, time, np.int64(own), -1 - piston[0].side, PISTON, disc, effects)
         return 1

@@ -1,4 +1,4 @@
-"""A gas on its way through the epochs of its run."""
+"""The simulation of a gas through the epochs of its run."""
 
 import copy
 from collections.abc import Iterator
@@ -17,31 +17,48 @@ from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_chang
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
 TRAJECTORY = 3
-"""Version of the laws of motion, raised by hand whenever a log of before would go on otherwise than it began."""
+"""Version of the trajectory, raised by hand whenever the laws would continue an older log differently than it began."""
 
 
 class Method(Protocol):
-    """What the epochs ask of a method.
+    """What a simulation needs of a method.
 
-    homogeneous: its discs have no positions; those of the gas stay as they are. single_epoch: it has digits that would
-    be lost between epochs.
+    Attributes:
+        discs: records of the discs in the present epoch.
+        without_positions: whether its discs have no positions; those of the gas then stay as they are.
+        single_epoch: whether the run must be one epoch, because its digits would be lost between epochs.
     """
 
     discs: Discs
     without_positions: bool
     single_epoch: bool
 
-    def start(self, gas: Gas, effects: Effects) -> None: ...
+    def start(self, gas: Gas, effects: Effects) -> None:
+        """Begin an epoch with a gas at local time 0."""
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
-    ) -> tuple[int, bool]: ...
+    ) -> tuple[int, bool]:
+        """Process events up to the limits, or until the batch is full.
 
-    def deepest_overlap(self) -> float: ...
+        Returns the number of rows written, and whether everything up to the limit of time has happened.
+        """
+        ...
+
+    def deepest_overlap(self) -> float:
+        """Deepest overlap of two discs, divided by the sum of their radii."""
+        ...
 
 
 class Stop(NamedTuple):
-    """Where a run ends, whichever comes first. time: time. events, disc_collisions, trials: numbers since time 0."""
+    """When a run ends: at a time or at a number, whichever is reached first.
+
+    Attributes:
+        time: time since the start of the run.
+        events: number of events since time 0.
+        disc_collisions: number of collisions of two discs since time 0.
+        trials: number of Monte Carlo trials since time 0.
+    """
 
     time: float = LATEST
     events: int = UNLIMITED
@@ -54,7 +71,14 @@ NO_STOP = Stop()
 
 @dataclass
 class Totals:
-    """What happened since time 0, up to the start of the epoch. trials: of pairs, by Monte Carlo."""
+    """Numbers of events of a run since time 0.
+
+    Attributes:
+        events: all events that are logged.
+        disc_collisions: collisions of two discs.
+        wall_hits: hits of walls, piston included.
+        trials: pairs tried by Monte Carlo.
+    """
 
     events: int = 0
     disc_collisions: int = 0
@@ -64,10 +88,15 @@ class Totals:
 
 @dataclass
 class Simulation:
-    """Advances a gas by events; all of it follows from gas, effects, time and totals at the start of an epoch.
+    """A gas that is advanced by events; all follows from gas, effects, time and totals at the start of an epoch.
 
-    gas: at the start of the epoch. method: a fresh method. effects: with their state, which the simulation changes.
-    time: of the start of the epoch.
+    Attributes:
+        gas: the gas at the start of the epoch.
+        method: method that finds the events, not used by another simulation.
+        effects: parameters and state of the effects; the simulation changes the state.
+        time: time of the start of the epoch.
+        epoch: number of the epoch, from 0.
+        totals: numbers of events up to the start of the epoch.
     """
 
     gas: Gas
@@ -78,10 +107,12 @@ class Simulation:
     totals: Totals = field(default_factory=Totals)
 
     def __post_init__(self) -> None:
+        """Begin the first epoch."""
         self._encounters = encounters_per_length(self.gas, periodic_axes(self.effects.periodic))
         self._begin()
 
     def _begin(self) -> None:
+        """Begin an epoch with the present gas, effects and time."""
         begin_epoch(self.effects, self.time)
         until_change = next_change(self.effects, self.time) - self.time
         self.length = until_change
@@ -98,8 +129,9 @@ class Simulation:
     def advance(self, stop: Stop, batch: EventBatch | None, events: int = UNLIMITED, pause: float = LATEST) -> int:
         """Process events until the epoch is over, the stop is reached or the batch is full; return the rows filled.
 
-        events: a further limit for this call. pause: time at which to return with `paused` set, unless it is later
-        than the end of the epoch or the stop; it changes no event. UserError if the clock stands still.
+        events: largest number of events in this call. pause: time at which to return with `paused` set, unless it is
+        later than the end of the epoch or the stop; it changes no event. UserError if a disc has collisions without end
+        at one instant.
         """
         done = self.counters
         end = min(self.length, stop.time - self.time, LATEST)
@@ -112,7 +144,7 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-        except EventCascadeError as error:  # of a kernel, which cannot say when
+        except EventCascadeError as error:  # raised by a kernel, which cannot tell the time
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0]["time"])
@@ -121,8 +153,9 @@ class Simulation:
     def slices(
         self, stop: Stop, batch: EventBatch | None = None, events: int = UNLIMITED, pause: float = LATEST
     ) -> Iterator[int]:
-        """Advance to the stop or the pause through as many epochs as it takes; yield after each call of `advance` the
-        rows it filled, from the first row of the batch.
+        """Advance to the stop or the pause, through as many epochs as that takes.
+
+        After each call of `advance` the number of rows that it filled, from the batch's first row on, is yielded.
         """
         while not self.finished(stop):
             yield self.advance(stop, batch, events, pause)
@@ -132,7 +165,7 @@ class Simulation:
                 self.next_epoch()
 
     def run(self, stop: Stop = NO_STOP, pause: float = LATEST) -> None:
-        """Advance to the stop or the pause through as many epochs as it takes, without rows."""
+        """Advance to the stop or the pause, through as many epochs as that takes, without a batch."""
         for _ in self.slices(stop, pause=pause):
             pass
 
@@ -145,7 +178,7 @@ class Simulation:
 
     @property
     def counters(self) -> Totals:
-        """What happened since time 0, up to now."""
+        """Numbers of events from time 0 until now."""
         counter = self._counters[0]
         return Totals(
             self.totals.events + int(counter["events"]),
@@ -160,16 +193,15 @@ class Simulation:
         return self.time + float(self._counters[0]["time"])
 
     def state(self) -> tuple[Gas, Effects]:
-        """The gas and the effects where the last call of `advance` left them: at its time limit, or at the last
-        event before.
+        """Copies of the gas and its images, and the effects, where the last call of `advance` ended.
 
-        The gas and its images are copies.
+        That is its time limit or, if it was not reached, the time of the last event.
         """
         periodic = copy_of(self.effects.periodic)
         return self._synchronised(self._local_now, periodic), self.effects._replace(periodic=periodic)
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
-        """The gas at a local time; the records stay as they are."""
+        """The gas at a local time; the records do not change."""
         record, ids, _ = self.method.discs
         record = record.copy()
         synchronise(record, ids, local_time, self.effects.gravity, periodic)
@@ -181,7 +213,7 @@ class Simulation:
         return replace(self.gas, position=position, velocity=velocity)
 
     def next_epoch(self) -> None:
-        """Bring all discs to the end of the epoch and begin the next one there."""
+        """Move all discs to the end of the epoch and begin the next one there."""
         self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.counters
         end_epoch(self.effects, self.length)
         self.time += self.length
@@ -189,11 +221,11 @@ class Simulation:
         self._begin()
 
     def audit(self) -> Audit:
-        """What must hold, at the start of the epoch."""
+        """Conserved quantities and overlaps at the start of the epoch."""
         return audit(self.gas, self.overlap)
 
     def audit_of(self, gas: Gas) -> Audit:
-        """What must hold, of a gas that `state` gave."""
+        """Conserved quantities and overlaps of a gas that `state` returned."""
         method = copy.copy(self.method)
         method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
         return audit(gas, method.deepest_overlap())

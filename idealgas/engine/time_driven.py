@@ -1,9 +1,9 @@
-"""The time-driven method: all discs fly for a step, then whatever overlaps or stands outside and comes nearer collides.
+"""The time-driven method: all discs fly for a step, then those that overlap or stand outside, and approach, collide.
 
-It is the rival of the event-driven method and wrong by its step: a contact is found late, half a step on the average,
-with a turned line of centres; what lies between two steps is missed. As fast as such a method gets: near pairs are
-listed once, by cells, and the list serves until two discs may have come `skin` nearer (Verlet, Phys. Rev. 159, 98
-(1967); Allen & Tildesley, Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
+It is the rival of the event-driven method, with errors that grow with its step: a contact is found late, by half a step
+on average, with a rotated line of centres; a contact that begins and ends between two steps is missed. It is as fast as
+such a method gets: near pairs are listed once, by cells, and the list serves until two discs may have come `skin`
+nearer (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley, Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
 """
 
 import math
@@ -22,25 +22,32 @@ from idealgas.physics.motion import advance
 from idealgas.physics.periodic import is_periodic, nearest_images, periodic_axes, separation, wrap
 
 U = np.uintp
-NEAR = 3.0  # mean number of discs within reach: that was fastest
-LEAST_SKIN = 0.2  # diameters
-CELLS_A_DISC = 4  # at most
+NEAR = 3.0  # mean number of discs within reach that was fastest
+LEAST_SKIN = 0.2  # in diameters
+CELLS_A_DISC = 4  # largest number of cells per disc
 
 STEP = np.dtype(
     [
-        ("number", "i8"),  # of the step, from time 0
-        ("cursor", "i8"),  # what has been dealt with in it: discs, then pairs
-        ("pairs", "i8"),  # listed
-        ("furthest", "f8"),  # square of the longest way in this step
-        ("spent", "f8"),  # how much nearer two discs may be than when they were listed
+        ("number", "i8"),  # number of the step, counted from time 0
+        ("cursor", "i8"),  # discs, then pairs, that are finished in this step
+        ("pairs", "i8"),  # number of listed pairs
+        ("furthest", "f8"),  # square of the largest displacement of a disc in this step, length²
+        ("spent", "f8"),  # by how much two discs may have approached since they were listed, length
     ]
 )
 
 
 class Nearby(NamedTuple):
-    """pairs: (M, 2) i4, listed. cell, order: (N,) i4, first: (columns * rows + 1,) i4: discs in order of their cells.
+    """List of near pairs, and the cells by which it is made.
 
-    skin: length by which listed discs may be apart.
+    Attributes:
+        pairs: (M, 2) i4, indices of the two discs of each near pair.
+        cell: (N,) i4, cell of each disc.
+        order: (N,) i4, indices of the discs in order of their cells.
+        first: (columns * rows + 1,) i4, position in `order` of each cell's first disc.
+        columns: number of cells along x.
+        rows: number of cells along y.
+        skin: largest gap between the surfaces of two listed discs, length.
     """
 
     pairs: np.ndarray
@@ -53,12 +60,12 @@ class Nearby(NamedTuple):
 
 
 def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
-    """Nothing listed yet."""
+    """Cells and an empty list of pairs for a gas; periodic: whether the sides along x and along y are periodic."""
     n, widest = len(gas), 2.0 * float(gas.radius.max())
     skin = max(math.sqrt(NEAR * gas.area / (math.pi * n)) - widest, LEAST_SKIN * widest)
     size = max(widest + skin, math.sqrt(gas.area / (CELLS_A_DISC * n)))
     columns, rows = (max(int(length / size), 1) for length in gas.box)
-    if periodic[0] and columns < 3:  # two would be neighbours on both sides
+    if periodic[0] and columns < 3:  # two cells would be neighbours on both sides
         columns = 1
     if periodic[1] and rows < 3:
         rows = 1
@@ -69,7 +76,7 @@ def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
 
 @inline
 def sort_into_cells(record, ids, box, near, periodic):
-    """Counting sort of the discs by cell; those outside belong to the cell next to them."""
+    """Counting sort of the discs by cell; discs outside the box belong to the nearest cell."""
     near.first[:] = 0
     for i in range(record.shape[0]):
         disc = record[U(i)]
@@ -88,7 +95,7 @@ def sort_into_cells(record, ids, box, near, periodic):
 
 @inline
 def neighbour_cell(near, column, row, k, periodic):
-    """One of a cell's four neighbours to the right and above; -1 if there is none."""
+    """Index of one of a cell's four neighbours (k = 0 to 3) to the right and above; -1 if there is none."""
     column += 1 if k == 0 else k - 2
     row += 0 if k == 0 else 1
     if is_periodic(periodic, False) and near.columns > 1:
@@ -101,7 +108,7 @@ def neighbour_cell(near, column, row, k, periodic):
 
 @njit
 def list_pairs(record, ids, box, near, periodic):
-    """List the pairs within reach; the number of them, of which only those that there is room for are listed."""
+    """List the pairs of discs with a gap below the skin, as far as there is room; return the number of all of them."""
     sort_into_cells(record, ids, box, near, periodic)
     count = 0
     for c in range(near.columns * near.rows):
@@ -125,7 +132,7 @@ def list_pairs(record, ids, box, near, periodic):
 
 @inline
 def side_beyond(disc, box, periodic):
-    """The side of the box that a disc reaches through on its way out; -1 if there is none."""
+    """Side of the box beyond which a disc reaches while it moves outwards; -1 if there is none."""
     if not is_periodic(periodic, False):
         if disc.x < disc.r and disc.vx < 0.0:
             return 0
@@ -141,7 +148,10 @@ def side_beyond(disc, box, periodic):
 
 @inline
 def fly(record, step, box, time, effects):
-    """Move discs to a time, from the cursor to the first that reaches through a side: which side; -1 if none does."""
+    """Move discs to a local time, from the cursor on, to the first that reaches beyond a side.
+
+    Returns that side, or -1 if no disc reaches beyond one.
+    """
     furthest = step.furthest
     side = -1
     cursor = step.cursor
@@ -162,7 +172,10 @@ def fly(record, step, box, time, effects):
 
 @inline
 def find_overlap(record, step, near, periodic):
-    """Move the cursor to the first pair that overlaps and comes nearer: how deep, of the radii; -1 if there is none."""
+    """Move the cursor to the first listed pair of discs that overlap and approach.
+
+    Returns their overlap divided by the sum of the radii, or -1 if there is no such pair.
+    """
     cursor = step.cursor - record.shape[0]
     depth = -1.0
     while cursor < step.pairs:
@@ -196,9 +209,10 @@ def advance_steps(
 ):
     """Take steps up to the limits, or until the batch or the list of pairs is full.
 
-    Return the number of rows written, and whether everything up to the limit of time has happened. A limit may be
-    reached in the middle of a step; it goes on from there. deepest: (1,) f8, overlap at a collision, of the sum of the
-    radii.
+    Returns the number of rows written, and whether everything up to the limit of time has happened. A limit may be
+    reached in the middle of a step; the next call continues from there. step: (1,) STEP, updated. dt: length of a step,
+    time. deepest: (1,) f8, deepest overlap of a collision, divided by the sum of the radii, updated. batch: None where
+    no log is kept. counters: (1,) COUNTERS, updated.
     """
     s = step[0]
     number = record.shape[0]
@@ -248,17 +262,18 @@ def advance_steps(
 
 
 class TimeDriven:
-    """The method as an object: what an epoch needs between its start and its end; steps end at multiples of dt."""
+    """The time-driven method: its records and effects in an epoch; steps end at multiples of dt (time)."""
 
     without_positions = False
     single_epoch = False
 
     def __init__(self, dt: float) -> None:
+        """Set the length of a step, dt (time)."""
         self._dt = dt
         self._deepest = np.zeros(1)
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch, which may cut a step in two: discs fly on as they did."""
+        """Begin an epoch; its start may divide a step in two, as discs fly on unchanged."""
         self._near = make_nearby(gas, periodic_axes(effects.periodic))
         self.discs = make_discs(gas, np.arange(len(gas)))
         list_pairs(*self.discs, self._near, effects.periodic)
@@ -270,7 +285,7 @@ class TimeDriven:
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """See `advance_steps`."""
+        """Take steps, see `advance_steps`."""
         record, ids, box = self.discs
         step = self._step[0]
         if step.number == 0:
@@ -283,5 +298,5 @@ class TimeDriven:
         )  # fmt: skip
 
     def deepest_overlap(self) -> float:
-        """The deepest with which discs have collided so far."""
+        """Deepest overlap of all collisions so far, divided by the sum of the radii."""
         return float(self._deepest[0])

@@ -1,1 +1,1 @@
-"""The discs of a scene as arrays: their state, their placement, and whether they rest on something."""
+"""The discs of a scene as arrays: their state, their placement, and whether they are in static contact."""

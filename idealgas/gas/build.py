@@ -1,4 +1,4 @@
-"""A scene's discs as arrays: the one place for their dtypes and shapes."""
+"""The discs of a scene as arrays: the one place for their dtypes and shapes."""
 
 import numpy as np
 
@@ -12,9 +12,9 @@ from idealgas.scene.walls import walls_inside
 def make_gas(scene: Scene) -> Gas:
     """Discs of a scene at time 0: the explicit ones have the first ids, then each species in the order of the file.
 
-    Every species of the gas has one radius and one mass: explicit discs are the species "disc", or, if they differ,
-    "disc 1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or rest where gravity or
-    a piston presses them.
+    Each species of the gas has one radius and one mass: explicit discs are the species "disc" or, if they differ, "disc
+    1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or if one is in static contact
+    with a wall or the piston to which it is pressed.
     """
     kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
     count = [len(scene.disc), *(s.count for s in scene.species)]
@@ -45,12 +45,15 @@ def make_gas(scene: Scene) -> Gas:
 
 
 def stream(seed: int, use: str) -> np.random.Generator:
-    """Random numbers for one use, the same whatever else the scene asks for."""
+    """Random numbers for one use, independent of what else the scene needs random numbers for."""
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))
 
 
 def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
-    """(count, 2). With a temperature: no total momentum (if there are two discs or more) and energy count * T."""
+    """Velocities (count, 2) of a species, length/time; those of a temperature T have the kinetic energy count * T.
+
+    Their total momentum is 0 if there are two discs or more.
+    """
     n = species.count
     if species.velocities is not None:
         return np.array(species.velocities)
@@ -65,14 +68,14 @@ def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
 
 
 def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
-    """(N, 2): explicit discs, then lattices, one for all species of the same region, then discs at random."""
+    """Positions (N, 2), length: explicit discs first, then lattices, one for each region, then discs at random."""
     from idealgas.gas import placement  # compiled code, which a reader of logs does not need
 
-    box = scene.box
+    box, periodic = scene.box, scene.properties.periodic
     space = scene.room
     walls = np.array([(*w.start, *w.end) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 4)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    grid = placement.make_grid(box.size, radius, box.periodic, walls)
+    grid = placement.make_grid(box.size, radius, periodic, walls)
     random = stream(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
     if scene.disc:
@@ -87,7 +90,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
             lattices.setdefault(region, []).append(k)
         else:
             at_random.append(k)
-            for axis in (a for a in range(2) if box.periodic[a] and s.region is None):
+            for axis in (a for a in range(2) if periodic[a] and s.region is None):
                 bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
     for members in lattices.values():
         chosen = np.concatenate([ids[k + 1] for k in members])
@@ -110,5 +113,6 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _no_room(scene: Scene, species: int, how: str, got: str, allowed: str) -> SceneError:
+    """Error of a species for whose discs there is not enough room."""
     keys = (*(("species", species, key) for key in ("count", "radius", "region")), ("box", "size"))
     return SceneError(scene.report([Issue(keys, f"no room for all discs {how}", got, allowed)]))

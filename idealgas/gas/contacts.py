@@ -1,6 +1,7 @@
-"""Discs at rest on what they are pressed to: they would collide for ever at one instant.
+"""Discs in static contact with a wall to which they are pressed: they would collide for ever at one instant.
 
-Only a disc that touches exactly, and has no velocity along the normal, is at rest; any other flies or bounces.
+Only a disc that touches the wall exactly and has no velocity along its normal is in static contact; any other disc
+flies or bounces.
 """
 
 from __future__ import annotations
@@ -20,25 +21,25 @@ if TYPE_CHECKING:
 
 
 def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
-    """A fault for each explicit disc, and each species, of which something rests on a side, a wall or the piston."""
-    blamed = set()
-    for name, resting in _supports(scene, gas):
-        for i in np.flatnonzero(resting):
+    """One issue for each explicit disc and each species with a disc in static contact with a wall or the piston."""
+    reported = set()
+    for name, in_contact in _supports(scene, gas):
+        for i in np.flatnonzero(in_contact):
             key = _key_of(scene, gas, int(i))
-            if key not in blamed:
-                blamed.add(key)
+            if key not in reported:
+                reported.add(key)
                 got = f"disc {i} in contact, without a velocity along the normal"
                 yield Issue((key,), f"at rest on {name}, to which it is pressed", got, "a gap or a velocity")
 
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
-    """Name of each thing that something may be pressed to, and the mask (N,) of the discs that rest on it."""
+    """Name of each wall to which discs may be pressed, and a mask (N,) of the discs in static contact with it."""
     pull = np.array(scene.properties.acceleration)
     for side, name in enumerate(SIDES):
         axis = axis_of(side)
         if pull @ OUTWARD[side] > 0 and not (scene.piston and scene.piston.side == name):
-            place = gas.position[:, axis]
-            touches = place >= gas.box[axis] - gas.radius if is_upper(side) else place <= gas.radius
+            coordinate = gas.position[:, axis]
+            touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
     if pull.any():
         for k, wall in enumerate(walls_inside(scene)):
@@ -52,12 +53,12 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
         piston = scene.piston
         gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
         pressed = piston.outward * (piston.acceleration(gas.box, scene.gravity) - pull[piston.axis]) < 0
-        resting = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
-        yield "the piston", resting & pressed
+        in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
+        yield "the piston", in_contact & pressed
 
 
 def _key_of(scene: Scene, gas: Gas, i: int) -> Key:
-    """The key that says how disc i moves."""
+    """Key of the scene that sets disc i's velocity."""
     if i < len(scene.disc):
         return "disc", i, "velocity"
     names = [s.name for s in scene.species]

@@ -1,7 +1,7 @@
-"""Where discs are put: on a lattice, or at random without overlap, and clear of the walls.
+"""Positions of discs: on a lattice, or at random without overlap, and clear of the walls.
 
-Random placement is sequential addition, the largest discs first. Whenever a place is refused, one of the discs placed
-so far makes a Metropolis step: the gas stays close to equilibrium and does not jam at the packing fraction 0.547
+Random placement is sequential addition, the largest discs first. Whenever a position is refused, one of the discs
+placed so far makes a Metropolis step: the gas stays close to equilibrium and does not jam at the packing fraction 0.547
 of pure random addition (Feder, J. Theor. Biol. 87, 237 (1980)). At low density refusals are rare.
 """
 
@@ -14,18 +14,23 @@ from idealgas._jit import inline, njit
 from idealgas.physics.periodic import nearest_image
 
 PATIENCE = 3_000
-"""Refusals a disc, on the average, after which random placement gives up..."""
+"""Mean number of refused positions per disc after which random placement gives up."""
 
 LEAST_PATIENCE = 3_000_000
-"""...but never before this number in all."""
+"""Number of refused positions, of all discs together, before which random placement never gives up."""
 
 
 class Grid(NamedTuple):
-    """Cells no smaller than the largest diameter, each with a linked list of the discs whose centres it holds.
+    """Cells no smaller than the largest diameter, each with a linked list of the discs whose centres it contains.
 
-    first: (columns, rows) i4. next: (N,) i4. Both end with -1. size: (2,) f8, of a cell. period: (2,) f8, box lengths
-    along which opposite sides are joined, else 0. wall: (W, 4) f8, both ends of every wall, images included; those that
-    a disc of cell (c, r) may touch are wall_item[k] with k from wall_start[c * rows + r] to before the next one.
+    Attributes:
+        first: (columns, rows) i4, index of the first disc of each cell, or -1.
+        next: (N,) i4, index of the next disc in the same cell, or -1.
+        size: (2,) f8, width and height of a cell, length.
+        period: (2,) f8, width and height of the box, length; 0 along an axis that is not periodic.
+        wall: (W, 4) f8, x, y of the start and x, y of the end of every wall, images included, length.
+        wall_start: (columns * rows + 1,) i8, first entry of each cell in `wall_item`; cell (c, r) is c * rows + r.
+        wall_item: i8, rows of `wall` that a disc of a cell may touch, cell by cell.
     """
 
     first: np.ndarray
@@ -43,7 +48,11 @@ def make_grid(
     periodic: tuple[bool, bool] = (False, False),
     walls: np.ndarray | None = None,
 ) -> Grid:
-    """An empty grid with about one disc a cell. periodic: along which axes. walls: (W, 4), both ends of each."""
+    """Empty grid with about one disc per cell.
+
+    box: width and height, length. radius: (N,), length. periodic: whether the sides along x and along y are periodic.
+    walls: (W, 4), x, y of the start and x, y of the end of each wall, length.
+    """
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
     shape = [max(int(length / side), 1) for length in box]
@@ -59,13 +68,13 @@ def make_grid(
 
 
 def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
-    """Walls and their images next to the box, where sides are joined."""
+    """Walls (W, 4) and their images next to the box along periodic axes."""
     shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
     return np.concatenate([walls + np.array((dx, dy, dx, dy)) for dx in shifts[0] for dy in shifts[1]])
 
 
 def _cells_near(wall: np.ndarray, shape: list[int], size: np.ndarray, reach: float) -> np.ndarray:
-    """Indices of the cells of which some point may lie within reach of a wall."""
+    """Indices of the cells of which a point may be within reach (length) of a wall."""
     ends = wall.reshape(2, 2)
     along = ends[1] - ends[0]
     low, high = ends.min(axis=0) - reach, ends.max(axis=0) + reach
@@ -79,12 +88,14 @@ def _cells_near(wall: np.ndarray, shape: list[int], size: np.ndarray, reach: flo
 
 @inline
 def _cell(grid, x, y):
+    """Column and row of the cell that contains the point (x, y)."""
     columns, rows = grid.first.shape
     return min(int(x / grid.size[0]), columns - 1), min(int(y / grid.size[1]), rows - 1)
 
 
 @inline
 def _insert(grid, position, i):
+    """Insert disc i at the head of its cell's list."""
     column, row = _cell(grid, position[i, 0], position[i, 1])
     grid.next[i] = grid.first[column, row]
     grid.first[column, row] = i
@@ -92,6 +103,7 @@ def _insert(grid, position, i):
 
 @inline
 def _remove(grid, position, i):
+    """Remove disc i from its cell's list."""
     column, row = _cell(grid, position[i, 0], position[i, 1])
     if grid.first[column, row] == i:
         grid.first[column, row] = grid.next[i]
@@ -104,13 +116,13 @@ def _remove(grid, position, i):
 
 @inline
 def _around(index, count, period):
-    """The range of an index and its neighbours, before they are taken round joined sides."""
+    """Range of the indices of a column or row and its neighbours, not yet wrapped along a periodic axis."""
     return (index - 1, index + 2) if period > 0.0 else (max(index - 1, 0), min(index + 2, count))
 
 
 @inline
 def _is_free(grid, position, radius, x, y, reach, i):
-    """Whether a disc of radius `reach` at (x, y) would overlap no wall and, but for disc i, none of the grid."""
+    """Whether a disc of radius `reach` at (x, y) would overlap no wall and no disc of the grid but disc i."""
     columns, rows = grid.first.shape
     column, row = _cell(grid, x, y)
     for c in range(*_around(column, columns, grid.period[0])):
@@ -128,7 +140,7 @@ def _is_free(grid, position, radius, x, y, reach, i):
 
 @inline
 def _is_clear(grid, cell, x, y, reach):
-    """Whether a disc of radius `reach` at (x, y), in a cell, would overlap no wall."""
+    """Whether a disc of radius `reach` at (x, y), a point of the cell, would overlap no wall."""
     for k in range(grid.wall_start[cell], grid.wall_start[cell + 1]):
         wall = grid.wall[grid.wall_item[k]]
         along_x = wall[2] - wall[0]
@@ -145,7 +157,7 @@ def _is_clear(grid, cell, x, y, reach):
 
 @njit
 def insert(grid, position, radius, ids):
-    """Enter discs at their positions; return how many there are before the first that would overlap."""
+    """Insert discs at their positions; return their number before the first that would overlap."""
     for n, i in enumerate(ids):
         if not _is_free(grid, position, radius, position[i, 0], position[i, 1], radius[i], i):
             return n
@@ -155,14 +167,18 @@ def insert(grid, position, radius, ids):
 
 @njit
 def find_free(grid, position, radius, sites, reach, free):
-    """Set the mask `free` (M,) of the sites (M, 2) where a disc of radius `reach` would overlap none of the grid."""
+    """Set the mask `free` (M,) of the sites (M, 2) where a disc of radius `reach` would overlap no disc and no wall."""
     for n in range(len(sites)):
         free[n] = _is_free(grid, position, radius, sites[n, 0], sites[n, 1], reach, -1)
 
 
 @njit
 def insert_randomly(grid, position, radius, bounds, ids, rng, patience):
-    """Put discs at random in the order of ids, centres within bounds (N, 4); return how many found room."""
+    """Place discs at random in the order of `ids`; return the number of those that found room.
+
+    bounds: (N, 4) x0, y0, x1, y1 for each disc's centre, length. patience: number of refused positions after which to
+    stop.
+    """
     placed = 0
     refused = 0
     while placed < len(ids) and refused < patience:
@@ -189,9 +205,10 @@ def insert_randomly(grid, position, radius, bounds, ids, rng, patience):
 
 
 def insert_on_lattice(grid, position, radius, bounds, ids) -> bool:
-    """Put discs on one lattice spaced for the largest of them, its free sites used evenly; False if there is no room.
+    """Place discs on a lattice spaced for the largest of them; return whether there is room for all.
 
-    bounds: (4,) x0, y0, x1, y1 for the centres of the largest. Sites taken by discs that lie already are left out.
+    bounds: (4,) x0, y0, x1, y1 for the centre of the largest disc, length. Sites where discs are already are left out;
+    the free sites are used evenly.
     """
     largest = radius[ids].max()
     wanted = len(ids)
@@ -207,9 +224,10 @@ def insert_on_lattice(grid, position, radius, bounds, ids) -> bool:
 
 
 def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int) -> np.ndarray | None:
-    """At least `sites` points (M, 2) from low to high, no two closer than a diameter; None if there is no room.
+    """At least `sites` points (M, 2) from `low` to `high`, no two closer than a diameter; None if there is no room.
 
-    Square if that fits, else triangular; in rows from below, filling the whole region.
+    low, high: (2,), length. The lattice is square if that fits, else triangular; its points are in rows from below, and
+    fill the whole region.
     """
     width, height = high - low + diameter
     rows = np.arange(1, min(int(2 * height / diameter), sites) + 1)
@@ -226,7 +244,7 @@ def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int)
 
 
 def _square(low: np.ndarray, high: np.ndarray, columns: int, rows: int, diameter: float) -> np.ndarray:
-    """Every disc in the middle of a cell of its own."""
+    """Points (M, 2) of a square lattice, each in the middle of a cell of its own."""
     shape = np.array((columns, rows))
     index = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
     corner = low - diameter / 2
@@ -234,7 +252,7 @@ def _square(low: np.ndarray, high: np.ndarray, columns: int, rows: int, diameter
 
 
 def _triangular(low: np.ndarray, high: np.ndarray, columns: int, rows: int) -> np.ndarray:
-    """Rows shifted in turn by half a spacing, from wall to wall."""
+    """Points (M, 2) of a triangular lattice, every other row shifted by half a spacing."""
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
     step = (high - low) / (columns - 0.5, max(rows - 1, 1))
     return np.minimum(low + np.column_stack((column + row % 2 / 2, row)) * step, high)

@@ -1,4 +1,4 @@
-"""Discs at one instant."""
+"""State of all discs at one instant."""
 
 from dataclasses import dataclass
 
@@ -7,10 +7,16 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Gas:
-    """All discs at one instant, in order of id. len(gas): their number N.
+    """All discs at one instant, in order of id.
 
-    box: (Lx, Ly), length; the origin is its lower left corner. position: (N, 2) f8, length. velocity: (N, 2) f8,
-    length/time. radius: (N,) f8, length. mass: (N,) f8. species: (N,) u2, index into species_names.
+    Attributes:
+        box: (Lx, Ly), length; the origin is its lower left corner.
+        position: (N, 2) f8, length.
+        velocity: (N, 2) f8, length/time.
+        radius: (N,) f8, length.
+        mass: (N,) f8, mass.
+        species: (N,) u2, index into species_names.
+        species_names: name of each species.
     """
 
     box: tuple[float, float]
@@ -22,6 +28,7 @@ class Gas:
     species_names: tuple[str, ...]
 
     def __len__(self) -> int:
+        """Number N of discs."""
         return len(self.mass)
 
     @property
@@ -31,7 +38,7 @@ class Gas:
 
     @property
     def packing_fraction(self) -> float:
-        """Share of the box that discs cover."""
+        """Fraction of the box's area that discs cover, no unit."""
         return float(np.pi * (self.radius**2).sum() / self.area)
 
     @property
@@ -41,5 +48,5 @@ class Gas:
 
     @property
     def temperature(self) -> float:
-        """Kinetic temperature E/N, mass length²/time², as a disc has two degrees of freedom and k_B = 1."""
+        """Kinetic temperature E/N, mass length²/time²; a disc has two degrees of freedom, and k_B = 1."""
         return self.kinetic_energy / len(self)

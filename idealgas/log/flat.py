@@ -63,7 +63,7 @@ def flat_states(gas: Gas, states: Iterable[LogState]) -> Iterator[Columns]:
 
 
 def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
-    """The same of one disc or all, with their radii and masses."""
+    """One row for each disc, or for one chosen by its id, state by state, with radius and mass."""
     chosen = np.arange(len(gas)) if disc is None else np.flatnonzero(np.arange(len(gas)) == disc)
     for columns in flat_states(gas, states):
         names = ("time", "disc", "species")

@@ -1,4 +1,4 @@
-"""The file under a log being read: how it is opened, and its columns by chunks. Every fault becomes a LogError."""
+"""The file under a log being read: how it is opened, and its columns by chunks. Every failure is a LogError."""
 
 import re
 import time

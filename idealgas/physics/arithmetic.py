@@ -1,8 +1,8 @@
-"""Numbers of several lengths: a law written with operators serves floats, and pairs of floats with twice the digits.
+"""Number types of several lengths: a law written with operators runs on floats and on pairs with twice the digits.
 
-`Pair` is a number type for compiled code too, with the arithmetic of `double_double`. A law that takes numbers of any
-length writes `number(0.0, x)` where 0.0 would turn a float32 into a float64, and `root(x)` for √x. A column of numbers
-is an array (n,) of floats, or (n, 2) of pairs.
+`Pair` is a number type in compiled code too, with the arithmetic of `double_double`. A law for numbers of any length
+writes `number(0.0, x)` where 0.0 would turn a float32 into a float64, and `root(x)` for √x. A column of numbers is an
+array (n,) of floats, or (n, 2) of pairs.
 """
 
 import math
@@ -18,46 +18,60 @@ from idealgas.physics import double_double
 
 
 class Pair:
-    """The number high + low, high being the float nearest to it."""
+    """A number of about 32 digits, stored as the sum of two floats.
+
+    Attributes:
+        high: float64 nearest to the number.
+        low: the number less `high`, as a float64.
+    """
 
     __slots__ = ("high", "low")
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, high: float, low: float) -> None:
+        """Make the number high + low; `high` must be the float64 nearest to it."""
         self.high, self.low = high, low
 
     def __add__(self, other: "Pair") -> "Pair":
+        """Sum of two pairs."""
         return Pair(*double_double.add(parts(self), parts(other)))
 
     def __sub__(self, other: "Pair") -> "Pair":
+        """Difference of two pairs."""
         return Pair(*double_double.subtract(parts(self), parts(other)))
 
     def __mul__(self, other: "Pair") -> "Pair":
+        """Product of two pairs."""
         return Pair(*double_double.multiply(parts(self), parts(other)))
 
     def __truediv__(self, other: "Pair") -> "Pair":
+        """Quotient of two pairs."""
         return Pair(*double_double.divide(parts(self), parts(other)))
 
     def __lt__(self, other: "Pair") -> bool:
+        """Whether this number is smaller than the other."""
         return double_double.less(parts(self), parts(other))
 
     def __le__(self, other: "Pair") -> bool:
+        """Whether this number is smaller than the other or equal to it."""
         return not double_double.less(parts(other), parts(self))
 
     def __eq__(self, other: object) -> bool:
+        """Whether the other object is a pair with the same two floats."""
         return isinstance(other, Pair) and parts(self) == parts(other)
 
 
 @inline
 def parts(a):
-    """The two floats of a pair."""
+    """The two floats (high, low) of a pair."""
     return a.high, a.low
 
 
 class PairType(types.Type):
-    """`Pair` in compiled code."""
+    """Type of `Pair` in compiled code."""
 
     def __init__(self) -> None:
+        """Register the type's name with numba."""
         super().__init__("Pair")
 
 
@@ -87,7 +101,7 @@ def _code_of_pair(context: Any, builder: Any, signature: Any, arguments: Any) ->
 
 
 def _operate(sign: Any, operation: Any) -> None:
-    """Give pairs an operator that makes a pair of two."""
+    """Define an operator for compiled code that makes a pair from two pairs."""
 
     @inline_by_type(sign)
     def choose(a, b):
@@ -107,7 +121,7 @@ _operate(operator.truediv, double_double.divide)
 
 
 def _compare(sign: Any, operate: Any) -> None:
-    """Give pairs an operator of another kind, written for two of them."""
+    """Define an operator for compiled code that compares two pairs, or chooses one of them."""
     inline_by_type(sign)(lambda a, b: operate if a is PAIR and b is PAIR else None)
 
 
@@ -119,7 +133,7 @@ _compare(max, lambda a, b: b if a < b else a)
 
 
 def root(a):
-    """√a."""
+    """Square root of a float or a pair."""
     return Pair(*double_double.root(parts(a))) if isinstance(a, Pair) else type(a)(math.sqrt(a))
 
 
@@ -136,7 +150,7 @@ def _root(a):
 
 
 def number(value, like):
-    """A float as a number of the type of another."""
+    """Convert a float to the number type of `like`."""
     if isinstance(like, Pair):
         return Pair(value, 0.0)
     return np.float32(value) if isinstance(like, np.float32) else value
@@ -162,7 +176,7 @@ def _rounded(a):
 
 
 def load(column, i):
-    """Number i of a column."""
+    """Number i of a column: an array (n,) of floats, or (n, 2) of pairs."""
     return Pair(column[i, 0], column[i, 1]) if column.ndim == 2 else column[i]
 
 
@@ -172,7 +186,7 @@ def _load(column, i):
 
 
 def store(column, i, value):
-    """Set number i of a column."""
+    """Write a value as number i of a column: an array (n,) of floats, or (n, 2) of pairs."""
     column[i] = parts(value) if isinstance(value, Pair) else value
 
 

@@ -1,4 +1,7 @@
-"""A disc and the sides of the box: left 0, right 1, bottom 2, top 3. In straight flight for numbers of any length."""
+"""Contact of a disc with a side of the box: left 0, right 1, bottom 2, top 3.
+
+Without gravity the laws run on numbers of any length, see `arithmetic`.
+"""
 
 from idealgas._jit import inline
 from idealgas.physics.arithmetic import number
@@ -9,7 +12,11 @@ from idealgas.physics.gravity import acceleration_along
 
 @inline
 def arrival_delay(position, velocity, target):
-    """Delay until a coordinate reaches the target it moves to; none if it is there or, by rounding, beyond."""
+    """Time until a coordinate in straight flight reaches a target ahead of it; NEVER if the velocity is 0.
+
+    position, target: length. velocity: towards the target, length/time. The delay is 0 for a coordinate that is at the
+    target or, by rounding, beyond it.
+    """
     zero = number(0.0, velocity)
     delay = max((target - position) / velocity, zero)
     return number(NEVER, velocity) if velocity == zero else delay
@@ -17,20 +24,23 @@ def arrival_delay(position, velocity, target):
 
 @inline
 def centre_range(length, radius):
-    """Where a disc's centre may be between two opposite sides."""
+    """Smallest and largest coordinate (length) of a disc's centre between two opposite sides of the box."""
     return radius, length - radius
 
 
 @inline
 def inward_normal(side):
-    """Unit vector from a side into the box."""
+    """Unit normal (x, y) of a side of the box, pointing into the box."""
     sign = -1.0 if side & 1 else 1.0
     return (sign, 0.0) if side < 2 else (0.0, sign)
 
 
 @inline
 def side_contact(disc, side, length, gravity):
-    """Time at which a disc meets a side of the box; NEVER if it does not."""
+    """Local time at which a disc touches a side of the box; NEVER if it does not.
+
+    side: 0 to 3. length: distance between this side and the opposite one.
+    """
     low, high = centre_range(length, disc.r)
     position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
     upper = side & 1

@@ -1,4 +1,4 @@
-"""Times that are no times."""
+"""Constants shared by all laws."""
 
 NEVER = 1e300
-"""Later than any event; finite, so that sums and comparisons stay ordinary."""
+"""Time of an event that does not happen: after all events, but finite, so that sums and comparisons stay ordinary."""

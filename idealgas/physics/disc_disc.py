@@ -1,7 +1,7 @@
-"""Two discs: when they touch and how they part.
+"""Collision of two discs: the time at which they touch, and their velocities afterwards.
 
-Both laws are symmetric to the last bit under exchange of the discs: every difference only changes its sign. For smooth
-elastic discs they serve numbers of any length, see `arithmetic`; a record is anything with x, y, vx, vy, t, r and m.
+Both laws are symmetric to the last bit under exchange of the discs: each difference only changes its sign. For smooth
+elastic discs they run on numbers of any length, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
 """
 
 from idealgas._jit import inline
@@ -14,9 +14,10 @@ from idealgas.physics.rotation import tangential_impulse
 
 @inline
 def relative_motion(a, b, gravity, periodic, images):
-    """Later of the two records' times, and position and velocity of a relative to b at that time.
+    """Later local time of two records, and the position and velocity of disc a relative to b at that time.
 
-    images: box lengths between the records, where sides are periodic.
+    Returns (time, x, y, vx, vy), in units of time, length and length/time. images: numbers of box lengths (x, y)
+    between the records, where sides are periodic.
     """
     time = a.t if a.t > b.t else b.t
     a_dt = time - a.t
@@ -37,11 +38,14 @@ def relative_motion(a, b, gravity, periodic, images):
 
 @inline
 def touch(x, y, vx, vy, reach):
-    """Whether (x, y), moving with (vx, vy), comes within reach of the origin, and after what delay; 0 if it is there.
+    """Whether a point in straight flight comes within `reach` of the origin, and the time until it does.
+
+    x, y, reach: length. vx, vy: length/time. The delay is 0 for an approaching point that is within reach already.
 
     The root c/(√D - b) of the distance equation has no cancellation for small c, and D = v²S² - (v × r)² keeps its
-    digits in a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). D = 0 is no contact: it would change
-    nothing, and of discs that slide off each other rounding would say c/|b|, any time at all. Free of branches.
+    digits for a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). D = 0 counts as no contact: such a
+    collision would change nothing, and for discs that slide past each other rounding would give c/|b|, which may be any
+    time. The code has no branches.
     """
     zero = number(0.0, x)
     approach = x * vx + y * vy
@@ -54,7 +58,10 @@ def touch(x, y, vx, vy, reach):
 
 @inline
 def first_touch(a, b, gravity, periodic, images):
-    """Time at which approaching discs touch, or of the later record if they touch or overlap by then; else NEVER."""
+    """Local time at which two approaching discs touch; NEVER if they do not.
+
+    For approaching discs that touch or overlap at the later of the two records' times, it is that time.
+    """
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     meets, delay = touch(x, y, vx, vy, a.r + b.r)
     return time + delay if meets else number(NEVER, time)
@@ -62,10 +69,10 @@ def first_touch(a, b, gravity, periodic, images):
 
 @inline
 def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
-    """Time of the next collision of a and b; NEVER if there is none.
+    """Local time of the next collision of discs a and b; NEVER if there is none.
 
-    Touching discs whose collision would not change a digit of any velocity are done with each other. This differs from
-    `first_touch` only where that gives the time of a record.
+    Touching discs whose collision would not change a digit of any velocity count as having collided. The result differs
+    from `first_touch` only where that gives the time of a record.
     """
     touch = first_touch(a, b, gravity, periodic, images)
     if touch == max(a.t, b.t):
@@ -79,9 +86,10 @@ def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
 
 @inline
 def velocities_after(a, b, x, y, vx, vy, factor):
-    """Velocities of a and b after the normal impulse of a collision.
+    """Velocities (a_vx, a_vy, b_vx, b_vy) of two discs after the normal impulse of a collision, length/time.
 
-    x, y, vx, vy: position and velocity of a relative to b. factor: 1 + the coefficient of restitution.
+    x, y: position of a relative to b, length. vx, vy: velocity of a relative to b, length/time. factor: 1 + the
+    coefficient of restitution, no unit.
     """
     k = number(factor, x) * (x * vx + y * vy) / ((x * x + y * y) * (a.m + b.m))
     return a.vx - k * b.m * x, a.vy - k * b.m * y, b.vx + k * a.m * x, b.vy + k * a.m * y
@@ -89,7 +97,10 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 @inline
 def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
-    """Exchange the momentum of two discs whose records stand at the contact."""
+    """Exchange momentum between two discs whose records are at the time of contact; velocities and spins change.
+
+    images: numbers of box lengths (x, y) between the records, where sides are periodic.
+    """
     x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)

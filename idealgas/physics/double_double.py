@@ -1,7 +1,7 @@
-"""Numbers of about 32 digits as pairs (high, low) of floats, high the float nearest to their sum.
+"""Numbers of about 32 digits as pairs (high, low) of floats, where `high` is the float nearest to their sum.
 
 Without a fused multiply-add: sums by Knuth, products by Dekker, and the arithmetic of Hida, Li & Bailey, Proc. 15th
-IEEE Symposium on Computer Arithmetic, 155 (2001). Relative errors: a few 2^-104, 5e-32.
+IEEE Symposium on Computer Arithmetic, 155 (2001). Relative errors are a few times 2^-104 = 5e-32.
 """
 
 import math
@@ -13,7 +13,7 @@ SPLITTER = 134217729.0  # 2^27 + 1
 
 @inline
 def two_sum(a, b):
-    """a + b and what rounding took from it, exactly."""
+    """A + b and what rounding took from it, exactly."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
@@ -21,14 +21,14 @@ def two_sum(a, b):
 
 @inline
 def quick_two_sum(a, b):
-    """The same for |a| >= |b|."""
+    """Rounded sum of two floats with |a| >= |b|, and its rounding error: fewer operations than `two_sum`."""
     total = a + b
     return total, b - (total - a)
 
 
 @inline
 def split(a):
-    """Two floats of 26 bits whose sum is a."""
+    """Two floats of 26 bits whose sum is exactly a."""
     t = SPLITTER * a
     high = t - (t - a)
     return high, a - high
@@ -36,7 +36,7 @@ def split(a):
 
 @inline
 def two_product(a, b):
-    """a * b and what rounding took from it, exactly."""
+    """A * b and what rounding took from it, exactly."""
     product = a * b
     a_high, a_low = split(a)
     b_high, b_low = split(b)
@@ -45,7 +45,7 @@ def two_product(a, b):
 
 @inline
 def add(a, b):
-    """a + b."""
+    """A + b."""
     high, low = two_sum(a[0], b[0])
     more, rest = two_sum(a[1], b[1])
     high, low = quick_two_sum(high, low + more)
@@ -54,20 +54,20 @@ def add(a, b):
 
 @inline
 def subtract(a, b):
-    """a - b."""
+    """A - b."""
     return add(a, (-b[0], -b[1]))
 
 
 @inline
 def multiply(a, b):
-    """a * b."""
+    """A * b."""
     high, low = two_product(a[0], b[0])
     return quick_two_sum(high, low + (a[0] * b[1] + a[1] * b[0]))
 
 
 @inline
 def divide(a, b):
-    """a / b, by long division; b is not 0."""
+    """A / b, by long division; b is not 0."""
     first = a[0] / b[0]
     rest = subtract(a, multiply(b, (first, 0.0)))
     second = rest[0] / b[0]
@@ -79,7 +79,10 @@ def divide(a, b):
 
 @inline
 def root(a):
-    """√a for a >= 0: one step of Newton's method from the float's (Karp & Markstein, ACM TOMS 23, 561 (1997))."""
+    """Square root of a pair a >= 0: one step of Newton's method from the root of its high part; 0 for a < 0.
+
+    Source: Karp & Markstein, ACM TOMS 23, 561 (1997).
+    """
     if a[0] <= 0.0:
         return 0.0, 0.0
     guess = math.sqrt(a[0])
@@ -89,5 +92,5 @@ def root(a):
 
 @inline
 def less(a, b):
-    """a < b."""
+    """A < b."""
     return (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1]))

@@ -1,7 +1,7 @@
-"""The effects of a scene as the engines take them: one field each, None if the scene does not call for it.
+"""The effects of a scene as arguments of the engines: one field an effect, None if the scene does not have it.
 
-A field is only ever handed on as an argument: numba prunes `if gravity is not None` in a function whose argument it is,
-so no machine code of an absent effect is made.
+A field is only ever passed on as an argument: numba removes `if gravity is not None` from a function whose argument is
+None, so that no machine code is made for an absent effect.
 """
 
 import math
@@ -19,9 +19,17 @@ from idealgas.physics.thermal import Thermal
 
 
 class Effects(NamedTuple):
-    """segments: (S,) SEGMENT. piston: (1,) PISTON.
+    """Parameters and state of all effects of a scene; None for an effect that the scene does not have.
 
-    wall_energy: (walls,) f8, energy that each wall gave to discs; where any wall can give some.
+    Attributes:
+        gravity: constant acceleration.
+        periodic: periodic sides, and each disc's image.
+        segments: (S,) SEGMENT, wall segments and gates inside the box.
+        rotation: spins of rough discs.
+        restitution: inelastic collisions.
+        thermal: walls with a temperature.
+        piston: (1,) PISTON.
+        wall_energy: (walls,) f8, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
     """
 
     gravity: Gravity | None = None
@@ -35,33 +43,33 @@ class Effects(NamedTuple):
 
 
 AT_BEGIN: dict[str, Callable[[Any, float], None]] = {"periodic": periodic.begin_epoch, "segments": wall.begin_epoch}
-"""What happens to effects when an epoch begins at a time."""
+"""By name of an effect: the function that prepares it for an epoch, called with the epoch's start (time)."""
 
 AT_END: dict[str, Callable[[Any, float], None]] = {
     "restitution": restitution.end_epoch,
     "piston": piston.end_epoch,
 }
-"""What happens to effects when an epoch of some length ends."""
+"""By name of an effect: the function that finishes an epoch, called with the epoch's length (time)."""
 
 CHANGES: dict[str, Callable[[Any, float], float]] = {"segments": wall.next_change}
-"""When effects next change by themselves after a time: an epoch ends there."""
+"""By name of an effect: the function that gives its next change after a time, at which an epoch must end."""
 
 
 def begin_epoch(effects: Effects, time: float) -> None:
-    """Make the effects ready for an epoch that begins at a time."""
+    """Prepare all effects for an epoch that begins at a time, counted from the start of the run."""
     for name, begin in AT_BEGIN.items():
         if (effect := getattr(effects, name)) is not None:
             begin(effect, time)
 
 
 def end_epoch(effects: Effects, length: float) -> None:
-    """Count all local times from the end of an epoch."""
+    """Finish an epoch of some length (time): local times of all effects count from its end."""
     for name, end in AT_END.items():
         if (effect := getattr(effects, name)) is not None:
             end(effect, length)
 
 
 def next_change(effects: Effects, time: float) -> float:
-    """When an effect next changes by itself after a time; infinite if none does."""
+    """Earliest time, after the given one, at which an effect changes by itself; infinite if none does."""
     present = ((getattr(effects, name), change) for name, change in CHANGES.items())
     return min((change(effect, time) for effect, change in present if effect is not None), default=math.inf)

@@ -1,4 +1,4 @@
-"""Motion along one line under constant acceleration: when a height is reached from above."""
+"""Motion along one axis under constant acceleration: the time at which a body falls to a plane."""
 
 import math
 
@@ -8,10 +8,11 @@ from idealgas.physics.constants import NEVER
 
 @inline
 def time_to_plane(height, velocity, acceleration):
-    """Delay until height + velocity t + ½ acceleration t² is at or below zero and falling; NEVER if it is not to be.
+    """Time until height + velocity t + ½ acceleration t² is at or below zero and falling; NEVER if it never is.
 
-    A body that is at or below zero and falling lands now. One that rounding put below zero and that rises lands when it
-    falls back through zero, or when it turns if it never gets that far: so it cannot sink.
+    height: length. velocity: length/time. acceleration: length/time². The time is 0 for a falling body at or below
+    zero. A rising body that rounding put below zero counts when it falls back through zero or, if it never rises that
+    far, when it begins to fall: so it cannot sink.
     """
     discriminant = velocity * velocity - 2.0 * acceleration * height
     root = math.sqrt(max(discriminant, 0.0))

@@ -1,4 +1,4 @@
-"""Gravity: the same acceleration everywhere, so that discs fly along parabolas."""
+"""Gravity: the same constant acceleration everywhere, so that discs fly along parabolas."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,12 @@ from idealgas._jit import inline
 
 
 class Gravity(NamedTuple):
-    """Constant acceleration, length/time²."""
+    """Constant acceleration of all discs.
+
+    Attributes:
+        x: component along x, length/time².
+        y: component along y, length/time².
+    """
 
     x: float
     y: float
@@ -14,7 +19,7 @@ class Gravity(NamedTuple):
 
 @inline
 def acceleration_along(gravity, along_y):
-    """Component of the acceleration along an axis of the box."""
+    """Component of the acceleration along y or along x, length/time²; 0 without gravity."""
     if gravity is not None:
         return gravity.y if along_y else gravity.x
     return 0.0

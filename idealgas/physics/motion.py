@@ -1,13 +1,14 @@
-"""Free flight: r(t) = r₀ + v t, and under gravity + ½ g t²."""
+"""Free flight: r(t) = r₀ + v t, and with gravity r(t) = r₀ + v t + ½ g t²."""
 
 from idealgas._jit import inline
 
 
 @inline
 def position_after(position, velocity, acceleration, delay):
-    """Coordinate after a delay in free flight, x + v t + ½ a t²; acceleration: None without gravity.
+    """Coordinate (length) after a delay (time) in free flight, x + v t + ½ a t²; numbers or arrays.
 
-    Numbers or arrays. Summed from left to right: engine, replay and analyses agree to the last bit.
+    acceleration: length/time², or None without gravity. The terms are summed from left to right: engine, replay and
+    analyses agree to the last bit.
     """
     if acceleration is not None:
         return position + velocity * delay + 0.5 * acceleration * delay * delay
@@ -16,13 +17,13 @@ def position_after(position, velocity, acceleration, delay):
 
 @inline
 def velocity_after(velocity, acceleration, delay):
-    """Component of the velocity after a delay in free flight, v + a t. Numbers or arrays."""
+    """Component of the velocity (length/time) after a delay (time) in free flight, v + a t; numbers or arrays."""
     return velocity + acceleration * delay
 
 
 @inline
 def advance(disc, time, gravity):
-    """Move a disc's record to a later time."""
+    """Move a disc's record in free flight to a later local time."""
     delay = time - disc.t
     if gravity is not None:
         disc.x = position_after(disc.x, disc.vx, gravity.x, delay)

@@ -1,4 +1,8 @@
-"""Periodic sides: where a disc that went through one comes back, and in which image it meets another."""
+"""Periodic sides of the box: wrapped positions, images and minimum-image distances.
+
+A disc that crosses a periodic side keeps its record: the crossing is counted, and the position is wrapped when the
+record is next moved.
+"""
 
 from typing import NamedTuple
 
@@ -11,10 +15,16 @@ NO_IMAGES = (0, 0)
 
 
 class Periodic(NamedTuple):
-    """x, y: which sides are joined. Lx, Ly: box, length.
+    """Periodic sides of the box, and each disc's boundary crossings and image.
 
-    turns: (N, 2) i4 by id, how often each disc went through them since its record. image: (N, 2) i4 by id, box lengths
-    to add to a record's position to unwrap it.
+    Attributes:
+        x: whether the left and the right side are periodic.
+        y: whether the bottom and the top side are periodic.
+        Lx: width of the box, length.
+        Ly: height of the box, length.
+        boundary_crossings: (N, 2) i4 by id, how often each disc crossed periodic sides along x and y since its record's
+            time; crossings to the left and downwards count as -1.
+        image: (N, 2) i4 by id, box lengths to add to a record's position to unwrap it.
     """
 
     x: bool
@@ -26,25 +36,28 @@ class Periodic(NamedTuple):
 
 
 def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
-    """Along which axes sides are joined."""
+    """Whether the sides are periodic along x and along y, as two truth values."""
     return (periodic.x, periodic.y) if periodic else (False, False)
 
 
 def copy_of(periodic: Periodic | None) -> Periodic | None:
-    """One whose counts can change without changing the original's."""
+    """Independent copy of periodic sides, whose counts may change without changing the original; None without any."""
     if periodic is None:
         return None
     return periodic._replace(boundary_crossings=periodic.boundary_crossings.copy(), image=periodic.image.copy())
 
 
 def begin_epoch(periodic: Periodic, time: float) -> None:
-    """Count ways through periodic sides from a time on, at which every record stands."""
+    """Set all boundary crossings to 0 at the start of an epoch, when all records are at one time."""
     periodic.boundary_crossings[:] = 0
 
 
 @inline
 def images_between(periodic, a_id, b_id, image):
-    """Box lengths between the records of a and b, which stand `image` box lengths apart now."""
+    """Numbers of box lengths (x, y) between the records of discs a and b; zeros without periodic sides.
+
+    image: numbers of box lengths (x, y) between the discs now, both seen inside the box.
+    """
     if periodic is not None:
         return (
             np.int64(periodic.boundary_crossings[U(a_id), 0] - periodic.boundary_crossings[U(b_id), 0] + image[0]),
@@ -55,7 +68,10 @@ def images_between(periodic, a_id, b_id, image):
 
 @inline
 def images_to_wall(periodic, own, image):
-    """Box lengths between a disc's record and a wall that stands `image` box lengths away from its place now."""
+    """Numbers of box lengths (x, y) between a disc's record and an image of a wall; zeros without periodic sides.
+
+    image: numbers of box lengths (x, y) between the wall and its image, seen from the disc inside the box.
+    """
     if periodic is not None:
         return np.int64(periodic.boundary_crossings[U(own), 0] + image[0]), np.int64(
             periodic.boundary_crossings[U(own), 1] + image[1]
@@ -65,7 +81,7 @@ def images_to_wall(periodic, own, image):
 
 @inline
 def shift_by_images(x, y, periodic, images):
-    """A relative position across so many box lengths."""
+    """A relative position (x, y), length, less the given numbers of box lengths."""
     if periodic is not None:
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
     return x, y
@@ -73,7 +89,7 @@ def shift_by_images(x, y, periodic, images):
 
 @inline
 def is_periodic(periodic, along_y):
-    """Whether the sides across an axis are joined."""
+    """Whether the sides are periodic along y or along x."""
     if periodic is not None:
         return periodic.y if along_y else periodic.x
     return False
@@ -81,19 +97,19 @@ def is_periodic(periodic, along_y):
 
 @inline
 def boxes_to_nearest(distance, length):
-    """How many box lengths to take from a coordinate difference to make it the nearest image's."""
+    """Number of box lengths to subtract from a coordinate difference to get the minimum image."""
     return round(distance / length)
 
 
 @inline
 def nearest_image(distance, length, is_periodic):
-    """A coordinate difference, through joined sides if that is shorter."""
+    """Coordinate difference (length) to the nearest image, or as it is along an axis that is not periodic."""
     return distance - length * boxes_to_nearest(distance, length) if is_periodic else distance
 
 
 @inline
 def nearest_images(x, y, periodic):
-    """Box lengths from one disc to the nearest image of another, which is (x, y) away."""
+    """Numbers of box lengths (x, y) to subtract from a relative position (x, y) to get the minimum image."""
     if periodic is not None:
         images_x = np.int64(boxes_to_nearest(x, periodic.Lx)) if periodic.x else 0
         images_y = np.int64(boxes_to_nearest(y, periodic.Ly)) if periodic.y else 0
@@ -103,7 +119,7 @@ def nearest_images(x, y, periodic):
 
 @inline
 def separation(a, b, periodic):
-    """Position of a relative to b's nearest image."""
+    """Position (x, y), length, of disc a relative to the nearest image of disc b."""
     x = a.x - b.x
     y = a.y - b.y
     if periodic is not None:
@@ -114,14 +130,14 @@ def separation(a, b, periodic):
 
 @inline
 def wrapped(position, length):
-    """A coordinate put back between joined sides, and the box lengths taken from it. Numbers or arrays."""
+    """A coordinate (length) wrapped into the box, and the number of box lengths subtracted; numbers or arrays."""
     boxes = np.floor(position / length)
     return position - boxes * length, boxes
 
 
 @inline
 def wrap(disc, own, periodic):
-    """Put a record's position back into the box and keep count."""
+    """Wrap a record's position into the box, and update the disc's image and boundary crossings."""
     if periodic is not None:
         if periodic.x:
             disc.x, boxes = wrapped(disc.x, periodic.Lx)
@@ -135,7 +151,7 @@ def wrap(disc, own, periodic):
 
 @inline
 def boundary_crossings_along(periodic, own, along_y):
-    """How often a disc went through joined sides along an axis since its record, and whether they are joined."""
+    """Boundary crossings of a disc along an axis since its record's time, and whether that axis is periodic."""
     if periodic is not None:
         return (
             (periodic.boundary_crossings[U(own), 1], periodic.y)

@@ -1,6 +1,7 @@
 """A piston: a wall across the box that moves along one axis, at a given velocity or with a mass under a pressure.
 
-Between hits it falls: X(t) = X₀ + V t + ½ A t²; A comes from the outer pressure and gravity (0 at a given velocity).
+Between hits it moves as X(t) = X₀ + V t + ½ A t²; A comes from the outer pressure and gravity, and is 0 at a given
+velocity.
 """
 
 import numpy as np
@@ -14,11 +15,11 @@ from idealgas.physics.restitution import wall_rebound
 
 PISTON = np.dtype(
     [
-        ("x", "f8"), ("v", "f8"), ("a", "f8"),  # position, velocity, acceleration along the axis
+        ("x", "f8"), ("v", "f8"), ("a", "f8"),  # position, velocity, acceleration along the axis: length, time
         ("t", "f8"),  # local time of the record
-        ("m", "f8"),  # mass; 0: moves at a given velocity whatever hits it
-        ("stop", "f8"),  # position of the end stop, the side of the box that it stands for
-        ("side", "i4"), ("count", "u4"),
+        ("m", "f8"),  # mass; 0 for a piston with a given velocity, which hits do not change
+        ("stop", "f8"),  # position of the end stop: the side of the box that the piston replaces, length
+        ("side", "i4"), ("count", "u4"),  # number of that side; number of events that changed the velocity
     ],
     align=True,
 )  # fmt: skip
@@ -26,43 +27,43 @@ PISTON = np.dtype(
 
 @inline
 def outward(piston):
-    """+1 if the gas is below the piston's coordinate, -1 if above."""
+    """Direction from the gas to the piston along its axis: +1 if the gas has the smaller coordinates, else -1."""
     return 1.0 if piston.side & 1 else -1.0
 
 
 @inline
 def piston_motion(piston, time):
-    """Position and velocity of a piston at a later local time, if it meets nothing until then."""
+    """Position (length) and velocity (length/time) of the piston at a later local time, if it meets nothing before."""
     delay = time - piston.t
     return position_after(piston.x, piston.v, piston.a, delay), velocity_after(piston.v, piston.a, delay)
 
 
 def end_epoch(piston: np.ndarray, length: float) -> None:
-    """Bring the piston to the end of an epoch, and count its local time from there."""
+    """Move the piston to the end of an epoch of some length (time), from where its local time counts."""
     advance_piston(piston[0], length)
     piston[0].t = 0.0
 
 
 @inline
 def piston_contact(disc, piston, gravity):
-    """Time at which a disc meets the piston; NEVER if it does not."""
+    """Local time at which a disc touches the piston; NEVER if it does not."""
     along_y = piston.side >= 2
     sign = outward(piston)
     time = max(disc.t, piston.t)
     d_dt = time - disc.t
     pull = acceleration_along(gravity, along_y)
-    place, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
-    d_place = position_after(place, velocity, pull, d_dt)
+    position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
+    d_position = position_after(position, velocity, pull, d_dt)
     d_velocity = velocity_after(velocity, pull, d_dt)
-    p_place, p_velocity = piston_motion(piston, time)
-    height = sign * (p_place - d_place) - disc.r
+    p_position, p_velocity = piston_motion(piston, time)
+    height = sign * (p_position - d_position) - disc.r
     delay = time_to_plane(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
     return time + delay if delay < NEVER else NEVER
 
 
 @inline
 def stop_contact(piston):
-    """Time at which the piston meets its end stop."""
+    """Local time at which the piston reaches its end stop; NEVER if it does not."""
     sign = outward(piston)
     delay = time_to_plane(sign * (piston.stop - piston.x), -sign * piston.v, -sign * piston.a)
     return piston.t + delay if delay < NEVER else NEVER
@@ -70,9 +71,10 @@ def stop_contact(piston):
 
 @inline
 def advance_piston(piston, time):
-    """Move the piston's record to a later time.
+    """Move the piston's record to a later local time.
 
-    The way is summed before it is added, other than in `piston_motion`: events on record depend on its last digit.
+    The displacement is summed before it is added, unlike in `piston_motion`: the logged events depend on its last
+    digit.
     """
     delay = time - piston.t
     piston.x += position_after(0.0, piston.v, piston.a, delay)
@@ -81,16 +83,17 @@ def advance_piston(piston, time):
 
 
 def piston_energy(mass, position, velocity, acceleration):
-    """Energy of motion and place of a piston with a mass, m (V²/2 - A X), constant between hits. Numbers or arrays.
+    """Kinetic and potential energy of a piston with a mass, m (V²/2 - A X), mass length²/time²; constant between hits.
 
-    acceleration: along its way between hits, by the outer pressure and gravity.
+    position: length. velocity: length/time. acceleration: between hits, from the outer pressure and gravity,
+    length/time². Numbers or arrays.
     """
     return mass * (0.5 * velocity**2 - acceleration * position)
 
 
 @inline
 def collide_with_piston(disc, own, piston, restitution):
-    """Exchange momentum along the axis; returns nothing, both records stand at the contact."""
+    """Exchange momentum along the axis between a disc and the piston, whose records are at the time of contact."""
     along_y = piston.side >= 2
     velocity = disc.vy if along_y else disc.vx
     factor = wall_rebound(restitution, own, disc.t)
@@ -109,7 +112,7 @@ def collide_with_piston(disc, own, piston, restitution):
 
 @inline
 def is_piston_side(side, piston):
-    """Whether the piston stands before a side."""
+    """Whether the piston stands in place of this side of the box."""
     if piston is not None:
         return side == piston[0].side
     return False

@@ -1,28 +1,28 @@
-"""The first time at which a body on a parabola comes within reach of a point: a quartic falls through zero."""
+"""First time at which a body on a parabola comes within a distance of a point: a quartic falls through zero."""
 
 import math
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
 
-BISECTIONS = 200  # more than enough to close any interval of floats
+BISECTIONS = 200  # enough to halve any interval of floats down to neighbouring ones
 
 
 @inline
 def cubic(b, c, d, e, t):
-    """b t³ + c t² + d t + e."""
+    """B t³ + c t² + d t + e."""
     return ((b * t + c) * t + d) * t + e
 
 
 @inline
 def parabola(x, v, a, t):
-    """x + v t + ½ a t²; as x + (v + ½ a t) t it keeps more digits near a return to x than summed term by term."""
+    """Value of x + v t + ½ a t²; as x + (v + ½ a t) t it keeps more digits near a return to x than term by term."""
     return x + (v + 0.5 * a * t) * t
 
 
 @inline
 def bisect(b, c, d, e, low, high):
-    """The point of [low, high] where the cubic changes sign, to the last bit; the signs at the ends differ."""
+    """Point of [low, high] where a cubic changes sign, to the last bit; its signs at both ends must differ."""
     rising = cubic(b, c, d, e, low) < cubic(b, c, d, e, high)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -37,7 +37,7 @@ def bisect(b, c, d, e, low, high):
 
 @inline
 def quadratic_roots(a, b, c):
-    """The real roots of a t² + b t + c in order, without cancellation; NEVER twice if there are none."""
+    """Real roots of a t² + b t + c in increasing order, without cancellation; NEVER in place of a missing root."""
     if a == 0.0:
         return (-c / b, NEVER) if b != 0.0 else (NEVER, NEVER)
     discriminant = b * b - 4.0 * a * c
@@ -52,7 +52,7 @@ def quadratic_roots(a, b, c):
 
 @inline
 def cubic_turns(b, c, d, e, last):
-    """Zeros of b t³ + c t² + d t + e in (0, last), in order, as a triple padded with `last`."""
+    """Points in (0, last) where the cubic b t³ + c t² + d t + e changes sign, in order: three, padded with `last`."""
     left, right = quadratic_roots(3.0 * b, 2.0 * c, d)
     found = 0
     first = second = third = last
@@ -81,22 +81,25 @@ def cubic_turns(b, c, d, e, last):
 
 @inline
 def gap(x, y, vx, vy, gx, gy, r, t):
-    """Square of the distance from the origin at time t on a parabola, less r²: from the place, so that no digit is lost
-    where r is small.
+    """Square of the distance from the origin at time t on a parabola, less r²; length².
+
+    It is computed from the position at t, so that no digit is lost where r is small.
     """
-    there_x = parabola(x, vx, gx, t)
-    there_y = parabola(y, vy, gy, t)
-    return there_x * there_x + there_y * there_y - r * r
+    x_then = parabola(x, vx, gx, t)
+    y_then = parabola(y, vy, gy, t)
+    return x_then * x_then + y_then * y_then - r * r
 
 
 @inline
 def first_descent(x, y, vx, vy, gx, gy, r, after):
-    """Smallest t ≥ 0 at which a parabola is within r of the origin and comes nearer, in a descent that begins after
-    the time `after`; NEVER if there is none.
+    """Smallest t ≥ 0 at which a body on a parabola is within r of the origin and approaches it; NEVER if there is none.
+
+    x, y, r: length. vx, vy: length/time. gx, gy: length/time². Only an approach that begins after the time `after`
+    counts.
 
     The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
-    stretch that ends at or below zero holds the root. A gap that is zero or less at 0 and falls there gives 0; if it
-    rises there, the next descent counts: to zero, or, if the gap stays below zero until then, to what it is at 0.
+    interval that ends at or below zero contains the root. A gap that is zero or less at 0 and falls there gives 0. If
+    it rises there, the next descent counts: to zero or, if the gap stays below zero until then, to its value at 0.
     """
     a = 0.25 * (gx * gx + gy * gy)
     b = gx * vx + gy * vy
@@ -108,7 +111,7 @@ def first_descent(x, y, vx, vy, gx, gy, r, after):
     largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
     last = 1.0 + largest / a  # Cauchy's bound on the roots
     bound = 2.0 * max(max(abs(b / a), math.sqrt(abs(c / a))), max(abs(d / a) ** (1.0 / 3.0), abs(e / a) ** 0.25))
-    last = min(last, bound)  # Fujiwara's
+    last = min(last, bound)  # Fujiwara's bound
     first, second, third = cubic_turns(4.0 * a, 3.0 * b, 2.0 * c, d, last)
     low = 0.0
     for k in range(4):

@@ -1,11 +1,14 @@
-"""SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): random numbers as a pure function of a counter and a key."""
+"""SplitMix64: random numbers as a pure function of a counter and a key.
+
+Source: Steele, Lea & Flood, OOPSLA 2014.
+"""
 
 import numpy as np
 
 from idealgas._jit import inline
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-"""What the counter is multiplied by."""
+"""Constant of SplitMix64 by which the counter is multiplied."""
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
@@ -14,7 +17,7 @@ _S27, _S30, _S31, _S11 = (np.uint64(s) for s in (27, 30, 31, 11))
 
 @inline
 def mix(z):
-    """SplitMix64's output function."""
+    """Output function of SplitMix64: 64 random bits from 64 bits."""
     z = (z ^ (z >> _S30)) * _MIX_1
     z = (z ^ (z >> _S27)) * _MIX_2
     return z ^ (z >> _S31)
@@ -22,5 +25,5 @@ def mix(z):
 
 @inline
 def unit_interval(bits):
-    """64 random bits as a number in (0, 1]."""
+    """Random number in (0, 1] from 64 random bits."""
     return (np.float64(bits >> _S11) + 1.0) * 2.0**-53

@@ -1,8 +1,8 @@
 """Thermal walls: a disc leaves with the velocity of a gas at the wall's temperature that streams through its surface.
 
-Normal speed density (m v/T) exp(-m v²/2T), tangential velocity and spin Gaussian. The random numbers are a pure
-function of the seed, the disc and the number of its emissions (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so
-neither the order of discs in memory nor a resumed run changes them.
+The normal velocity v has the density (m v/T) exp(-m v²/2T); tangential velocity and spin are Gaussian. The random
+numbers are a pure function of the seed, the disc's id and the number of its emissions (SplitMix64: Steele, Lea & Flood,
+OOPSLA 2014), so neither the order of discs in memory nor a resumed run changes them.
 """
 
 import math
@@ -15,9 +15,12 @@ from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 
 
 class Thermal(NamedTuple):
-    """temperature: (walls,) f8, energy, negative for a wall that reflects. seed: of the scene.
+    """Temperatures of the walls, and the state of the random numbers.
 
-    emissions: (N,) u8 by id, how often each disc was emitted.
+    Attributes:
+        temperature: (walls,) f8, mass length²/time² (k_B = 1), negative for a wall that reflects.
+        seed: seed of the scene.
+        emissions: (N,) u8 by id, how often a wall has emitted each disc.
     """
 
     temperature: np.ndarray
@@ -27,7 +30,7 @@ class Thermal(NamedTuple):
 
 @inline
 def is_thermal(thermal, wall):
-    """Whether a wall emits."""
+    """Whether a wall has a temperature and emits the discs that hit it."""
     if thermal is not None:
         return thermal.temperature[np.uintp(wall)] >= 0.0
     return False
@@ -35,7 +38,7 @@ def is_thermal(thermal, wall):
 
 @inline
 def uniform(thermal, own, draw):
-    """A number in (0, 1] for a disc's current emission; draw: which of its numbers."""
+    """Random number in (0, 1] for a disc's present emission; draw: index of the number within the emission."""
     key = mix(thermal.seed + GOLDEN * (np.uint64(own) + np.uint64(1)))
     count = thermal.emissions[np.uintp(own)] * np.uint64(8) + np.uint64(draw)
     return unit_interval(mix(mix(key + GOLDEN * (count + np.uint64(1))) + key))
@@ -43,7 +46,10 @@ def uniform(thermal, own, draw):
 
 @inline
 def emit(disc, own, nx, ny, wall, thermal, rotation):
-    """Give a disc a new velocity away from the wall."""
+    """Give a disc a random velocity away from a wall, and a random spin, at the wall's temperature.
+
+    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
+    """
     if thermal is not None:
         temperature = thermal.temperature[np.uintp(wall)]
         normal = math.sqrt(-2.0 * temperature / disc.m * math.log(uniform(thermal, own, 0)))

@@ -1,4 +1,8 @@
-"""A disc and a straight wall segment with two solid ends."""
+"""Contact of a disc with a straight wall segment: with its body or with one of its two end points.
+
+In coordinates of the segment, d and s are the disc's normal and tangential position (length) from the start point, vn
+and vt its velocity (length/time), an and at its acceleration (length/time²).
+"""
 
 import math
 
@@ -14,36 +18,39 @@ from idealgas.physics.wall_collision import reflection_factor
 
 SEGMENT = np.dtype(
     [
-        ("x", "f8"), ("y", "f8"),  # start point
+        ("x", "f8"), ("y", "f8"),  # start point, length
         ("tx", "f8"), ("ty", "f8"),  # unit tangent
-        ("length", "f8"),
-        ("opens", "f8"), ("closes", "f8"),  # from when to when a gate is not there; infinite for a wall
-        ("active", "?"),  # whether it is there in this epoch
+        ("length", "f8"),  # distance of the two end points
+        ("opens", "f8"), ("closes", "f8"),  # times between which a gate is absent; infinite for a wall
+        ("active", "?"),  # whether it is present in this epoch
     ],
     align=True,
 )  # fmt: skip
 
 
 def begin_epoch(segments: np.recarray, time: float) -> None:
-    """Set the gates as they are from a time on."""
+    """Set which segments are present from a time on: gates are absent while they are open."""
     segments.active[:] = ~((segments.opens <= time) & (time < segments.closes))
 
 
 def next_change(segments: np.recarray, time: float) -> float:
-    """When a gate next opens or closes after a time; infinite if none does."""
+    """Earliest time, after the given one, at which a gate opens or closes; infinite if none does."""
     switches = np.concatenate((segments.opens, segments.closes))
     return float(switches[switches > time].min(initial=math.inf))
 
 
 @inline
 def foot_inside(s, length):
-    """Whether a foot point at arc length s lies strictly between the ends."""
+    """Whether the foot point of a disc, at arc length s, lies strictly between the ends of a segment of this length."""
     return (s > 0.0) & (s < length)
 
 
 @inline
 def straight_body_delay(d, s, v_normal, v_tangent, r, length):
-    """Delay until a disc in straight flight meets the body: d, s are its normal and tangential coordinates."""
+    """Time until a disc of radius r in straight flight touches a segment's body; NEVER if it does not.
+
+    d, s: normal and tangential position, length. v_normal, v_tangent: velocity, length/time.
+    """
     towards = -v_normal if d > 0.0 else v_normal
     if towards <= 0.0:
         return NEVER
@@ -53,9 +60,10 @@ def straight_body_delay(d, s, v_normal, v_tangent, r, length):
 
 @inline
 def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
-    """The same on a parabola: the earliest approach to either face with the foot inside.
+    """Time until a disc of radius r on a parabola touches a segment's body; NEVER if it does not.
 
-    A disc that a gate closed over, and that cannot rise out of it, bounces as deep in it as it is.
+    It is the earliest approach to one of the two faces with the foot point inside. A disc over which a gate has closed,
+    and which cannot rise out of it, bounces at the depth that it has.
     """
     best = NEVER
     for face in range(2):
@@ -72,14 +80,14 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
                 delay = (speed + root) / -pull
             else:
                 delay = NEVER
-        elif sign * d > 0.0:  # touching this face, or sunk into it by rounding
+        elif sign * d > 0.0:  # the disc touches this face, or overlaps it by rounding
             if speed < 0.0:
                 delay = 0.0 if foot_inside(s, length) else NEVER
             elif pull < 0.0:
                 delay = (speed + root) / -pull
             else:
                 delay = NEVER
-        else:  # on the other side: may come round an end and meet this face on its way back
+        else:  # on the other side: the disc may pass an end and touch this face when it falls back
             delay = (speed + root) / -pull if speed > 0.0 and pull < 0.0 and discriminant >= 0.0 else NEVER
         if delay < best and foot_inside(position_after(s, vt, at, delay), length):
             best = delay
@@ -88,16 +96,17 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
 
 @inline
 def straight_end_delay(x, y, disc):
-    """Delay until a disc in straight flight, at (x, y) from an end of the wall, meets it."""
+    """Time until a disc in straight flight, at (x, y) from an end of a segment, touches that end; else NEVER."""
     meets, delay = touch(x, y, disc.vx, disc.vy, disc.r)
     return delay if meets else NEVER
 
 
 @inline
 def moves_off(delay, far, d, s, vn, vt, an, at, length):
-    """Whether a disc that comes to an end then moves away from where the segment is nearest, its body or other end.
+    """Whether a disc that touches an end after `delay` moves away from the segment's nearest point.
 
-    Only a disc that a gate closed over comes to an end from within.
+    The nearest point may be on the body or at the other end. far: whether the end is that at arc length `length`. Only
+    a disc over which a gate has closed comes to an end from within.
     """
     foot = parabola(s, vt, at, delay)
     height = parabola(d, vn, an, delay)
@@ -112,9 +121,12 @@ def moves_off(delay, far, d, s, vn, vt, an, at, length):
 
 @inline
 def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
-    """Delay until a disc, at (x, y) from an end of the wall, meets it; d, s, vn, vt, an, at: normal and tangential."""
+    """Time until a disc, at (x, y) from an end of a segment, touches that end; NEVER if it does not.
+
+    far: whether the end is that at arc length `length`.
+    """
     delay = -1.0
-    for _ in range(2):  # a parabola comes down to a point at most twice
+    for _ in range(2):  # on a parabola a disc approaches a point at most twice
         if gravity is not None:
             delay = first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r, delay)
         else:
@@ -126,7 +138,10 @@ def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
 
 @inline
 def segment_normal(disc, segment, periodic, images):
-    """Unit normal towards a disc that touches a segment, and whether it touches an end."""
+    """Unit normal (x, y) towards a disc that touches a segment, and whether the disc touches an end.
+
+    images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic.
+    """
     tx = segment.tx
     ty = segment.ty
     x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
@@ -142,17 +157,18 @@ def segment_normal(disc, segment, periodic, images):
 
 @inline
 def reflection_changes(disc, own, nx, ny, restitution):
-    """Whether a reflection would change any digit; if not, it counts as done."""
+    """Whether a reflection would change a digit of a disc's velocity; if not, it counts as done."""
     k = reflection_factor(disc, own, nx, ny, restitution)
     return (disc.vx - k * nx != disc.vx) | (disc.vy - k * ny != disc.vy)
 
 
 @inline
 def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
-    """Time at which a disc meets a segment, body or end; NEVER if it does not.
+    """Local time at which a disc touches a segment, its body or an end; NEVER if it does not.
 
-    images: box lengths between record and segment, where sides are periodic.
-    A touching disc whose reflection would not change a digit of its velocity is done, unless gravity presses it on.
+    images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic. A
+    touching disc whose reflection would not change a digit of its velocity counts as reflected, unless gravity presses
+    it to the wall.
     """
     tx = segment.tx
     ty = segment.ty

@@ -1,4 +1,4 @@
-"""What any wall does to a disc that touches it: reflect, inelastically or roughly, or emit it anew at a temperature."""
+"""Collision of a disc with any wall: a reflection, inelastic or rough, or an emission at the wall's temperature."""
 
 from idealgas._jit import inline
 from idealgas.physics.restitution import wall_rebound
@@ -8,14 +8,20 @@ from idealgas.physics.thermal import emit, is_thermal
 
 @inline
 def reflection_factor(disc, own, nx, ny, restitution):
-    """What times (nx, ny) a disc's velocity loses at a wall; exact though the normal is a unit to rounding only."""
+    """Multiple of (nx, ny) that a reflection subtracts from a disc's velocity, length/time.
+
+    It is exact although (nx, ny) has unit length only up to rounding.
+    """
     speed = disc.vx * nx + disc.vy * ny
     return wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
 
 
 @inline
 def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
-    """Change a disc's velocity at wall number `wall`, which is at rest; (nx, ny): its unit normal towards the disc."""
+    """Change the velocity and spin of a disc that touches a wall at rest.
+
+    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
+    """
     if is_thermal(thermal, wall):
         emit(disc, own, nx, ny, wall, thermal, rotation)
         return

@@ -8,8 +8,10 @@ from idealgas.run.effects.bundle import present
 
 
 class Energy(NamedTuple):
-    """kinetic, rotational, potential: of the discs. piston: motion and position of one with a mass. given: what walls
-    gave to the discs; a piston with a mass, whose energy counts itself, is not among them.
+    """The energy of a gas by its parts.
+
+    kinetic, rotational, potential: of the discs. piston: of motion and position of a piston with a mass. given: energy
+    that walls gave to the discs; what a piston with a mass gave is not counted, as its own energy is.
     """
 
     kinetic: float

@@ -26,7 +26,7 @@ AUDITED = (
 
 def layout_of(scene: Scene, gas: Gas, effects: Effects, without_positions: bool) -> LogLayout:
     """Of the log of a scene; gas, effects: at time 0. without_positions: the method does not know where discs are."""
-    x, y = ("periodic" if periodic else "none" for periodic in scene.box.periodic)  # in the words of H5MD
+    x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
     return LogLayout(
         walls=[Wall(wall.name, wall.start, wall.end) for wall in number_walls(scene)],
         boundary=(x, y),

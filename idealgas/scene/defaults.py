@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.discs import Disc, Species
-    from idealgas.scene.tables.restitution import Restitution
     from idealgas.scene.tables.run import Run
 
 
@@ -24,16 +23,6 @@ def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:
         if s.velocities is None
     )
     return (sum(speeds) + spread) / (len(disc) + sum(s.count for s in species))
-
-
-def contact_duration(restitution: Restitution, species: Sequence[Species], disc: Sequence[Disc]) -> float:
-    """As given, or a millionth of the mean diameter over the mean speed at the start; infinite if nothing moves."""
-    if restitution.contact_duration is not None:
-        return restitution.contact_duration
-    diameters = sum(2 * s.radius * s.count for s in species) + sum(2 * d.radius for d in disc)
-    speed = mean_speed(species, disc)
-    number = sum(s.count for s in species) + len(disc)
-    return 1e-6 * diameters / number / speed if speed > 0 else math.inf
 
 
 def reference_speed(run: Run, largest: float) -> float:

@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 
 def images(centre: Point, radius: float, box: Box | None) -> Iterator[Point]:
-    """A disc's centre, and those of its images that reach into the box through joined sides."""
+    """A disc's centre, and those of its images that reach into the box through periodic sides."""
     shifts = []
     for axis in range(2):
         here = [0.0]

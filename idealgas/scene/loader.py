@@ -62,7 +62,7 @@ def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]
 
 
 def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
-    """What tables of a document are sound, None in the place of the others, and the names of these."""
+    """The valid tables of a document, None for each of the others, and the names of the invalid ones."""
     parts: dict[str, Any] = {}
     invalid = set()
     for name, field in Scene.model_fields.items():

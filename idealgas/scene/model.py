@@ -10,8 +10,8 @@ from idealgas.document.error import Issue
 from idealgas.document.origin import Origin
 from idealgas.document.table import Table
 from idealgas.scene.checks.issues import issues
-from idealgas.scene.defaults import contact_duration
 from idealgas.scene.tables.document import Document
+from idealgas.scene.tables.restitution import contact_duration
 
 
 class Scene(Document):
@@ -41,5 +41,5 @@ class Scene(Document):
         return self
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """Lines for people about faults that show only later, with the place of the key each names."""
+        """One line for each issue found after the scene was checked, with file and line of the key that it is about."""
         return self._origin.report(issues)

@@ -1,4 +1,4 @@
-"""What effects do to a gas, as properties: whoever wants to know of a scene asks for them, not for the effects."""
+"""What effects do to a gas, as properties: analyses and checks ask a scene for properties, not for effects."""
 
 import operator
 from collections.abc import Callable
@@ -39,8 +39,8 @@ class Properties:
     uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: between two events a disc flies
     along a straight line. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
     lossless: no energy is lost at all when discs meet discs or walls. fixed_walls: all walls stay where they are.
-    without_places: it has a meaning for discs whose positions nobody knows. in_steps: it can be met in time steps.
-    scales: the box may grow or shrink around the gas, as nothing in it has a place.
+    without_places: it has a meaning for discs without positions. in_steps: it can be met in time steps.
+    scales: the box may grow or shrink around the gas, as nothing in it has a fixed position.
 
     False where an effect does not change that, and true of a scene if it is true with any effect:
 

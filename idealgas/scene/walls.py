@@ -32,7 +32,7 @@ class NumberedWall(NamedTuple):
 
 
 def number_walls(scene: Scene) -> list[NumberedWall]:
-    """All walls, wall k at place k."""
+    """All walls by number: the sides of the box are walls 0 to 3, the segments follow."""
     emits = scene.properties.emits
     walls = []
     for name, ends, side, temperature in zip(SIDES, side_ends(scene.box.size), scene.box.sides, emits, strict=False):

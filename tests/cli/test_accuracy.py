@@ -28,6 +28,7 @@ def small(tmp_path_factory):
     return folder, idealgas("accuracy", "small.toml", "-o", "out", "--repeats", 1, folder=folder)
 
 
+@pytest.mark.slow
 def test_it_prints_tables_and_sentences_and_nothing_else(small):
     _, done = small
     assert (done.returncode, done.stderr) == (0, "")
@@ -42,7 +43,7 @@ def test_its_files_hold_all_numbers(small):
     with (folder / "out/accuracy.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     result = json.loads((folder / "out/accuracy.json").read_text())
-    assert [row["rung"] for row in rows] == [row["rung"] for row in result["rows"]]
+    assert [row["case"] for row in rows] == [row["case"] for row in result["rows"]]
     assert [row["method"] for row in rows] == ["event_driven"] + ["time_driven"] * 8
     assert rows[0]["rate_bias"] == ""
     coarse = rows[1]
@@ -53,6 +54,7 @@ def test_its_files_hold_all_numbers(small):
     assert (folder / "out/accuracy.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_the_orbit_of_three_discs(tmp_path):
     scene = ROOT / "configs" / "three-discs.toml"
     done = called("accuracy", scene, "--json", "-o", tmp_path)

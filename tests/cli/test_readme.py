@@ -189,8 +189,9 @@ def test_code_of_the_log_runs(folder):
     assert len(printed) == 6
     assert (folder / "events.csv").stat().st_size > 1e6
     whole_run = float(run_python(plain, LOG).removeprefix("P = "))
-    all_walls = re.search(r"all walls.*?P = ([\d.]+)", run_command("idealgas pressure quickstart.h5"))
-    assert whole_run == pytest.approx(float(all_walls[1]), rel=0.02)
+    routes = json.loads(run_command("idealgas pressure quickstart.h5 --json"))["routes"]
+    (all_walls,) = (r["pressure"]["value"] for r in routes if r["route"] == "all walls")
+    assert whole_run == pytest.approx(all_walls, rel=0.02)
     read = run_python(package, LOG)
     assert "1000 discs" in read
     assert read.endswith(" wall hits\n")
@@ -286,7 +287,7 @@ def test_the_page_of_tests_knows_them():
             assert f'"{marker}: ' in markers
         for path in re.findall(r"tests/\w+", command):
             assert (ROOT / path).is_dir()
-    listed = {name for name in re.findall(r"^\| `(\w+)` \|", PAGES[TESTS], re.MULTILINE)}
+    listed = set(re.findall(r"^\| `(\w+)` \|", PAGES[TESTS], re.MULTILINE))
     assert listed == {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name[0] not in "._"}
 
 

@@ -72,6 +72,7 @@ def test_the_same_scene_gives_the_same_rows(tmp_path):
         assert all(same_rows(x, y) for x, y in zip(a.chunks(), b.chunks(), strict=True))
 
 
+@pytest.mark.slow
 def test_shipped_scenes(shipped_scene, tmp_path):
     result = called("run", shipped_scene, "-o", "run.h5", "--json", "--set", "run.events=3000", folder=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
@@ -168,6 +169,7 @@ def test_ctrl_c_ends_the_run_with_a_readable_log(tmp_path):
 
 
 @pytest.mark.interpreted
+@pytest.mark.slow
 def test_without_compilation(tmp_path):
     result = idealgas("run", CORNER, "-o", "run.h5", "--json", folder=tmp_path, NUMBA_DISABLE_JIT="1")
     assert (result.returncode, result.stderr) == (0, "")

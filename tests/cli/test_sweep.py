@@ -37,6 +37,7 @@ def results(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in (".json", ".csv")}
 
 
+@pytest.mark.slow
 def test_workers_make_no_difference_and_nothing_is_done_twice(plan, tmp_path):
     for workers in (1, 2):
         done = idealgas("sweep", plan, "-o", tmp_path / f"with-{workers}", "--workers", workers)
@@ -55,6 +56,7 @@ def test_workers_make_no_difference_and_nothing_is_done_twice(plan, tmp_path):
     assert "agree within 4 standard errors" in table.stdout
 
 
+@pytest.mark.slow
 def test_failing_points_do_not_stop_the_others(plan, tmp_path):
     plan.write_text(SWEEP.replace("[0.02, 0.1]", "[0.02, 0.64]").replace("count = 20", "count = 3"))
     done = idealgas("sweep", plan, "-o", tmp_path / "out", "--workers", 1)
@@ -134,6 +136,7 @@ def workers_of(running: subprocess.Popen) -> list[psutil.Process]:
     return [child for child in children if any("spawn_main" in word for word in child.cmdline())]
 
 
+@pytest.mark.slow
 def test_a_killed_worker_loses_nothing(plan, tmp_path):
     plan.write_text(LONGER)
     running = start(plan, tmp_path / "out")
@@ -150,6 +153,7 @@ def test_a_killed_worker_loses_nothing(plan, tmp_path):
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=lambda how: how.name)
+@pytest.mark.slow
 def test_a_killed_sweep_goes_on_where_it_stopped(plan, tmp_path, how):
     plan.write_text(LONGER)
     running = start(plan, tmp_path / "out")

@@ -1,12 +1,15 @@
 """What each shipped scene conserves, at every sample of a run of twenty thousand events."""
 
 import numpy as np
+import pytest
 
 from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
+
+pytestmark = pytest.mark.slow
 
 
 def test_energy_and_momentum(shipped_scene, tmp_path):

@@ -24,6 +24,8 @@ from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
 
+pytestmark = pytest.mark.slow
+
 STANDARD_ERRORS = 4
 LEAST_P = 0.001
 

@@ -14,6 +14,8 @@ from idealgas.gas.build import make_gas
 from idealgas.scene import load_scene
 from idealgas.study.accuracy.orbit import columns_at, is_on_orbit, orbit_gas, study_orbit, survival, three_disc_orbit
 
+pytestmark = pytest.mark.slow
+
 BOX, RADIUS = (10.2, 6.2), math.sqrt(0.5)
 GROWTH = 2500.0  # of a deviation, each period
 

@@ -1,4 +1,4 @@
-"""Scenes with any effects at nasty scales: a witness looks at every event, and brute force writes the same log.
+"""Scenes with any effects at nasty scales: every event is checked, and brute force writes the same log.
 
 All effects go into one compilation, those that a scene does not call for with numbers that change nothing; only gravity
 is there or not. A scene that once broke something is kept in tests/cases/once_broke.
@@ -87,7 +87,7 @@ def log_of_brute_force(scene: Scene, gas: Gas, stop: Stop) -> EventBatch:
 
 
 def run_scene(text: str, max_errors: MaxErrors) -> None:
-    """Run a scene event by event before a witness, to exactly where it should end, then by brute force."""
+    """Run a scene event by event before an invariant checker, to exactly where it should end, then by brute force."""
     scene, gas = scene_and_gas(text)
     stop = stop_of(scene, len(gas))
     effects = fresh_effects(scene, gas)

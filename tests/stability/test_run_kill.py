@@ -12,6 +12,8 @@ from support import IDEALGAS, ROOT, idealgas
 
 from idealgas.log import open_log
 
+pytestmark = pytest.mark.slow
+
 IN_CI, BY_HAND = 6, 40
 SCENES = {
     "fast": ("quickstart", "run.events=2000000", "log.snapshot_every=5"),

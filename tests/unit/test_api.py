@@ -98,6 +98,7 @@ def test_a_line_in_the_registry_is_a_name(monkeypatch):
     monkeypatch.setattr(registry, "NAMES", (*registry.NAMES, "made_up"))
     assert "made_up" in dir(idealgas)
     assert idealgas.made_up is made_up
+    assert idealgas.pressure is idealgas.pressure
 
 
 # ── scenes, runs and logs ──

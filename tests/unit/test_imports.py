@@ -41,7 +41,7 @@ FROM_ANALYSES = {
     "report": {"info", "movie", "registry"},
 }
 
-COMPUTES = {"idealgas", "math", "typing", "collections", "enum", "numpy", "numba"}
+COMPUTES = {"idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
 """All that the laws of physics need."""
 
 

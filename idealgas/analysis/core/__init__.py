@@ -1,1 +1,1 @@
-"""What the analyses share: streams over a log, windows, statistics, tables and the style of pictures."""
+"""Common parts of all analyses: reading a log in blocks, windows of time, statistics, tables and picture style."""

@@ -1,4 +1,4 @@
-"""How often discs of each species meet, how far they fly in between, and what kinetic theory says."""
+"""Collision rates and mean free paths of each species of discs, measured and by kinetic theory."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -18,20 +18,24 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class CollisionRate:
-    """Collisions per time of one disc of `species` with discs of the species `other`."""
+    """Collision rate of one disc of `species` with all discs of the species `other`, in 1/time."""
 
     species: str
     other: str
     rate: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"species": self.species, "other": self.other, "rate": self.rate.as_dict()}
 
 
 @dataclass(frozen=True)
 class FreePath:
-    """Mean path and mean time of a disc between collisions with discs, and its mean speed."""
+    """Mean free path, mean free time and mean speed of the discs of one species.
+
+    path: mean length of path between successive collisions of a disc with other discs, length. time: mean time between
+    them, time. speed: mean speed of a disc, length/time.
+    """
 
     species: str
     path: Estimate
@@ -39,23 +43,26 @@ class FreePath:
     speed: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"path": self.path.as_dict(), "time": self.time.as_dict(), "speed": self.speed.as_dict()}
         return {"species": self.species, **values}
 
 
 class ExpectedRates(NamedTuple):
-    """Γ_ij by theory, (S, S), not a number where it has no value; relative_error: (S, S), one standard deviation."""
+    """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, with their errors.
+
+    rate: (S, S), 1/time; nan if theory has no value. relative_error: (S, S), relative standard deviation of its error.
+    """
 
     rate: np.ndarray
     relative_error: np.ndarray
 
     def between(self, i: int, j: int) -> Theory | None:
-        """Γ_ij, None without a value."""
+        """Rate Γ_ij in 1/time; None if theory has no value."""
         return self._theory(self.rate[i, j], self.relative_error[i, j] * self.rate[i, j])
 
     def of(self, i: int) -> Theory | None:
-        """Collisions of a disc of species i with all discs."""
+        """Rate of the collisions of one disc of species i with all other discs, in 1/time; None without a value."""
         return self._theory(self.rate[i].sum(), (self.relative_error[i] * self.rate[i]).sum())
 
     @staticmethod
@@ -64,15 +71,15 @@ class ExpectedRates(NamedTuple):
 
 
 def theory_of(log: Log, discs: Composition) -> BoxTheory:
-    """Pressure and contacts of the gas of a log, which is uniform, where theory knows them."""
+    """Theory of the pressure and of the contacts of a uniform gas, the one of a log."""
     return box_theory(discs.radius, discs.number, log.box, log.periodic, ergodic=_is_ergodic(log))
 
 
 def _is_ergodic(log: Log) -> bool:
-    """Whether two discs come everywhere that their energy allows.
+    """Whether the gas reaches all states of its energy. False only for two equal discs that start without momentum.
 
-    Equal discs between walls that set out with opposite velocities do not: after every reflection each component of
-    one is that of the other but for its sign, which keeps the centre of the pair, reflected as they are, in its place.
+    Between walls their velocities then remain equal in every component except for signs. As long as they meet with
+    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
     """
     gas = log.discs
     if len(gas) != 2 or all(log.periodic) or not log.scene.properties.isolated or np.ptp(gas.mass) > 0:
@@ -84,10 +91,16 @@ def _is_ergodic(log: Log) -> bool:
 def expected_rates(
     discs: Composition, box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None
 ) -> ExpectedRates:
-    """Γ_ij by theory for all discs of a box; theory: as `theory_of` gives it, None for a gas without positions.
+    """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, in 1/time.
 
-    The contacts that the pressure comes from, met at relative speeds that a fixed total energy makes a little larger
-    than Maxwell and Boltzmann's.
+    The product of the contacts per relative speed, from which the pressure follows as well, and of the mean relative
+    speed, which is a little larger at fixed total energy than by Maxwell-Boltzmann's law.
+
+    Args:
+        discs: the S species of the gas.
+        box: width and height of the box, length.
+        equilibrium: the ensemble that the gas belongs to.
+        theory: contacts of the gas from `theory_of`; None for a method whose discs have no positions.
     """
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
     if theory is None:
@@ -98,7 +111,10 @@ def expected_rates(
 def collision_rates(
     discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts
 ) -> tuple[CollisionRate, ...]:
-    """Rates of all pairs of species. expected: as `expected_rates` gives them."""
+    """Measured collision rates of all ordered pairs of species, in 1/time.
+
+    expected: rates by theory, from `expected_rates`.
+    """
     counts = window.of(impacts.collisions)
 
     def rate(i: int, j: int) -> Estimate:
@@ -118,7 +134,10 @@ def free_paths(
     moments: Moments,
     impacts: Impacts,
 ) -> tuple[FreePath, ...]:
-    """Mean free path λ = ⟨v⟩/Γ and time 1/Γ of each species. expected: as `expected_rates` gives them."""
+    """Mean free path λ = ⟨v⟩/Γ, mean free time 1/Γ and mean speed ⟨v⟩ of each species.
+
+    expected: collision rates by theory, from `expected_rates`.
+    """
     counts = window.of(impacts.collisions)
     paths = []
     for i, (name, mass, number) in enumerate(zip(discs.name, discs.mass, discs.number, strict=True)):

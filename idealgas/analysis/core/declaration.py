@@ -1,12 +1,12 @@
-"""What an analysis says of itself, without its code: that is imported when it is called for.
+"""Declaration of an analysis: its name, options and sections of the report, without importing its code.
 
 The folder `idealgas/analysis/NAME` of an analysis declares it as `ANALYSIS` and has in
 
-    measure.py   NAME(log, start, end, progress, **options), the result of one log
-    tables.py    NAME_tables(result), the rows of the terminal, of CSV and of the report
-    figure.py    NAME_figure(result), its picture
-    combine.py   with `several`: combine_NAME(results), one result of several logs, which tables and figure then take;
-                 with `folders` too: restore_NAME(found, label), the result that a sweep stored as plain values
+    measure.py   NAME(log, start, end, progress, **options): the result of one log
+    tables.py    NAME_tables(result): the tables for the terminal, for CSV and for the report
+    figure.py    NAME_figure(result): the picture of the result
+    combine.py   with `several`: combine_NAME(results): one result of several logs, for tables and figure;
+                 with `folders` too: restore_NAME(found, label): the result that a sweep stored as plain values
 
 Results are dataclasses with `as_dict()`: plain values, ready for JSON.
 """
@@ -14,7 +14,9 @@ Results are dataclasses with `as_dict()`: plain values, ready for JSON.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import cached_property, wraps
 from importlib import import_module
+from inspect import signature
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
@@ -27,15 +29,16 @@ if TYPE_CHECKING:
     from idealgas.log import Log
 
 Progress = Callable[[int, int], None]
-"""progress(done, in all) of what an analysis reads."""
+"""Function progress(done, total) that an analysis calls while it reads a log: rows or frames read, and their number."""
 
 
 @dataclass(frozen=True)
 class Option:
-    """An argument of an analysis: `--name` of its command, a keyword in Python. name: an identifier.
+    """One option of an analysis: `--name` on the command line, a keyword argument in Python.
 
-    kind: str, int or float. choices: the texts allowed. least, most: the numbers allowed, both included. positive:
-    whether a number has to be above 0. metavar: what stands for the value in the command's help.
+    name: a Python identifier. kind: type of the value, str, int or float. help: text for the command line. default:
+    value if the option is not given. choices: texts that are allowed. least, most: smallest and largest number allowed.
+    positive: whether a number must be greater than 0. metavar: word that stands for the value in the help text.
     """
 
     name: str
@@ -50,7 +53,7 @@ class Option:
 
     @property
     def allowed(self) -> str:
-        """The values that it takes, in words."""
+        """Description of the allowed values, for error messages."""
         if self.choices:
             return ", ".join(self.choices)
         words = {int: "a whole number", float: "a number", str: "a text"}[self.kind]
@@ -60,7 +63,7 @@ class Option:
         return " ".join([words, " and ".join(bounds)]).strip()
 
     def check(self, value: Any) -> None:
-        """Raise UserError for a value that is not allowed; the default always is."""
+        """Raise UserError if the value is not allowed; the default value is always allowed."""
         if value is None and self.default is None:
             return
         kind = {int: Integral, float: Real, str: str}[self.kind]
@@ -74,7 +77,11 @@ class Option:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a report. caption: of its picture, for those who do not see it too; options: of the analysis."""
+    """One section of the report that an analysis fills.
+
+    title: heading of the section. caption: text below the picture, also read aloud to blind readers. options: values of
+    the options of the analysis for this section.
+    """
 
     title: str
     caption: str
@@ -83,11 +90,13 @@ class Section:
 
 @dataclass(frozen=True)
 class Analysis:
-    """One analysis. package: its folder, `__name__` there. help: of the command, its first sentence in the list of all.
+    """Declaration of one analysis.
 
-    options: beside start and end, whose defaults `start` and `end` tell in words. sections: what a report has of it.
-    several: whether several logs are put together; folders: those of sweeps too. checked: whether results have a
-    `check()` of measurement against theory. reads: what takes its time.
+    package: name of its Python package, `__name__` there. help: help text of the command; its first sentence stands in
+    the list of commands. sections: sections of the report. options: options beside the start and end of the window.
+    several: whether the analysis combines several logs. folders: whether it also takes folders of sweeps. checked:
+    whether results have a method `check()` that compares measurement and theory. start, end: description of the default
+    start and end of the window. reads: what the progress bar counts, such as events or frames.
     """
 
     package: str
@@ -103,12 +112,12 @@ class Analysis:
 
     @property
     def name(self) -> str:
-        """The folder's name, an identifier."""
+        """Name of the analysis: the name of its folder, a Python identifier."""
         return self.package.rpartition(".")[2]
 
     @property
     def key(self) -> str:
-        """The name of the command, and in the file of a sweep."""
+        """Name of the command, also used in the file of a sweep: with hyphens instead of underscores."""
         return self.name.replace("_", "-")
 
     def measure(
@@ -119,7 +128,11 @@ class Analysis:
         progress: Progress | None = None,
         **options: Any,
     ) -> Any:
-        """The result of one log. UserError for options that the analysis does not take, or if it does not apply."""
+        """Analyse one log between the times `start` and `end` and return the result, a dataclass with `as_dict()`.
+
+        Raises:
+            UserError: if an option is unknown or its value not allowed, or if the analysis does not apply to the log.
+        """
         known = {option.name: option for option in self.options}
         for name, value in options.items():
             if name not in known:
@@ -128,23 +141,35 @@ class Analysis:
         values = {name: option.default for name, option in known.items()} | options
         return self._code("measure", self.name)(log, start=start, end=end, progress=progress, **values)
 
+    @cached_property
+    def function(self) -> Callable[..., Any]:
+        """`measure` as a function that has the arguments and the docstring of the one in measure.py."""
+        own = self._code("measure", self.name)
+        arguments = signature(own)
+
+        @wraps(own)
+        def function(*given: Any, **named: Any) -> Any:
+            return self.measure(**arguments.bind(*given, **named).arguments)
+
+        return function
+
     def combine(self, results: Sequence[Any]) -> Any:
-        """What tables and figure show of the results of logs, of one or, with `several`, of more."""
+        """Combine the results of one log or, with `several`, of more logs into what tables and figure show."""
         if self.several:
             return self._code("combine", f"combine_{self.name}")(results)
         (result,) = results
         return result
 
     def restore(self, found: dict[str, Any], label: str) -> Any:
-        """The result of a log whose `as_dict()` a sweep stored. label: of its point."""
+        """Make a result again from the values of its `as_dict()` that a sweep stored; label: name of the point."""
         return self._code("combine", f"restore_{self.name}")(found, label)
 
     def tables(self, combined: Any) -> "list[Table]":
-        """What people read of what `combine` gave."""
+        """Tables of a combined result."""
         return self._code("tables", f"{self.name}_tables")(combined)
 
     def figure(self, combined: Any) -> "Figure":
-        """The picture of what `combine` gave."""
+        """Picture of a combined result."""
         return self._code("figure", f"{self.name}_figure")(combined)
 
     def _code(self, module: str, function: str) -> Callable[..., Any]:
@@ -152,7 +177,10 @@ class Analysis:
 
 
 def unknown(what: str, got: str, allowed: Sequence[str]) -> UserError:
-    """The error of a name that is not there, with the nearest one that is."""
+    """UserError for an unknown name; it suggests the allowed name that is most similar.
+
+    what: kind of the name. got: the unknown name. allowed: all known names.
+    """
     close = get_close_matches(got, allowed, n=1)
     mean = f', did you mean "{close[0]}"?' if close else ""
     return UserError(f"unknown {what}{mean} (got {got}; allowed {', '.join(allowed)})")

@@ -1,6 +1,5 @@
-"""What a gas conserves, and how the energy is shared out under that: the ensemble its equilibrium belongs to."""
+"""Conserved quantities of a gas, and the ensemble of its equilibrium: how the energy is shared among the discs."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +12,14 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class Ensemble:
-    """A gas of fixed energy, and of fixed momentum where no wall takes any; or one at the temperature of its walls.
+    """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath of its walls.
 
-    drift: (2,), velocity from which the others count, see `drift`. dof: D, degrees of freedom of motion and spin that
-    share the energy, infinite in a heat bath. temperature: 2E/D. of_species: (S,), mean kinetic energy of a disc:
-    T(1 - m/M) where the discs, of mass M in all, keep their momentum (half as much less where they keep one component),
-    as a heavy disc's share of it is not free.
+    drift: (2,), velocity of the centre of mass that is subtracted from all velocities, length/time; see `drift`.
+    dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
+    temperature: T = 2E/D, energy (k_B = 1).
+    of_species: (S,), mean kinetic energy of translation of a disc of each species, energy. It is T where momentum is
+    not conserved, T(1 - m/M) for a disc of mass m where both components are conserved, with the mass M of all discs,
+    and T(1 - m/2M) where one component is conserved.
     """
 
     drift: np.ndarray
@@ -28,21 +29,26 @@ class Ensemble:
 
 
 def kept_momentum(log: Log) -> np.ndarray:
-    """(2,) bool, directions along which nothing takes momentum from the discs; all, where discs have no positions.
+    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool.
 
-    Smooth walls take none along themselves; thermal and rough ones do.
+    Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
+    conserve both components.
     """
     return np.array(log.scene.properties.conserves_momentum if log.has_positions else (True, True))
 
 
 def drift(log: Log) -> np.ndarray:
-    """(2,) velocity of the centre of mass where it stays as it is, else 0."""
+    """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
     gas = log.discs
     return np.where(kept_momentum(log), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
 
 
 def ensemble(log: Log) -> Ensemble:
-    """Of the discs of a log. UserError if their energy is not known beforehand."""
+    """Ensemble of the gas of a log.
+
+    Raises:
+        UserError: if the effects of the scene leave the temperature in equilibrium unknown.
+    """
     found = known_ensemble(log)
     if found is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
@@ -51,7 +57,7 @@ def ensemble(log: Log) -> Ensemble:
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
-    """The same, None if the energy of motion and spin is neither fixed nor set by walls of one temperature."""
+    """Ensemble of the gas of a log; None if the energy is neither conserved nor set by walls of one temperature."""
     properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
     if not properties.conserves_energy or len(properties.temperatures) > 1:
         return None
@@ -62,17 +68,17 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
+    temperature = min(properties.temperatures, default=energy / dof)
     share = 1 - kept.mean() * mass / gas.mass.sum()
-    if properties.isolated:
-        return Ensemble(frame, dof, energy / dof, energy / dof * share)
-    (temperature,) = properties.temperatures
-    return Ensemble(frame, math.inf, temperature, temperature * share)
+    return Ensemble(frame, dof, temperature, temperature * share)
 
 
 def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
-    """Of a gas that falls along an axis: its walls' own, or what its energy at the start comes to in a dilute gas.
+    """Equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
 
-    None where other effects leave it unknown, and for a single disc, with which nobody shares.
+    It is the temperature of the thermal walls or, without them, the one at which a dilute gas has the conserved energy
+    of the start: kinetic energy, spin and height in the barometric distribution. None if other effects leave it
+    unknown, and for a single disc, which cannot share its energy.
     """
     properties, gas = log.scene.properties, log.discs
     if not properties.fixed_walls or not properties.elastic or log.periodic[1 - axis] or len(gas) == 1:

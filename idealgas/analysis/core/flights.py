@@ -1,4 +1,4 @@
-"""Tallies of velocities, weighted with the time that the discs spend at them."""
+"""Time averages of velocities: moments and histograms, weighted with the duration of each flight."""
 
 import math
 from typing import Any
@@ -12,27 +12,29 @@ from idealgas.physics.motion import velocity_after
 
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
 
-T, VX, VY = range(3)  # columns of a track: last event's time, velocity since
+T, VX, VY = range(3)  # columns of a track: time of the disc's last event, velocity after it
 
 
 def make_tracks(gas: Gas, start: float) -> np.ndarray:
-    """(N, 3) tracks of discs that fly from `start` on."""
+    """Tracks (N, 3) of all discs: time `start` and the components of the velocity then."""
     return np.column_stack((np.full(len(gas), start), gas.velocity))
 
 
 class Moments:
-    """Sums over discs and time of |v|, m vx², m vy², (m v²)² per block and species, and the events per block.
+    """Time integrals of velocity moments, summed over the discs of each species, and event counts in each block.
 
-    flights: (B, S, 4) in that order. events: (B, 2), pair collisions and wall hits.
+    flights: (B, S, 4), integrals of |v|, m vx², m vy² and (m v²)² over time for B blocks and S species.
+    events: (B, 2), numbers of pair collisions and of wall hits.
     """
 
     columns = ("time", "disc", "partner", "velocity")
 
     def __init__(self, gravity: tuple[float, float] = (0.0, 0.0)) -> None:
-        """gravity: length/time²; flights are parabolas."""
+        """Take the acceleration `gravity` in length/time²; with it flights are parabolas."""
         self.gravity = gravity
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
         self.flights = np.zeros((len(edges) - 1, len(gas.species_names), 4))
         self.events = np.zeros((len(edges) - 1, 2), np.int64)
@@ -41,12 +43,14 @@ class Moments:
         self._block = 0
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_moments(
             rows.time, rows.disc, rows.partner, rows.velocity, self.gravity,
             self._species, self._mass, self._tracks, self.edges, self._block, self.flights, self.events,
         )  # fmt: skip
 
     def finish(self) -> None:
+        """Add the last part of the flight of every disc, up to time edges[-1]."""
         _finish_moments(self.gravity, self._species, self._mass, self._tracks, self.edges, self.flights)
 
 
@@ -65,7 +69,7 @@ def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
             _add_fall(sums, mass, vx, vy, gravity[0], gravity[1], weight)
         else:
             square = vx * vx + vy * vy
-            energy = mass * square  # twice
+            energy = mass * square  # twice the kinetic energy
             sums[0] += weight * math.sqrt(square)
             sums[1] += mass * weight * vx * vx
             sums[2] += mass * weight * vy * vy
@@ -78,7 +82,7 @@ def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
 
 @inline
 def _add_fall(sums, mass, vx, vy, gx, gy, t):
-    """The integrals over a parabola of duration t that starts at velocity (vx, vy)."""
+    """Add the time integrals over a parabolic flight of duration t that starts at velocity (vx, vy)."""
     a, b, c = gx * gx + gy * gy, vx * gx + vy * gy, vx * vx + vy * vy  # v² = a s² + 2 b s + c
     across = abs(vx * gy - vy * gx) / a
     sums[0] += math.sqrt(a) * (_half_arc(t + b / a, across) - _half_arc(b / a, across))
@@ -90,7 +94,7 @@ def _add_fall(sums, mass, vx, vy, gx, gy, t):
 
 @inline
 def _half_arc(u, k):
-    """∫₀ᵘ √(s² + k²) ds."""
+    """Integral ∫₀ᵘ √(s² + k²) ds."""
     root = math.sqrt(u * u + k * k)
     return 0.5 * (u * root + (k * k * math.asinh(u / k) if k > 0.0 else 0.0))
 
@@ -120,21 +124,22 @@ def _finish_moments(gravity, species, mass, tracks, edges, flights):
 
 
 class VelocityHistogram:
-    """Time spent per bin of one velocity quantity, and its values at the inner block edges for some discs.
+    """Histogram of one velocity quantity, weighted with time, and its values for some discs at the inner block edges.
 
-    counts: (B, S, bins + 2), time below, in and above the bins. sums: (B, S) of value times time. snapshots: (B - 1, M)
-    values of the M `sampled` discs.
+    counts: (B, S, bins + 2), time that discs spent below, in and above the bins. sums: (B, S), integral of the quantity
+    over time. snapshots: (B - 1, M), values of the M `sampled` discs at the edges between blocks.
     """
 
     columns = ("time", "disc", "velocity")
 
     def __init__(self, quantity: str, low: np.ndarray, high: np.ndarray, bins: int, sampled: np.ndarray) -> None:
-        """low, high: (S,) range per species."""
+        """Take the range of the bins of each species: low and high of shape (S,), in the unit of the quantity."""
         self.quantity = VELOCITY_QUANTITIES.index(quantity)
         self.low, self.per_unit, self.bins = low, bins / (high - low), bins
         self.sampled = sampled
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
         self.counts = np.zeros((len(edges) - 1, len(gas.species_names), self.bins + 2))
         self.sums = np.zeros((len(edges) - 1, len(gas.species_names)))
@@ -146,12 +151,14 @@ class VelocityHistogram:
         self._block = 0
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_histogram(
             rows.time, rows.disc, rows.velocity, self.quantity, self._species, self._mass, self._slot,
             self._tracks, self.edges, self._block, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
         )  # fmt: skip
 
     def finish(self) -> None:
+        """Add the last part of the flight of every disc, up to time edges[-1]."""
         _finish_histogram(
             self.quantity, self._species, self._mass, self._slot,
             self._tracks, self.edges, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
@@ -161,7 +168,7 @@ class VelocityHistogram:
 
 @inline
 def bin_of(value, low, per_unit, bins):
-    """0 below the range, 1 … bins inside, bins + 1 above."""
+    """Index of the bin of a value: 0 below the range, 1 to `bins` inside, bins + 1 above."""
     place = (value - low) * per_unit
     inside = np.int64(min(max(place, -1.0), bins + 0.0))
     return 0 if place < 0 else inside + 1

@@ -1,4 +1,4 @@
-"""Tally of what discs do to one another and to the walls: virials, impulses and numbers of collisions."""
+"""Sums over collisions and wall hits: virials, momentum given to the walls, and numbers of events."""
 
 from typing import Any
 
@@ -10,24 +10,26 @@ from idealgas.gas.state import Gas
 from idealgas.physics.periodic import nearest_image
 from idealgas.sides import SIDES
 
-X, Y, VX, VY = range(4)  # columns of a track: the disc at its last event
+X, Y, VX, VY = range(4)  # columns of a track: position and velocity of a disc after its last event
 
 
 class Impacts:
-    """Sums over collisions and wall hits per block.
+    """Sums over collisions and wall hits in each of B blocks of time, for S species and W walls.
 
-    pair_virial: (B,), Σ r_ij·Δp_ij, by nearest images. wall_virial: (B,), -Σ r·Δp of discs that hit walls, r from the
-    middle of the box. collisions: (B, S, S), upper triangle. impulse: (B, W, 2), momentum given to the walls.
-    hits: (B, W).
+    pair_virial: (B,), Σ r_ij·Δp_ij over pair collisions with the minimum image of r_ij, energy·time.
+    wall_virial: (B,), -Σ r·Δp over wall hits with r from the centre of the box, energy·time.
+    collisions: (B, S, S), numbers of pair collisions; only the upper triangle is filled.
+    impulse: (B, W, 2), momentum given to each wall, mass·length/time. hits: (B, W), numbers of hits of each wall.
     """
 
     columns = ("time", "disc", "partner", "position", "velocity")
 
     def __init__(self, walls: int = len(SIDES), periodic: tuple[bool, bool] = (False, False)) -> None:
-        """walls: W, the sides of the box first. periodic: which axes are periodic."""
+        """Take the number of walls, in which the sides of the box come first, and whether x and y are periodic."""
         self.walls, self.periodic = walls, periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         blocks, species = len(edges) - 1, len(gas.species_names)
         self.edges = edges
         self.pair_virial = np.zeros(blocks)
@@ -42,6 +44,7 @@ class Impacts:
         self._block = 0
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_impacts(
             rows.time, rows.disc, rows.partner, rows.position, rows.velocity,
             self._middle, self._box, self.periodic, self._species, self._mass, self._tracks, self.edges, self._block,
@@ -49,7 +52,7 @@ class Impacts:
         )  # fmt: skip
 
     def finish(self) -> None:
-        """Flights add nothing."""
+        """Do nothing: flights between events add nothing to these sums."""
 
 
 @njit
@@ -74,7 +77,7 @@ def _add_impacts(
             impulse[block, wall, 0] -= px
             impulse[block, wall, 1] -= py
             wall_virial[block] -= (x - middle[0]) * px + (y - middle[1]) * py
-        elif disc[row] > partner[row]:  # second row of a pair: the partner's track is at the contact too
+        elif disc[row] > partner[row]:  # second row of a collision: now both tracks are at the contact
             j = np.uintp(partner[row])
             apart_x = nearest_image(x - tracks[j][X], box[0], periodic[0])
             apart_y = nearest_image(y - tracks[j][Y], box[1], periodic[1])

@@ -1,4 +1,4 @@
-"""Tallies of intervals: free flights of discs and waits of the gas, as histograms and as thinned samples."""
+"""Intervals between events: free flights of discs and waiting times of the gas, as histograms and thinned samples."""
 
 import math
 from typing import Any
@@ -12,14 +12,14 @@ from idealgas.gas.state import Gas
 
 
 class _Intervals:
-    """Histogram of intervals by the block and species they start in, and every `stride`-th of them as a sample.
+    """Histogram of intervals by the block and the species in which they start, and a sample of every `stride`-th one.
 
-    counts: (B, S, bins + 2), with those below and above the range. sums: (B, S) of lengths.
-    sample, sample_block, sample_species: thinned intervals, block and species of their start.
+    counts: (B, S, bins + 2), numbers of intervals below, in and above the bins. sums: (B, S), sum of the intervals, in
+    lengths or times. sample, sample_block, sample_species: sampled intervals, and the block and species of their start.
     """
 
     def __init__(self, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
-        """high: (S,) upper end of the histogram per species, in lengths or times."""
+        """Take the upper end of the histogram of each species, high (S,), in lengths or times."""
         self.per_unit, self.bins, self.stride = bins / high, bins, stride
         self._sample = np.zeros(most_samples)
         self._origin = np.zeros((most_samples, 2), np.int64)
@@ -33,7 +33,7 @@ class _Intervals:
         self._block = 0
 
     def finish(self) -> None:
-        """Intervals still open at the end are left out."""
+        """Do nothing: intervals that have not ended by the end of the window are left out."""
         taken = min(len(self._sample), -(-int(self._seen[0]) // self.stride))
         self.sample = self._sample[:taken]
         self.sample_block, self.sample_species = self._origin[:taken].T
@@ -51,7 +51,7 @@ def _put(value, block, s, per_unit, counts, sums, stride, seen, sample, origin):
 
 
 class FreeFlights(_Intervals):
-    """Path or time of a disc between successive collisions with discs; walls in between bend the path, no more."""
+    """Free path or free time of a disc between successive collisions with discs; wall hits do not end a free path."""
 
     columns = ("time", "disc", "partner", "velocity")
 
@@ -60,13 +60,15 @@ class FreeFlights(_Intervals):
         self.path = path
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
         self._species = gas.species
-        # time of the last event, speed (1 to measure time), length so far, time of the last collision
+        # time of the last event, speed (1 if times are measured), path since the last collision, time of that collision
         self._tracks = np.zeros((len(gas), 4))
         self._tracks[:, 3] = -np.inf
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block = _add_free_flights(
             rows.time, rows.disc, rows.partner, rows.velocity, self.path, self._species, self._tracks, self.edges,
             self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,
@@ -101,10 +103,12 @@ class Waits(_Intervals):
     columns = ("time", "disc", "partner")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
         self._last = -np.inf
 
     def add(self, rows: Any) -> None:
+        """Add the next event rows of the log."""
         self._block, self._last = _add_waits(
             rows.time, rows.disc, rows.partner, self._last, self.edges,
             self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,

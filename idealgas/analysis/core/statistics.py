@@ -17,26 +17,27 @@ from scipy import stats
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
-logging.getLogger("pymbar").setLevel(logging.ERROR)  # it announces at import that JAX would be faster
+logging.getLogger("pymbar").setLevel(logging.ERROR)  # pymbar logs at import that JAX would be faster
 from pymbar import timeseries  # noqa: E402
 
 ENOUGH_REPLICATES = 20
-"""Independent runs from which the spread among them tells the error; with fewer their own errors do."""
+"""Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
 
 LONG_BLOCKS = 32
-"""Blocks that errors of anticorrelated series are taken from."""
+"""Number of long blocks from which the errors of anticorrelated series are computed."""
 
 TOLERANCE = 4.0
-"""Deviation from theory that is allowed where it is checked, in errors of measurement and theory together."""
+"""Largest allowed deviation between measurement and theory in a check, in errors of both together."""
 
 
 @dataclass(frozen=True)
 class Estimate:
     """A measured number with its error bar.
 
-    value: in the unit of the quantity. standard_error: of the value, nan if there are too few samples for one.
-    independent_samples: number of them that the error comes from, inf for what is known exactly. theory: value that
-    theory expects of this gas; None where no theory applies. theory_error: of that value, one standard deviation.
+    value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
+    there are too few samples. independent_samples: number of independent samples behind the error; inf for a quantity
+    that is known exactly. theory: value expected by theory, in the same unit; None where no theory applies.
+    theory_error: standard deviation of the error of that value, in the same unit.
     """
 
     value: float
@@ -47,25 +48,28 @@ class Estimate:
 
     @property
     def deviation(self) -> float | None:
-        """(value - theory)/√(standard_error² + theory_error²); None without theory or without an error bar."""
+        """Deviation value - theory in units of √(standard_error² + theory_error²).
+
+        None without theory or without an error bar.
+        """
         if self.theory is None or not self.standard_error > 0:
             return None
         return (self.value - self.theory) / math.hypot(self.standard_error, self.theory_error)
 
     def times(self, factor: float) -> "Estimate":
-        """Of a quantity that is so many times as large."""
+        """Estimate of the quantity multiplied by a factor."""
         theory, size = None if self.theory is None else self.theory * factor, abs(factor)
         errors = self.standard_error * size, self.theory_error * size
         return Estimate(self.value * factor, errors[0], self.independent_samples, theory, errors[1])
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval of a level, 0 to 1, by Student's t with independent_samples - 1 degrees of freedom."""
+        """Confidence interval at a level (0 to 1), by Student's t with independent_samples - 1 degrees of freedom."""
         half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
         return self.value - half, self.value + half
 
     @classmethod
     def from_dict(cls, found: Mapping[str, float | None]) -> "Estimate":
-        """What `as_dict` was made from."""
+        """Make an estimate again from the values of `as_dict`."""
         value, error, samples = (found[name] for name in ("value", "standard_error", "independent_samples"))
         return cls(
             math.nan if value is None else value,
@@ -76,15 +80,16 @@ class Estimate:
         )
 
     def as_dict(self) -> dict[str, float | None]:
-        """Fields and deviation by name, for JSON: None for what is not finite."""
+        """Fields and deviation by name, ready for JSON; None for numbers that are not finite."""
         fields = asdict(self) | {"deviation": self.deviation}
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether measurement and theory agree. agrees: None where theory has no value. judged: names of what was compared.
+    """Result of a check of measurement against theory.
 
+    agrees: whether they agree; None if theory has no value. judged: names of the quantities that were compared.
     why_not: why theory has no value, as part of a sentence.
     """
 
@@ -93,7 +98,7 @@ class Verdict:
     why_not: str = ""
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"agrees": self.agrees, "judged": self.judged, "no_theory": self.why_not or None}
 
     def __str__(self) -> str:
@@ -105,9 +110,14 @@ class Verdict:
 
 
 def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
-    """Whether every value for which there is a theory is within TOLERANCE of it. found: by name.
+    """Check that every estimate with a theory agrees with it within TOLERANCE.
 
-    why_not: why there is no theory, where none of the values has one. UserError if an error bar is missing.
+    Args:
+        found: estimates by name.
+        why_not: why theory has no value, for the case that no estimate has one.
+
+    Raises:
+        UserError: if an estimate with a theory has no error bar.
     """
     known = {name: one.deviation for name, one in found if one.theory is not None}
     if not known:
@@ -118,21 +128,27 @@ def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
 
 
 def inefficiency(series: np.ndarray) -> float:
-    """Statistical inefficiency g ≥ 1: samples per independent sample; 1 for a series too short or constant to tell."""
+    """Statistical inefficiency g ≥ 1 of a series: samples per independent sample; 1 if it is too short or constant."""
     if len(series) < 4 or not np.ptp(series) > 1e-12 * np.abs(series).max():
         return 1.0
     return float(timeseries.statistical_inefficiency(series))
 
 
 def ensemble_inefficiency(series: np.ndarray) -> float:
-    """The same from many series of one process, such as all discs of a species. series: (samples, members)."""
+    """Statistical inefficiency g ≥ 1 from many series of one process, such as all discs of a species.
+
+    series: array of shape (samples, members).
+    """
     if len(series) < 4 or np.ptp(series) == 0:
         return 1.0
     return float(timeseries.statistical_inefficiency_multiple(list(series.T)))
 
 
 def equilibration(*series: np.ndarray) -> int:
-    """Index from which every series is stationary: the start that leaves the most independent samples."""
+    """Index from which all series are stationary: the start that leaves the largest number of independent samples.
+
+    Source: Chodera, J. Chem. Theory Comput. 12, 1799 (2016).
+    """
     start = 0
     for values in series:
         if len(values) >= 16 and np.ptp(values) > 1e-12 * np.abs(values).max():
@@ -141,15 +157,15 @@ def equilibration(*series: np.ndarray) -> int:
 
 
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """function(mean of each series), its error by linear propagation through the series' joint fluctuations.
+    """Estimate of function(means of the series), with its error by linear propagation of their joint fluctuations.
 
-    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is one correlated series, so that covariances need no bookkeeping: a mean is
+    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. Examples: a mean is
     `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`.
     """
     columns = np.array(series, float)
     means = columns.mean(axis=1)
     influence = np.zeros(columns.shape[1])
-    with np.errstate(divide="ignore", invalid="ignore"):  # a ratio of what never happened is not a number
+    with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives not a number
         for k, column in enumerate(columns):
             if (step := 1e-3 * column.std()) > 0:
                 shift = np.zeros(len(means))
@@ -162,16 +178,16 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory |
 
 
 def _said(theory: Theory | float | None) -> tuple[float | None, float]:
-    """Value and error of a theory; a plain number has no error."""
+    """Value and error of a theory; the error of a plain number is 0."""
     return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
 def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
-    """Standard error and independent samples of a mean.
+    """Standard error of the mean of a series, and its number of independent samples.
 
-    Inefficiencies below 1 are beyond pymbar; yet what walls receive swings back and forth with the sound in the box.
-    So longer blocks decide where they give an error clearly smaller than chance would (Flyvbjerg & Petersen, J. Chem.
-    Phys. 91, 461 (1989)).
+    pymbar never gives an inefficiency below 1, but the momentum that walls receive is anticorrelated by sound waves in
+    the box. Therefore the error comes from longer blocks where these give a clearly smaller error than chance would:
+    Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
     """
     if len(series) < 2:
         return math.nan, float(len(series))
@@ -185,26 +201,26 @@ def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
 
 
 def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """Mean of one series."""
+    """Estimate of the mean of one correlated series."""
     return estimate(lambda a: a, series, theory=theory)
 
 
 def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """Ratio of two means."""
+    """Estimate of the ratio of the means of two correlated series."""
     return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
 
 
 def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Kolmogorov and Smirnov's distance: the largest between the distribution function of samples and a law's, `cdf`.
+    """Kolmogorov-Smirnov distance: largest difference between the distribution function of samples and that of a law.
 
-    Where its probability by chance is asked for as well, `scipy.stats.kstest` gives both.
+    samples: (n,), values. cdf: distribution function of the law. `scipy.stats.kstest` gives the p-value as well.
     """
     law, steps = cdf(np.sort(samples)), np.arange(len(samples) + 1) / len(samples)
     return float(max((steps[1:] - law).max(), (law - steps[:-1]).max()))
 
 
 def block_averages(series: np.ndarray, blocks: int) -> np.ndarray:
-    """Averages over `blocks` equal stretches of a series; samples that do not fill the last one are left out."""
+    """Averages of a series over `blocks` blocks of equal length; samples that remain at the end are left out."""
     length = len(series) // blocks
     return np.asarray(series)[: length * blocks].reshape(blocks, length).mean(axis=1)
 
@@ -217,10 +233,10 @@ def bootstrap(
     resamples: int = 2000,
     theory: Theory | float | None = None,
 ) -> Estimate:
-    """function(replicates) with its error from resampling independent replicates (first axis) with replacement.
+    """Estimate of function(replicates), with its error by bootstrap over the independent replicates on the first axis.
 
-    The spread of a bootstrap is that of n - 1 degrees of freedom over n, which is made good: Efron & Tibshirani, An
-    Introduction to the Bootstrap (1993), eq. 5.12.
+    The bootstrap variance is multiplied by n/(n - 1), as it underestimates the variance of n replicates by this factor:
+    Efron & Tibshirani, An Introduction to the Bootstrap (1993), eq. 5.12.
     """
     replicates = np.asarray(replicates)
     n = len(replicates)
@@ -230,9 +246,9 @@ def bootstrap(
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
-    """Mean of the same quantity over independent runs: with enough of them by bootstrap, else by their own errors."""
+    """Mean of one quantity over independent runs; error by bootstrap with enough runs, else from their own errors."""
     values, expected = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
-    shared = sum(r.theory_error for r in replicates) / len(replicates)  # runs have the errors of theory in common
+    shared = sum(r.theory_error for r in replicates) / len(replicates)  # the error of theory is common to all runs
     theory = None if expected is None else Theory(expected, shared, "mean of runs")
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory=theory)
@@ -242,6 +258,6 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:
-    """Mean of what theory says of each run; None if it is silent on one."""
+    """Mean of the theoretical values of all runs; None if one run has no theoretical value."""
     known = [theory for theory in theories if theory is not None]
     return sum(known) / len(known) if len(known) == len(theories) else None

@@ -1,7 +1,7 @@
-"""One pass over the events of a log, in bounded memory, feeding any number of tallies.
+"""One pass over the events of a log in bounded memory, for any number of tallies.
 
-A tally follows every disc from event to event, and adds up what the flights and the events contribute to each block of
-time. Block edges split flights, so that time averages are exact. Shape of the sums: (B, …).
+A tally follows every disc from event to event and adds the contributions of its flights and events to B blocks of time.
+Flights are split at the edges of the blocks, so that time averages are exact. Shape of the sums: (B, …).
 """
 
 from collections.abc import Callable, Iterable
@@ -17,20 +17,20 @@ from idealgas.log import Log
 
 
 class Tally(Protocol):
-    """What `stream` feeds."""
+    """Interface of the sums that `stream` collects over the events of a log."""
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The event columns it reads."""
+        """Names of the event columns that the tally reads."""
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Take the discs as they are at edges[0], and the edges (B + 1,) of the blocks."""
+        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
 
     def add(self, rows: Any) -> None:
-        """Take further rows of the log."""
+        """Add the next event rows of the log."""
 
     def finish(self) -> None:
-        """Bring every disc to edges[-1]."""
+        """Add the last part of the flight of every disc, up to time edges[-1]."""
 
 
 def stream(
@@ -39,9 +39,10 @@ def stream(
     tallies: Iterable[Tally],
     progress: Callable[[int, int], None] | None = None,
 ) -> None:
-    """Feed the events after edges[0] up to edges[-1] to the tallies; progress(rows done, rows in all).
+    """Pass the events after time edges[0] and up to edges[-1] to all tallies.
 
-    Velocities are relative to the centre of mass where that moves on for ever.
+    Velocities are relative to the centre of mass along axes where momentum is conserved. progress(done, total) is
+    called with the number of rows read and the number of all rows.
     """
     frame = drift(log)
     state = log.state_at(edges[0])
@@ -66,7 +67,7 @@ def stream(
 
 @inline
 def block_at(edges, block, time):
-    """Block of a time not before the given block's start."""
+    """Index of the block that contains a time, searched forwards from a given block."""
     while block + 2 < edges.shape[0] and time > edges[block + 1]:
         block += 1
     return block
@@ -74,7 +75,7 @@ def block_at(edges, block, time):
 
 @inline
 def block_back(edges, block, time):
-    """Block of a time not after the given block's end."""
+    """Index of the block that contains a time, searched backwards from a given block."""
     while time < edges[block]:
         block -= 1
     return block

@@ -1,4 +1,4 @@
-"""Tables of results: one source of rows for the terminal, for CSV and for the page of a report."""
+"""Tables of results: the same rows for the terminal, for CSV and for the report page."""
 
 import csv
 import io
@@ -13,7 +13,11 @@ from idealgas.analysis.core.window import Window
 
 
 class Number(NamedTuple):
-    """A number in a table. digits: its format for people; absent: what they read where there is no value."""
+    """A number in a table.
+
+    value: the number, None if there is none. digits: format for the terminal and the report. absent: text that is shown
+    if there is no value.
+    """
 
     value: float | None
     digits: str = ".6g"
@@ -28,9 +32,11 @@ Cell = str | Number
 
 @dataclass(frozen=True)
 class Table:
-    """A table of a result. heads: of the columns, the first of them names what a row is about.
+    """A table of a result.
 
-    notes: lines that people read before the rows. most: rows that people see at most, evenly taken; CSV has them all.
+    title: heading of the table. heads: headings of the columns; the first column names the rows. rows: cells, row by
+    row. notes: lines printed before the rows. most: largest number of rows that are shown, evenly chosen from all rows;
+    CSV has all of them.
     """
 
     title: str
@@ -41,7 +47,7 @@ class Table:
 
     @property
     def shown(self) -> list[list[str]]:
-        """The rows that people see, as text."""
+        """Cells of the rows that are shown on the terminal and in the report, as text."""
         rows, last = self.rows, len(self.rows) - 1
         if self.most is not None and last >= self.most:
             rows = [rows[round(last * k / (self.most - 1))] for k in range(self.most)]
@@ -51,7 +57,7 @@ class Table:
 ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "dev./s.e.")
 
 THEORY_ERROR = "± theory"
-"""A further column after that of theory, in tables with a theory that has an error of its own."""
+"""Heading of the error of theory, a column of those tables in which a theory has one."""
 
 CSV_HEADS = {
     "": "name",
@@ -60,11 +66,11 @@ CSV_HEADS = {
     THEORY_ERROR: "theory_error",
     "dev./s.e.": "deviation",
 }
-"""What columns are called in CSV, where not as people read it: as in the results of a sweep."""
+"""Column names in CSV that differ from the shown headings; they are those of the results of a sweep."""
 
 
 def estimates(title: str, rows: Iterable[tuple[str, Estimate]], notes: Sequence[str] = ()) -> Table:
-    """A table of named estimates, each with its error bar and beside theory."""
+    """Table of named estimates with value, standard error, independent samples, theory, its error and deviation."""
     rows = list(rows)
     rough = any(found.theory_error > 0 for _, found in rows)
 
@@ -79,7 +85,7 @@ def estimates(title: str, rows: Iterable[tuple[str, Estimate]], notes: Sequence[
 
 
 def collision_tables(rates: Iterable[CollisionRate], paths: Iterable[FreePath]) -> list[Table]:
-    """How often discs of each species collide, and how far and how long they fly in between."""
+    """Tables of collision rates (1/time), mean free paths (length) and mean free times (time) of each species."""
     between = [
         (f"{entry.species}: {name}", value)
         for entry in paths
@@ -96,15 +102,16 @@ def collision_tables(rates: Iterable[CollisionRate], paths: Iterable[FreePath]) 
 
 
 def describe(window: Window) -> str:
-    """One line on the window of time that was used."""
+    """One line that describes the window of time an analysis used."""
     how = "from detected equilibrium" if window.detected else "as asked"
     return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"
 
 
 def as_csv(tables: Iterable[Table]) -> str:
-    """All rows of all tables under one line of heads: first the title of the table, then every column of any of them.
+    """All rows of all tables as one CSV text, whose first line has the headings of all columns.
 
-    Numbers have all their digits; what a table does not have is left empty, and so is what is not a number.
+    The first column has the title of the table. Numbers have all their digits. A cell is empty if its table does not
+    have the column, or if its number is not finite.
     """
     rows: list[dict[str, str | float]] = []
     for table in tables:

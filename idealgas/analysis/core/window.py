@@ -1,4 +1,4 @@
-"""Which part of a log an analysis uses: a given window of time, or what follows detected equilibration."""
+"""Window of time that an analysis uses: given by the user, or from detected equilibrium on."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,14 +12,15 @@ from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
-DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas has more than MANY_BLOCKS, for more samples of a disc
+DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
 
 
 @dataclass(frozen=True)
 class Window:
-    """Blocks of equal width that were streamed, and the first of them to use.
+    """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
 
-    edges: (B + 1,). detected: whether `first` was found by the detection of equilibrium.
+    edges: (B + 1,), times between the blocks. first: index of the first block used. detected: whether `first` was found
+    by the detection of equilibrium.
     """
 
     edges: np.ndarray
@@ -28,27 +29,30 @@ class Window:
 
     @property
     def start(self) -> float:
+        """Start of the window, time."""
         return float(self.edges[self.first])
 
     @property
     def end(self) -> float:
+        """End of the window, time."""
         return float(self.edges[-1])
 
     @property
     def duration(self) -> float:
+        """Length of the window, time."""
         return self.end - self.start
 
     @property
     def width(self) -> float:
-        """Width of a block."""
+        """Width of one block, in units of time."""
         return float(self.edges[1] - self.edges[0])
 
     def of(self, sums: np.ndarray) -> np.ndarray:
-        """The window's part of a tally's sums (B, …), as rates per time."""
+        """Sums (B, …) of a tally for the blocks of the window, divided by the width of a block: rates per time."""
         return sums[self.first :] / self.width
 
     def as_dict(self) -> dict[str, float | bool]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"start": self.start, "end": self.end, "equilibration_detected": self.detected}
 
 
@@ -60,11 +64,22 @@ def measure(
     progress: Callable[[int, int], None] | None = None,
     needs: Sequence[str] = (),
 ) -> Window:
-    """Stream the log between start and end into the tallies; without a start, from detected equilibrium on.
+    """Read the events of a log between two times into tallies, and return the window of time to use.
 
-    The detection looks at the kurtosis of the velocities, the energy of each species and the numbers of events,
-    per block. needs: properties (`idealgas.scene.properties`) that the analysis relies on. UserError when there is
-    nothing in the window, or if an effect of the scene takes one of these properties away.
+    Without `start` the window begins at detected equilibrium: where the kurtosis of the velocities, the energy of each
+    species and the numbers of events per block are stationary.
+
+    Args:
+        log: the log to read.
+        tallies: sums to collect over the events.
+        start: start of the window, time; None for detected equilibrium.
+        end: end of the window, time; None for the end of the log.
+        progress: called with the number of rows read and the number of all rows.
+        needs: properties of a scene (`idealgas.scene.properties`) that the analysis relies on.
+
+    Raises:
+        UserError: if the window is empty or not covered by the log, if the log has no events, or if an effect of the
+            scene takes one of the needed properties away.
     """
     if strange := log.scene.lacking(*needs):
         raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
@@ -79,7 +94,10 @@ def measure(
 
 
 def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
-    """Edges of equal blocks, no shorter than the time between events of one disc unless that leaves too few."""
+    """Times (B + 1,) between blocks of equal width between `start` and `end`.
+
+    A block is not shorter than the mean time between two events of a disc, unless there were too few blocks then.
+    """
     if not log.has_events:
         raise UserError(f"{log.path}: has no events (made with log.events = false)")
     first = log.start_time if start is None else start
@@ -96,15 +114,21 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
 
 
 def stationary_series(moments: Moments) -> list[np.ndarray]:
-    """Block series that stand still in equilibrium and move before."""
+    """Series of block averages that are stationary in equilibrium and change before it."""
     energy = moments.flights[:, :, 1] + moments.flights[:, :, 2]
     fourth = moments.flights[:, :, 3].sum(axis=1)
-    shares = [share for share in energy.T if np.ptp(share) > 1e-9 * share.max()]  # not those that only rounding moves
+    shares = [
+        share for share in energy.T if np.ptp(share) > 1e-9 * share.max()
+    ]  # without series that change only by rounding
     return [fourth, *shares, *moments.events.T.astype(float)]
 
 
 def span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
-    """Start and end, by default those of the log. UserError if the log does not cover them or nothing is between."""
+    """Start and end of a window in units of time, by default those of the log.
+
+    Raises:
+        UserError: if the log does not cover the window, or if the end is not after the start.
+    """
     first = log.start_time if start is None else start
     last = log.end_time if end is None else end
     if not log.start_time <= first < last <= log.end_time:

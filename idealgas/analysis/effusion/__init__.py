@@ -1,4 +1,4 @@
-"""The flow of discs through a slit that opens."""
+"""Flow of discs through a gate that opens."""
 
 from idealgas.analysis.core.declaration import Analysis, Section
 
@@ -6,7 +6,7 @@ ANALYSIS = Analysis(
     __name__,
     help="""Measure the flow through a gate that opens, and compare it with n⟨v⟩/π.
 
-    A folder is that of a sweep with the analysis "effusion"; runs that differ in their seeds alone are put together.
+    DIR is the folder of a sweep with the analysis "effusion"; runs that differ only in their seeds are averaged.
     """,
     sections=(Section("Effusion", "Share of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),),
     several=True,

@@ -1,4 +1,4 @@
-"""Gases that leave through a slit: runs of one kind together."""
+"""Flow of gases through a slit: runs of the same gas combined."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,18 +10,21 @@ from idealgas.analysis.effusion.measure import Effusion
 
 @dataclass(frozen=True)
 class Effusions:
-    """groups: runs that differ in their seeds alone, by their name; together: the mean of their flux over density."""
+    """Flow through a slit in groups of runs that differ only in their seeds.
+
+    groups: runs of each group, by its name. together: mean flux over density of each group, length/time.
+    """
 
     groups: dict[str, tuple[Effusion, ...]]
     together: dict[str, Estimate]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {name: estimate.as_dict() for name, estimate in self.together.items()}
 
 
 def combine_effusion(results: Sequence[Effusion]) -> Effusions:
-    """Put runs of one name together."""
+    """Combine runs of the same name into groups and average their flux."""
     names = dict.fromkeys(found.name for found in results)
     groups = {name: tuple(found for found in results if found.name == name) for name in names}
     together = {name: mean_of_replicates([found.speed for found in runs]) for name, runs in groups.items()}
@@ -29,5 +32,5 @@ def combine_effusion(results: Sequence[Effusion]) -> Effusions:
 
 
 def restore_effusion(found: dict[str, Any], label: str) -> Effusion:
-    """A point of a sweep, named by the values of its axes."""
+    """Result of one point of a sweep, named by `label`, the values of its axes."""
     return Effusion.from_dict(found, label)

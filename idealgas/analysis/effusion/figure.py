@@ -1,4 +1,4 @@
-"""The picture of gases that leave through a slit."""
+"""Picture of the flow of gases through a slit."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,7 +8,7 @@ from idealgas.analysis.effusion.combine import Effusions
 
 
 def effusion_figure(found: Effusions) -> Figure:
-    """Share of the discs beyond the slit against time, and the flux of each gas beside n⟨v⟩/π."""
+    """Picture of the share of the discs beyond the slit against time, and of the flux of each gas beside n⟨v⟩/π."""
     groups, together = found.groups, found.together
     figure, (course, flux) = panels(2)
     for (name, runs), colour in zip(groups.items(), COLOURS * len(groups), strict=False):

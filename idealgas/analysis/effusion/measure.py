@@ -1,4 +1,4 @@
-"""The flow of discs through a slit that opens, beside n⟨v⟩/π."""
+"""Flow of discs through a gate that opens, compared with n⟨v⟩/π."""
 
 import math
 from collections.abc import Callable
@@ -22,12 +22,13 @@ TINY = 1e-12
 
 @dataclass(frozen=True)
 class Effusion:
-    """name: of the run. density: of the fuller side if all were there.
+    """Flow of discs between two chambers through a gate, from its opening on.
 
-    time: (INSTANTS,), from the opening on. beyond: (INSTANTS,), discs on the side that had fewer at first; expected:
-    (INSTANTS,), the same by theory. speed: discs per time and open length, over the difference of the densities, each
-    times the mean speed on its side over that of the gas; theory: ⟨v⟩/π. Its error is that of a Poisson number of
-    passages both ways.
+    name: of the run. density: number density if all discs were in the chamber that has more discs at first, 1/length².
+    temperature: energy. time: (INSTANTS,), times. beyond: (INSTANTS,), number of discs in the other chamber. expected:
+    (INSTANTS,), this number by theory. speed: discs per time and open length, divided by the difference of the
+    densities, length/time; each density is multiplied by the mean speed in its chamber over that of the gas. Its theory
+    is ⟨v⟩/π, its error that of a Poisson number of passages in both directions.
     """
 
     name: str
@@ -40,13 +41,13 @@ class Effusion:
 
     @classmethod
     def from_dict(cls, found: dict[str, Any], name: str) -> "Effusion":
-        """What `as_dict` was made from, under a name."""
+        """Make the result again from the values of `as_dict`, under a new name."""
         time, beyond, expected = (np.array(found[key]) for key in ("time", "beyond", "expected"))
         speed = Estimate.from_dict(found["speed"])
         return cls(name, found["density"], found["temperature"], time, beyond, expected, speed)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "density": self.density,
             "temperature": self.temperature,
@@ -63,10 +64,14 @@ def effusion(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Effusion:
-    """Measure a log of two chambers and one gate, by default from its opening to the end.
+    """Measure how fast discs pass through a slit that opens between two chambers, and compare with n⟨v⟩/π.
 
-    The theory is that of a slit much narrower than the mean free path; through a wider one more discs pass.
-    UserError if there is no gate along an axis, or discs of several species.
+    n⟨v⟩/π discs per time and open length of the slit leave a gas of number density n and mean speed ⟨v⟩: that is the
+    flux of kinetic theory through a slit much narrower than the mean free path; through a wider one more discs pass.
+
+    start, end: times; by default from the opening of the slit to the end of the log. progress(done, in all) is called
+    as states are read. Raises UserError unless the scene has one gate along an axis, one species and its events in the
+    log, or if the chambers are in balance.
     """
     gates = [wall for wall in walls_inside(log.scene) if 0 < wall.absence[0] < math.inf]
     discs, equilibrium = composition(log.discs), ensemble(log)
@@ -74,7 +79,7 @@ def effusion(
         raise UserError(f"{log.path}: no effusion: it takes one gate, one species and the events")
     gate = gates[0]
     ends = np.array([gate.start, gate.end])
-    across = int(np.ptp(ends[:, 0]) != 0)  # the axis that leads through the slit
+    across = int(np.ptp(ends[:, 0]) != 0)  # the axis across the slit
     if np.ptp(ends[:, across]) != 0:
         raise UserError(f"{log.path}: no effusion: the gate is not along an axis")
     place, radius, number = ends[0, across], discs.radius[0], len(log.discs)
@@ -107,12 +112,13 @@ def effusion(
 
 
 def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
-    """(INSTANTS,): of all discs, from rates at equal temperature. Discs that pass carry 3T/2 on the average, not T, so
-    that one side gets colder and the other hotter.
+    """Share (INSTANTS,) of all discs beyond the slit by theory; leave, come: rates at equal temperature, 1/time.
+
+    Discs that pass carry the mean energy 3T/2 instead of T, so that one chamber becomes colder and the other hotter.
     """
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Of the discs and of the energy: a side with n and e sends √(ne), and 3/2 √(e³/n) of the energy."""
+        """Rates of the shares of discs and energy: a side with n, e loses √(ne) of discs, 3/2 √(e³/n) of energy."""
         (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
         discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
         return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])

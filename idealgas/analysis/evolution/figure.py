@@ -1,4 +1,4 @@
-"""The picture of a gas in the course of time."""
+"""Picture of the evolution of a gas in time."""
 
 from matplotlib.figure import Figure
 
@@ -7,7 +7,7 @@ from idealgas.analysis.evolution.measure import Evolution
 
 
 def evolution_figure(result: Evolution) -> Figure:
-    """Temperature with its law dashed; then discs beyond the gate, piston and account of the walls, if any."""
+    """Picture of the temperature, its law dashed, and of discs beyond a gate, piston and energy given by walls."""
     shown = [result.beyond, result.piston is not None, result.given]
     figure, axes = panels(1 + sum(map(bool, shown)))
     _temperature(axes[0], result)
@@ -44,6 +44,6 @@ def _temperature(ax, result: Evolution) -> None:  # type: ignore[no-untyped-def]
     low, high = result.temperature.min(), result.temperature.max()
     if high > 10 * low > 0:
         ax.set_yscale("log")
-    elif high - low < 1e-6 * high:  # nothing but rounding to be seen
+    elif high - low < 1e-6 * high:  # changes only by rounding
         ax.set_ylim(0.9 * low, 1.1 * high)
     ax.set_ylabel("temperature (energy, k_B = 1)")

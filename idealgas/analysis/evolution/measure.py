@@ -1,4 +1,4 @@
-"""The course in time of temperatures, energies and the account of the walls, and of discs beyond a gate."""
+"""Evolution of a gas in time: temperature, energies, energy given by walls, and discs beyond a gate."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,12 +19,15 @@ INSTANTS = 257
 
 @dataclass(frozen=True)
 class Evolution:
-    """At times (F,): temperature, m v²/2 a disc; spin, I ω² a disc; beyond: share of each species that is beyond the
-    first gate along an axis, by its name. law: theory of the temperature at these times.
+    """Evolution of a gas, at F evenly spaced times and at the P times of the samples stored during the run.
 
-    At the times (P,) of the samples of the run: parts of the energy, by name; given: energy each wall gave since the
-    start, by its name; piston: its coordinate; balance: energy of discs and piston less what walls gave, its change
-    since the start relative to the largest part of it. Only collisions that take energy change the balance.
+    time: (F,), times. temperature: (F,), mean m v²/2 per disc, energy. spin: (F,), mean I ω² per disc, energy; None
+    without spin. beyond: share of the discs of each species beyond the first gate along an axis, (F,), by the name of
+    the species. law: theory of the temperature at these times; None without one.
+    samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall gave
+    since the start, (P,), by the name of the wall. piston: (P,), its coordinate, length; None without one.
+    balance: (P,), change since the start of the energy of discs and piston minus the energy given by walls, relative to
+    the largest part of the energy. Only inelastic collisions change the balance.
     """
 
     time: np.ndarray
@@ -39,7 +42,7 @@ class Evolution:
     balance: np.ndarray
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         lists = {name: values.tolist() for name, values in vars(self).items() if isinstance(values, np.ndarray)}
         tables = {name: {key: v.tolist() for key, v in getattr(self, name).items()} for name in TABLES}
         law = None
@@ -49,7 +52,7 @@ class Evolution:
         return lists | tables | {"law": law, "end": self._end()}
 
     def _end(self) -> dict[str, float]:
-        """The last of each series that is one number at a time."""
+        """Last value of each series, by name."""
         series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
@@ -63,7 +66,14 @@ def evolution(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Evolution:
-    """Follow a log from one time to another, by default from its start to its end. UserError if it has no samples."""
+    """Follow temperature, energies, piston and the account of the walls in time, and discs beyond a gate.
+
+    It needs no equilibrium. Theory, where there is one, is that of the temperature: in equilibrium, of a gas that cools
+    by its collisions (Haff's law), or of one that a moving piston compresses (the adiabat).
+
+    start, end: times; by default the whole log. progress(done, in all) is called as states are read. Raises UserError
+    if the log does not cover the times or has no samples of the energy.
+    """
     first, last = span(log, start, end)
     if not len(log.observables["kinetic_energy"][0]):
         raise UserError(f"{log.path}: no samples of the energy")
@@ -90,7 +100,7 @@ Course = tuple[np.ndarray, np.ndarray, np.ndarray | None, dict[str, np.ndarray]]
 
 
 def _samples(log: Log, inside: np.ndarray) -> Course:
-    """Of a log without events: what the run observed."""
+    """Evolution from the samples stored during the run, for a log without events."""
     time, kinetic = log.observables["kinetic_energy"]
     frame, n = drift(log), len(log.discs)
     kinetic = kinetic - log.discs.mass.sum() * (frame @ frame) / 2
@@ -101,7 +111,7 @@ def _samples(log: Log, inside: np.ndarray) -> Course:
 
 
 def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> Course:
-    """At even times."""
+    """Evolution at evenly spaced times, from the events of a log."""
     gas, frame, inertia, gate = log.discs, drift(log), log.inertia, _gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
@@ -120,7 +130,7 @@ def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], 
 
 
 def _gate(log: Log) -> tuple[int, float] | None:
-    """The axis that leads through the first gate along one, and its place there."""
+    """Axis (0 or 1) across the first gate that is parallel to an axis, and the coordinate of the gate on it."""
     for wall in walls_inside(log.scene):
         for axis in range(2):
             if wall.is_gate and wall.start[axis] == wall.end[axis]:
@@ -131,13 +141,13 @@ def _gate(log: Log) -> tuple[int, float] | None:
 def _account(
     log: Log, observed: dict[str, np.ndarray]
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], np.ndarray]:
-    """Parts of the energy, what each wall gave, and the balance."""
+    """Parts of the energy by name, energy given by each wall, and the balance."""
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
     given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
     counted = np.ones(given.shape[1], bool)
     piston = log.scene.piston
-    if piston and piston.mass:  # its own energy counts: what it gives is not from outside
+    if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
         counted[[wall.name for wall in log.walls].index(piston.side)] = False
         pull = piston.acceleration(log.box, log.scene.gravity)
         place, velocity = observed["piston_position"], observed["piston_velocity"]

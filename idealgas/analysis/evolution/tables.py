@@ -1,4 +1,4 @@
-"""Tables of a gas in the course of time."""
+"""Tables of the evolution of a gas in time."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,11 +8,11 @@ from idealgas.analysis.core.tables import Number, Table
 from idealgas.analysis.evolution.measure import Evolution
 
 ROWS = 9
-"""Instants that people see; a picture tells more."""
+"""Number of instants that are shown; the picture and CSV have all."""
 
 
 def evolution_tables(result: Evolution) -> list[Table]:
-    """Temperature and what is beyond the gate, and the account of the energy."""
+    """Tables of temperature and of discs beyond the gate, and of the energies."""
     course = {"m v²/2 a disc": result.temperature}
     if result.law is not None:
         course["law"] = result.law.temperature

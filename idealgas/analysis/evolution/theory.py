@@ -1,4 +1,4 @@
-"""How the temperature of a gas changes with time, where theory knows it."""
+"""Temperature of a gas against time by theory."""
 
 from dataclasses import dataclass
 
@@ -11,12 +11,16 @@ from idealgas.analysis.theory.values import HIGHEST
 from idealgas.log import Log
 
 STEPS = 128
-"""Areas between which the adiabat is integrated."""
+"""Number of steps in the integration of the adiabat."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """text: the law, in words. temperature: (F,), m v²/2 a disc. spin: I ω² a disc. piston: its coordinate at rest."""
+    """Law of the temperature of a gas at F times.
+
+    text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
+    coordinate of the piston at rest, length.
+    """
 
     text: str
     temperature: np.ndarray
@@ -25,10 +29,10 @@ class Law:
 
 
 def expected_course(log: Log, time: np.ndarray) -> Law | None:
-    """At times (F,); None where no simple theory applies."""
+    """Law of the temperature at times (F,); None if no simple theory applies to the scene."""
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
-    single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # nothing else changes the energy of motion
+    single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
     alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= HIGHEST
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
@@ -46,11 +50,11 @@ def expected_course(log: Log, time: np.ndarray) -> Law | None:
 
 
 def haff_time(log: Log) -> float:
-    """τ of T = T₀/(1 + t/τ)²: Haff, J. Fluid Mech. 134, 401 (1983), as 4/((1 - e²) Γ (1 + 3a₂/16)).
+    """Haff's cooling time τ = 4/((1 - e²) Γ (1 + 3a₂/16)) of the law T = T₀/(1 + t/τ)², time.
 
-    Γ is Enskog's rate of collisions of a disc at the start. a₂, the fourth cumulant of the velocities, is that of van
-    Noije & Ernst, Granular Matter 1, 57 (1998), in two dimensions. Momentum, where it is kept, has no part in the
-    temperature.
+    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant of
+    the velocities in two dimensions by van Noije & Ernst, Granular Matter 1, 57 (1998). The velocity of the centre of
+    mass, where it is conserved, is not part of the temperature. Source: Haff, J. Fluid Mech. 134, 401 (1983).
     """
     gas, table = log.discs, log.scene.restitution
     e = 1.0 if table is None else table.normal
@@ -71,13 +75,13 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
 
 
 def _kinetic(log: Log) -> float:
-    """Energy of motion at the start, from the centre of mass where that moves on for ever."""
+    """Kinetic energy at the start, relative to the centre of mass along axes where momentum is conserved."""
     gas = log.discs
     return float((gas.mass * ((gas.velocity - drift(log)) ** 2).sum(axis=1)).sum() / 2)
 
 
 def room(log: Log, piston: np.ndarray) -> np.ndarray:
-    """Length that the gas has beside a piston at coordinates (P,)."""
+    """Length (P,) of the gas along the axis of a piston at coordinates (P,)."""
     table = log.scene.piston
     if table is None:
         return np.full_like(piston, log.box[0])
@@ -85,7 +89,7 @@ def room(log: Log, piston: np.ndarray) -> np.ndarray:
 
 
 def push(log: Log, length: float) -> float:
-    """Force on a piston over N T, at rest: Z/(L - 2R), as the centres end a radius before it."""
+    """Force on a piston at rest over N T, in 1/length: Z/(L - 2R), as the centres stay one radius away from it."""
     gas, table = log.discs, log.scene.piston
     size = list(gas.box)
     size[0 if table is None else table.axis] = length
@@ -94,7 +98,7 @@ def push(log: Log, length: float) -> float:
 
 
 def _adiabat(log: Log, time: np.ndarray) -> Law:
-    """d ln T = -F dL/NT, for a piston that hardly moves in the time between two collisions of a disc."""
+    """Adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the collisions of the discs."""
     at, places = log.observables["piston_position"]
     lengths = room(log, np.interp(time, at, places))
     first = float(room(log, places[:1])[0])
@@ -106,9 +110,10 @@ def _adiabat(log: Log, time: np.ndarray) -> Law:
 
 
 def _at_rest(log: Log, one: np.ndarray) -> Law | None:
-    """Where a piston with a mass comes to rest, and at which T: NT of the discs, T/2 of its motion, P L X of its place.
+    """Mean position of a piston with a mass, and the temperature there: the energy is N T + T/2 + P L X.
 
-    At fixed energy X has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas, of which this is the mean.
+    These are the energies of the discs, of the motion of the piston and of its position X. At fixed energy E the
+    position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean.
     """
     table = log.scene.piston
     if table is None or not table.pressure:

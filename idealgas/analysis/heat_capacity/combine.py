@@ -1,4 +1,4 @@
-"""Heat capacities by every route that logs allow, side by side: slopes of the energy over them, and means."""
+"""Heat capacities from several logs: slopes of the energy against the temperature, and means over the logs."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -17,32 +17,36 @@ ROUTES = {
     "fluctuations of the kinetic energy": "it takes an isolated gas with spin, gravity or a piston",
     "γ": "it takes a piston with a mass",
 }
-"""Each route, and what a set of logs lacks that does not allow it."""
+"""Reason why a route does not apply to a set of logs, by the name of the route."""
 
 
 @dataclass(frozen=True)
 class Route:
-    """C per disc (or γ) of one kind of gas by one way of measuring."""
+    """Heat capacity per disc (k_B = 1), or γ (no unit), of one kind of gas by one way of measuring."""
 
     name: str
     kind: str
     value: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"route": self.name, "kind": self.kind, "value": self.value.as_dict()}
 
 
 @dataclass(frozen=True)
 class HeatCapacity:
-    """routes: those the logs allow. refused: why others do not apply, by route."""
+    """Heat capacity by every route that a set of logs allows.
+
+    routes: heat capacities, one for each route and kind of gas. refused: reason why a route does not apply, by the name
+    of the route. logs: what was measured in each log.
+    """
 
     routes: tuple[Route, ...]
     refused: dict[str, str]
     logs: tuple[Measured, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "routes": [route.as_dict() for route in self.routes],
             "refused": self.refused,
@@ -51,7 +55,7 @@ class HeatCapacity:
 
 
 def combine_heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
-    """Put the logs of a kind together: slopes over them, means of what each gives, and γ."""
+    """Combine the logs of each kind of gas: slopes dE/dT, means of the routes of single logs, and γ."""
     routes = [route for kind in dict.fromkeys(m.kind for m in logs) for route in _of_kind(kind, logs)]
     routes += _gammas(routes, logs)
     used = {route.name for route in routes}
@@ -68,7 +72,7 @@ def _of_kind(kind: str, logs: Sequence[Measured]) -> Iterator[Route]:
 
 
 def _slope(members: Sequence[Measured]) -> Estimate | None:
-    """dE/dT per disc by weighted least squares, whichever of E and T is the exact one; None if all are alike."""
+    """Slope dE/dT per disc by weighted least squares with errors of E or of T; None if all are the same."""
     energy, t = (np.array([getattr(m, name).value for m in members]) for name in ("energy", "temperature"))
     if len(members) < 2 or not np.ptp(t) > 0.05 * np.abs(t).max():
         return None
@@ -92,7 +96,7 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
 
 
 def _gammas(routes: Sequence[Route], logs: Sequence[Measured]) -> Iterator[Route]:
-    """γ = C_P/C_A: C_A as the same discs have it without the piston where a log tells, else by theory's C_P - C_A."""
+    """Ratio γ = C_P/C_A: C_A is measured in a log without the piston if there is one, else C_P - C_A is from theory."""
     for route in routes:
         excess = next((m.excess for m in logs if m.kind == route.kind and m.excess), None)
         c_p = route.value
@@ -112,5 +116,5 @@ def _gammas(routes: Sequence[Route], logs: Sequence[Measured]) -> Iterator[Route
 
 
 def restore_heat_capacity(found: dict[str, Any], label: str) -> Measured:
-    """A point of a sweep; its result has the path of its log, which names it better than the label."""
+    """Result of one point of a sweep; it is named by the path of its log, `label` is not needed."""
     return Measured.from_dict(found)

@@ -1,7 +1,7 @@
-"""Energies of a gas at even times, from the samples that its run took; no events are needed.
+"""Energies of a gas at evenly spaced times, from the samples stored during its run; no events are needed.
 
-Samples are taken at the starts of epochs, whose length depends on how fast the discs are just then, and with
-`log.snapshot_every` at even times too, which favour no state.
+Samples are stored at the starts of epochs, whose length depends on the speed of the discs at that time, and with
+`log.snapshot_every` also at evenly spaced times, which are independent of the state of the gas.
 """
 
 from dataclasses import dataclass
@@ -15,13 +15,16 @@ from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
 
 FEWEST = 16
-"""Samples below which nothing can be said of fluctuations."""
+"""Smallest number of samples from which fluctuations can be measured."""
 
 
 @dataclass(frozen=True)
 class EnergySeries:
-    """Samples after equilibration. kinetic: of motion. energy: of the discs, and of a piston with a mass too: what they
-    have by their motion, spin and place. position: of the piston. All (n,); start: time of the first.
+    """Energies of a gas at n sampled times after equilibration.
+
+    kinetic: (n,), kinetic energy of translation of the discs. energy: (n,), energy of the discs by motion, spin and
+    position, including that of a piston with a mass. position: (n,), coordinate of the piston, length; None without
+    one. start: time of the first sample.
     """
 
     kinetic: np.ndarray
@@ -31,7 +34,11 @@ class EnergySeries:
 
 
 def energy_series(log: Log, start: float | None = None, end: float | None = None) -> EnergySeries:
-    """Between two times, by default from detected equilibrium to the end. UserError if there are too few samples."""
+    """Sampled energies between two times, by default from detected equilibrium to the end of the log.
+
+    Raises:
+        UserError: if there are no samples, or too few in equilibrium.
+    """
     scene, observed = log.scene, log.observables
     time = observed["kinetic_energy"][0]
     last = log.end_time if end is None else end
@@ -50,7 +57,9 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         position, velocity = series["piston_position"], series["piston_velocity"]
         pull = scene.piston.acceleration(scene.box.size, scene.gravity)
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
-    moving = [series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()]  # beyond rounding
+    moving = [
+        series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()
+    ]  # without series that change only by rounding
     first = 0 if start is not None else equilibration(*moving)
     if len(at) - first < FEWEST:
         raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")

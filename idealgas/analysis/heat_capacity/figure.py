@@ -1,4 +1,4 @@
-"""The picture of heat capacities: C per disc by every route, beside theory."""
+"""Picture of heat capacities: C per disc by every route, compared with theory."""
 
 from matplotlib.figure import Figure
 
@@ -7,7 +7,7 @@ from idealgas.analysis.heat_capacity.combine import HeatCapacity
 
 
 def heat_capacity_figure(result: HeatCapacity) -> Figure:
-    """C per disc (and γ) by every route with its error bar, and the theory beside it."""
+    """Picture of C per disc (and of γ) by every route with its error bar, and of its theory."""
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
     for k, route in enumerate(routes):

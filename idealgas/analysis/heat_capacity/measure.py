@@ -1,7 +1,7 @@
-"""What one log tells of a heat capacity: energy, temperature, and the routes that it allows alone.
+"""Heat capacity from one log: energy, temperature, and the routes that need no other log.
 
-A thermometer must not know the energy whose capacity it helps to find: it is the pressure on the walls where all energy
-is kinetic, the temperature of thermal walls in a heat bath, and the kinetic energy where that is a part of the whole.
+The temperature must be measured independently of the energy: by the pressure on the walls where all energy is kinetic,
+as the temperature of the thermal walls in a heat bath, and by the kinetic energy where that is a part of the energy.
 """
 
 import math
@@ -25,9 +25,12 @@ CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs",
 
 @dataclass(frozen=True)
 class Measured:
-    """What one log gives. kind: of gas, see above. energy: per disc, by whichever zero. routes: C per disc, by name.
+    """Measurements of one log that concern the heat capacity.
 
-    theory: C per disc. excess: C_P - C_A per disc by theory, with a piston.
+    path: of the log. kind: kind of gas, such as a closed box or a heat bath. number: of discs. energy: mean energy per
+    disc from an arbitrary zero, energy. temperature: energy (k_B = 1). thermometer: how the temperature was measured.
+    routes: heat capacity per disc (k_B = 1) by the name of each route. theory: heat capacity per disc by theory.
+    excess: C_P - C_A per disc by theory, None without a piston.
     """
 
     path: str
@@ -42,7 +45,7 @@ class Measured:
 
     @classmethod
     def from_dict(cls, found: dict[str, Any]) -> "Measured":
-        """What `as_dict` was made from."""
+        """Make the result again from the values of `as_dict`."""
         return cls(
             found["path"],
             found["kind"],
@@ -56,7 +59,7 @@ class Measured:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "path": self.path,
             "kind": self.kind,
@@ -76,7 +79,16 @@ def heat_capacity(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Measured:
-    """All that one log tells of a heat capacity, between two times or from detected equilibrium on."""
+    """Measure the heat capacity per disc, in units of k_B, by all the routes that one log allows.
+
+    A closed box gives E/T, with T from the pressure on its walls; a heat bath Var(E)/T²; discs with spin, gravity or a
+    piston the fluctuations of the kinetic energy at fixed total energy (Lebowitz, Percus & Verlet, Phys. Rev. 153, 250,
+    1967).
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if there is no equilibrium, or none known: walls of two temperatures, collisions
+    that lose energy, a piston that is driven, a gas without positions.
+    """
     scene, properties, n = log.scene, log.scene.properties, len(log.discs)
     settles = properties.elastic and not properties.driven and len(properties.temperatures) <= 1
     if not settles or not log.has_positions:
@@ -105,16 +117,16 @@ def heat_capacity(
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, float | None]:
-    """(C per disc, C_P - C_A per disc with a piston); None where no simple theory applies.
+    """Heat capacity C per disc by theory, and C_P - C_A per disc with a piston (k_B = 1); None where theory is unknown.
 
-    Each degree of freedom has 1/2. The place of a disc in a column of height h that it can reach, x = m g h/T, adds
-    1 - x² eˣ/(eˣ - 1)²; a piston Z²/(Z + φZ'), which is T (∂P/∂T)²/(-∂P/∂A).
+    Each degree of freedom adds 1/2. The position of a disc under gravity adds 1 - x² eˣ/(eˣ - 1)² with x = m g h/T and
+    the height h that its centre can reach. A piston adds Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas = log.scene, log.discs
     per_disc = 1.5 if scene.properties.spins else 1.0
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
-    if pull.any() and (scene.piston or not scene.properties.empty or pull.all() or equilibrated):
+    if pull.any() and (not (scene.properties.fixed_walls and scene.properties.empty) or pull.all() or equilibrated):
         return None, None
     if pull.any():
         axis = int(np.flatnonzero(pull)[0])
@@ -139,13 +151,13 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
 def _closed_box(
     log: Log, start: float | None, end: float | None, progress: Callable[[int, int], None] | None
 ) -> Measured:
-    """Hard discs have no energy scale: E is proportional to T, and E/T is the heat capacity."""
+    """Heat capacity E/T of a gas in a closed box: hard discs have no energy scale, so that E is proportional to T."""
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility for route in measured.routes if route.name == WALLS), None)
     if walls is None or walls.theory is None or not walls.value > 0:
         raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or of a gas too dense")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
-    t = replace(walls.times(temperature / walls.theory), theory=temperature)  # Z was taken with E/N for T; undone here
+    t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, energy = measured.number, log.discs.kinetic_energy / measured.number
     error = energy * t.standard_error / t.value**2
     per_disc = Estimate(energy / t.value, error, t.independent_samples, 1.0, relative)
@@ -154,7 +166,7 @@ def _closed_box(
 
 
 def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: float | None, piston: bool) -> Estimate:
-    """C = Var(E)/T². The mean is the series' own, which takes a little of the variance away: made good here."""
+    """Heat capacity C = Var(E)/T² per disc in a heat bath, corrected for the variance of the mean of the series."""
     energy = series.energy - series.energy.mean()
     lost = mean(energy).standard_error ** 2
     other = 1.5 if piston else 0.0
@@ -164,10 +176,11 @@ def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: floa
 
 
 def _kinetic_fluctuations(series: EnergySeries, n: int, dof: int, capacity: float | None, piston: bool) -> Estimate:
-    """C from Var(K) at fixed energy: Lebowitz, Percus & Verlet, Phys. Rev. 153, 250 (1967), exact at finite N.
+    """Heat capacity per disc from the variance of the kinetic energy K at fixed energy E, exact at finite N.
 
-    All of phase space at an energy is as likely, so that K/E follows Beta(a, b), a = D/2 and a + b = C;
-    r = a Var(K)/⟨K⟩² is b/(a + b + 1). A piston's own place and motion have 3/2 of C.
+    All states of one energy are equally probable, so that K/E follows Beta(a, b) with a = D/2 and a + b = C, and
+    r = a Var(K)/⟨K⟩² is b/(a + b + 1). Position and motion of a piston contribute 3/2 to C. Source: Lebowitz, Percus
+    & Verlet, Phys. Rev. 153, 250 (1967).
     """
     a, unit = dof / 2, series.kinetic.mean()
     kinetic = series.kinetic / unit - 1

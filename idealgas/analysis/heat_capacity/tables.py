@@ -4,11 +4,11 @@ from idealgas.analysis.core.tables import Table, estimates
 from idealgas.analysis.heat_capacity.combine import HeatCapacity
 
 MANY = 12
-"""Logs beyond which they are not listed one by one."""
+"""Largest number of logs that are listed one by one."""
 
 
 def heat_capacity_tables(result: HeatCapacity) -> list[Table]:
-    """Energy and temperature of each log, and C by every route."""
+    """Tables of energy and temperature of each log, and of the heat capacity by every route."""
     tables = []
     if len(result.logs) <= MANY:
         rows = [(f"{log.path}: E/N", log.energy) for log in result.logs]

@@ -1,4 +1,4 @@
-"""Distributions of speeds, energies, free flights and waits, beside their laws."""
+"""Distributions of speeds, energies, free flights and waiting times, compared with theory."""
 
 from idealgas.analysis.core.declaration import Analysis, Option, Section
 
@@ -11,7 +11,7 @@ QUANTITIES = {
     "free-time": "time",
     "wait": "time",
 }
-"""What there are distributions of, and its unit."""
+"""Quantities whose distribution can be measured, with their units."""
 
 
 def _section(title: str, quantity: str) -> Section:
@@ -21,12 +21,14 @@ def _section(title: str, quantity: str) -> Section:
 
 ANALYSIS = Analysis(
     __name__,
-    help="""Measure a distribution and test it against its laws.
+    help="""Measure the distribution of a quantity and test it against theory.
 
-    Velocities count with the time spent at them; waits are those between successive events of the gas. The
-    Kolmogorov-Smirnov tests take decorrelated samples.
+    Velocities and energies are weighted with the time that discs spend at them. A wait is the time between successive
+    events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
     """,
-    options=(Option("quantity", str, "What of.", default="speed", choices=tuple(QUANTITIES)),),
+    options=(
+        Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),
+    ),
     sections=(
         _section("Speeds", "speed"),
         _section("Velocities along x", "vx"),

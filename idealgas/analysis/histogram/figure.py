@@ -1,4 +1,4 @@
-"""The picture of a histogram: measured densities and their laws."""
+"""Picture of a histogram: measured probability densities and their laws."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,7 +8,7 @@ from idealgas.analysis.histogram.measure import Histogram
 
 
 def histogram_figure(result: Histogram) -> Figure:
-    """Measured density with its error band, laws over it; one panel a species."""
+    """Picture of the measured density with its error band and of the laws; one panel for each species."""
     figure, axes = panels(len(result.distributions))
     for ax, found in zip(axes, result.distributions, strict=True):
         ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=found.name)
@@ -25,5 +25,5 @@ def histogram_figure(result: Histogram) -> Figure:
 
 
 def _last_seen(density: np.ndarray, edges: np.ndarray) -> float:
-    """Edge beyond which less than 1e-3 of the largest density is found."""
+    """Edge of the bins beyond which the density is less than 1e-3 of its maximum."""
     return float(edges[1 + np.flatnonzero(density > 1e-3 * density.max())[-1]])

@@ -1,7 +1,8 @@
-"""Distributions of speeds, energies, free flights and waits, beside their laws, with a Kolmogorov-Smirnov test.
+"""Distributions of speeds, energies, free flights and waiting times, with Kolmogorov-Smirnov tests of their laws.
 
-Histograms of velocities weigh every value with the time spent at it; those of intervals count every one. The tests use
-decorrelated samples: of some discs at instants a correlation time apart, or of thinned intervals.
+Histograms of velocities weight every value with the time that discs spend at it; histograms of intervals count every
+interval once. The tests use decorrelated samples: velocities of some discs at instants one correlation time apart, or
+every n-th interval.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,15 +27,19 @@ from idealgas.gas.state import Gas
 from idealgas.log import Log
 
 BINS = 120
-SAMPLED = 256  # discs of a species whose velocities are tested, at most
-INTERVALS = 10_000  # about the number of intervals that are tested
-STRIDE = 7  # least number of intervals from one sample to the next: successive flights of a disc are correlated
-TAIL = 12  # mean free times before the end of a window in which no flight is counted: long ones would be cut off
+SAMPLED = 256  # largest number of discs of a species whose velocities are tested
+INTERVALS = 10_000  # approximate number of intervals that are tested
+STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
+TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
 
 
 @dataclass(frozen=True)
 class Test:
-    """A law, and how far the samples are from it: largest distance of the distribution functions, its probability."""
+    """Kolmogorov-Smirnov test of samples against a law.
+
+    law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
+    unit). p_value: probability of at least this distance by chance.
+    """
 
     law_name: str
     law: distributions.Law
@@ -44,10 +49,12 @@ class Test:
 
 @dataclass(frozen=True)
 class Distribution:
-    """One quantity of one species (or of the gas).
+    """Distribution of one quantity for one species, or for the whole gas.
 
-    edges: (bins + 1,). density: (bins,), error: (bins,) its standard error. samples: number of decorrelated ones;
-    correlation_time: time from one sample of a disc to its next independent one; None for intervals.
+    name: of the species. edges: (bins + 1,), edges of the bins, in the unit of the quantity. density: (bins,),
+    probability density, 1/unit. error: (bins,), standard error of the density. mean: mean of the quantity. samples:
+    number of decorrelated samples. correlation_time: time between independent samples of one disc; None for intervals.
+    tests: Kolmogorov-Smirnov tests, one for each law.
     """
 
     name: str
@@ -60,7 +67,7 @@ class Distribution:
     tests: tuple[Test, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         middle = (self.edges[1:] + self.edges[:-1]) / 2
         return {
             "name": self.name,
@@ -77,7 +84,7 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Histogram:
-    """The distributions of a quantity, species by species."""
+    """Distributions of one quantity (with its unit) in a window of time, one for each species."""
 
     quantity: str
     unit: str
@@ -85,7 +92,7 @@ class Histogram:
     distributions: tuple[Distribution, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "quantity": self.quantity,
             "unit": self.unit,
@@ -98,9 +105,19 @@ Progress = Callable[[int, int], None] | None
 
 
 def histogram(
-    log: Log, quantity: str, start: float | None = None, end: float | None = None, progress: Progress = None
+    log: Log, quantity: str = "speed", start: float | None = None, end: float | None = None, progress: Progress = None
 ) -> Histogram:
-    """Distribution of one of QUANTITIES between two times, by default from detected equilibrium to the end."""
+    """Measure a distribution between two times of a log, species by species, and test it against its laws.
+
+    quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
+    wait, the time between two successive events of the gas. The laws of velocities are Maxwell and Boltzmann's and that
+    at fixed energy of N discs; of free flights that of a dilute gas; of waits the exponential one. The p-values are
+    those of Kolmogorov and Smirnov's test of decorrelated samples.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are too few events in the window, or for a gas with
+    effects for which there is no such law.
+    """
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     if quantity in VELOCITY_QUANTITIES:
@@ -119,7 +136,7 @@ Found = tuple[Window, list[Distribution]]
 
 
 def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
-    """Maxwell-Boltzmann's law and that of the isolated gas with `dof` velocity degrees of freedom."""
+    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom."""
 
     def law(dof: float) -> distributions.Law:
         if quantity == "energy":
@@ -161,14 +178,14 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
 
 
 def _mean(series: np.ndarray, scale: float, expected: float) -> Estimate:
-    """Of values of about `scale`. What is conserved, as the momentum may be, has no error, only last digits."""
+    """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error."""
     if np.ptp(series) < 1e-12 * scale:
         return Estimate(float(series.mean()), 0.0, 1.0, expected)
     return mean(series, theory=expected)
 
 
 def _some_discs(gas: Gas, species: int) -> np.ndarray:
-    """A quarter of a species at most: the fixed total energy makes all velocities at one instant dependent."""
+    """Discs whose velocities are sampled: at most a quarter of a species, as the total energy correlates velocities."""
     members = np.flatnonzero(gas.species == species)
     return members[:: max(4, -(-len(members) // SAMPLED))]
 
@@ -200,7 +217,7 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
 
 
 def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
-    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # rows: pairs count twice
+    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
     tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
@@ -234,7 +251,7 @@ def _distribution(
     correlation_time: float | None,
     possible: Mapping[str, distributions.Law],
 ) -> Distribution:
-    """counts: (B, bins + 2), the first and last of them outside the edges."""
+    """Distribution from counts (B, bins + 2) of B blocks; the first and last bin count values outside the edges."""
     if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
         raise UserError(f"too few events in the window for a distribution of {name}")
     share = counts[:, 1:-1].sum(axis=0) / total.sum()

@@ -1,11 +1,11 @@
-"""Tables of distributions."""
+"""Tables of distributions: means and Kolmogorov-Smirnov tests."""
 
 from idealgas.analysis.core.tables import Number, Table, describe, estimates
 from idealgas.analysis.histogram.measure import Histogram
 
 
 def histogram_tables(result: Histogram) -> list[Table]:
-    """Means, and how far the samples are from the laws."""
+    """Tables of the means, and of the Kolmogorov-Smirnov distances between samples and laws."""
     tests = [
         (
             found.name,

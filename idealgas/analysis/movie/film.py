@@ -1,4 +1,4 @@
-"""A log as a film: which instants, and how painted frames become a file."""
+"""Film of a log: times of the frames, and how painted frames become a file."""
 
 import os
 import shutil
@@ -19,14 +19,14 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 ENDINGS = (".mp4", ".gif")
-LONGEST = 20.0  # seconds of film, unless an end is given
+LONGEST = 20.0  # default length of a film, seconds
 MOST_FRAMES = 1_000_000
 CODEC = ("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
 
 
 @dataclass(frozen=True)
 class Film:
-    """What was made: path, number of frames, frames per second; start and end in simulated time."""
+    """A film that was made: path, number of frames, frames per second, and start and end in simulated time."""
 
     path: Path
     frames: int
@@ -36,7 +36,11 @@ class Film:
 
 
 def film_path(output: str | os.PathLike[str]) -> Path:
-    """Where a film asked for goes: a .gif beside an .mp4 that no ffmpeg can make. UserError for any other ending."""
+    """Path of the film to write: `output`, or a .gif instead of an .mp4 if ffmpeg is not installed.
+
+    Raises:
+        UserError: for another ending than .mp4 or .gif, or if the folder does not exist.
+    """
     path = Path(output)
     if path.suffix.lower() not in ENDINGS:
         raise UserError(f"{output}: unknown kind of film (allowed: {', '.join(ENDINGS)})")
@@ -59,10 +63,22 @@ def animate(
     by_species: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
 ) -> Film:
-    """Make a film of a log between two times, every frame exact; see `film_path` for where.
+    """Make a film of a log between two times, with exact positions in every frame.
 
-    speed: simulated time per second of film. size: width and height in pixels, made even. on_frame(done, total).
-    UserError for a log without positions or events, an empty window, and (exit code 1) a film that cannot be written.
+    Args:
+        log: the log to show.
+        output: path of the film, see `film_path`.
+        start: start in simulated time; None for the start of the log.
+        end: end in simulated time; None for LONGEST seconds of film.
+        fps: frames per second of film.
+        speed: simulated time per second of film; None for a disc of typical speed to cross the box in CROSSING seconds.
+        size: width and height of a frame in pixels, made even.
+        by_species: whether colours show the species instead of the speed of discs.
+        on_frame: called with the number of painted frames and the number of all frames.
+
+    Raises:
+        UserError: if the log has no positions or no events, or the window is empty; with exit code 1, if the film
+            cannot be written.
     """
     path = film_path(output)
     if not log.has_positions:
@@ -75,7 +91,7 @@ def animate(
     last = latest if end is not None else min(latest, first + LONGEST * speed)
     gif = path.suffix.lower() == ".gif"
     if gif:
-        fps = 100 / max(round(100 / fps), 2)  # delays are in hundredths of a second; one is not respected by viewers
+        fps = 100 / max(round(100 / fps), 2)  # delays are in hundredths of a second; viewers ignore a delay of 1
     number = round((last - first) * fps / speed) + 1
     if number > MOST_FRAMES:
         raise UserError(
@@ -97,7 +113,7 @@ Write = Callable[[np.ndarray], object]
 
 @contextmanager
 def gif_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
-    """Yield write(frame) for frames (height, width, 4) u1."""
+    """Yield the function write(frame) of a GIF for frames of shape (height, width, 4) and type uint8."""
     with path.open("wb") as file:
         gif = GifWriter(file, width, height, round(100 / fps))
         yield gif.write
@@ -106,7 +122,7 @@ def gif_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Writ
 
 @contextmanager
 def mp4_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
-    """The same for H.264 video, which ffmpeg makes of raw frames."""
+    """Yield the function write(frame) of an H.264 video, which ffmpeg makes from the frames."""
     raw = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(fps), "-i", "-")
     command = ["ffmpeg", "-y", "-loglevel", "error", *raw, "-an", *CODEC, "-f", "mp4", str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as ffmpeg:
@@ -114,7 +130,7 @@ def mp4_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Writ
         try:
             yield lambda frame: pipe.write(frame.data)
         except BrokenPipeError:
-            pass  # it says why
+            pass  # its error message says why
         except BaseException:
             ffmpeg.kill()
             raise

@@ -1,4 +1,4 @@
-"""Writing a GIF frame by frame, in bounded memory; Pillow's own writer keeps all frames until the last."""
+"""GIF writer that works frame by frame in bounded memory; Pillow's writer keeps all frames until the last one."""
 
 from typing import IO
 
@@ -11,14 +11,14 @@ from idealgas.analysis.core.style import COLOURS, GREY
 
 COLOUR_MAP = "cividis"
 SAME = 255
-"""Index of the colour that stands for "as before"; runs of it compress well."""
+"""Palette index of pixels that are the same as in the frame before; long runs of it compress well."""
 
 
 class GifWriter:
-    """Frames of one size, all with the colours the project's pictures are made of."""
+    """Writer of a GIF whose frames have one size and one palette, the colours of the project's pictures."""
 
     def __init__(self, file: IO[bytes], width: int, height: int, delay: int) -> None:
-        """delay: of a frame, hundredths of a second."""
+        """Start a GIF of width and height in pixels; delay: time between frames, hundredths of a second."""
         self._file, self._delay = file, delay
         self._palette = make_palette()
         self._nearest = nearest_colours(self._palette)
@@ -28,7 +28,7 @@ class GifWriter:
             file.write(block)
 
     def write(self, frame: np.ndarray) -> None:
-        """Append a frame (height, width, 3 or 4) u1."""
+        """Append a frame of shape (height, width, 3 or 4) and type uint8."""
         red, green, blue = (frame[..., k].astype(np.uint16) >> 3 for k in range(3))
         now = self._nearest[red << 10 | green << 5 | blue]
         image = self._image(np.where(now == self._before, np.uint8(SAME), now))
@@ -39,7 +39,7 @@ class GifWriter:
             self._file.write(block)
 
     def close(self) -> None:
-        """Say that this was the last frame."""
+        """Write the end of the file after the last frame."""
         self._file.write(b";")
 
     def _image(self, indices: np.ndarray) -> Image.Image:
@@ -49,7 +49,7 @@ class GifWriter:
 
 
 def make_palette() -> np.ndarray:
-    """(256, 3) u1: greys, shades of the colour map and the project's colours, fading into white for smooth edges."""
+    """Palette (256, 3) uint8: greys, the colour map and the project's colours, with lighter shades for smooth edges."""
     greys = np.linspace(0, 1, 40)[:, None] * np.ones(3)
     shades = colormaps[COLOUR_MAP](np.linspace(0, 1, 32))[:, :3]
     kinds = np.array([to_rgb(colour) for colour in (*COLOURS, GREY)])
@@ -66,7 +66,7 @@ def make_palette() -> np.ndarray:
 
 
 def nearest_colours(palette: np.ndarray) -> np.ndarray:
-    """(32768,) u1: the nearest colour for every 15-bit colour, five bits of red, green and blue each."""
+    """Palette indices (32768,) uint8 of the nearest colours to all colours with five bits of red, green and blue."""
     levels = np.arange(32) * 8 + 4.0
     colours = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 1, 3)
     used = palette[:SAME].astype(float)

@@ -1,4 +1,4 @@
-"""Frames of a film: the discs in their box, and beside them their speeds with Maxwell and Boltzmann's curve.
+"""Frames of a film: the discs in their box, and beside them their speed distribution with Maxwell-Boltzmann's curve.
 
 What never changes is drawn once; a frame restores it and draws only discs, walls, bars, curve and title over it.
 """
@@ -27,36 +27,36 @@ from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
 
 COLOUR_MAP = "cividis"
-"""Of speeds; even to colour-blind eyes: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
+"""Colour map of speeds, readable for colour-blind viewers: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
 
 DPI = 100
 USUAL, LEAST_ZOOM = (960, 540), 0.5
-"""Size in pixels at which text and margins have theirs; they grow and shrink with a frame, down to the half."""
+"""Frame size in pixels at which text and margins have their usual size, and smallest factor of that size."""
 
 SHADES = 64
-PALEST = 0.93  # of the colour map: its last yellow is lost on white
+PALEST = 0.93  # used part of the colour map: its last yellow is invisible on white
 BINS = 36
 SMALLEST = 2.5
-"""Diameter in pixels that any disc is drawn with, however small it is."""
+"""Smallest diameter in pixels with which a disc is drawn."""
 
 STRIP = 9  # pixels, height of the strip with the colours
 
 CROSSING = 5.0
-"""Seconds in which a disc of typical speed crosses the box, unless a speed is asked for."""
+"""Default seconds of film in which a disc of typical speed crosses the box."""
 
 FASTEST, BRIGHTEST = 3.2, 2.0
-"""Where the axis of speeds ends, and where their colours do, in units of the root mean square."""
+"""End of the speed axis and of the colour scale, in units of the root-mean-square speed."""
 
 
 LEFT, RIGHT, BOTTOM, TOP = 64, 22, 58, 42  # margins, pixels of the usual size
 SPEEDS = 0.3
-"""Share of a frame that the speeds have beside the box, or below it, at least."""
+"""Smallest share of a frame for the speed distribution beside or below the box."""
 
 Rectangle = tuple[float, float, float, float]
 
 
 class Layout(NamedTuple):
-    """Left, bottom, width and height of the box and of the speeds, scale per unit of length; all in pixels."""
+    """Rectangles (left, bottom, width, height) of box and speeds in pixels, and scale in pixels per unit of length."""
 
     box: Rectangle
     speeds: Rectangle
@@ -64,7 +64,7 @@ class Layout(NamedTuple):
 
 
 def layout(size: tuple[float, float], box: tuple[float, float]) -> Layout:
-    """The speeds beside the box, or below it if it is so wide that it comes out larger."""
+    """Layout with the speeds beside the box, or below it if the box is larger then."""
     width, height = size[0] - LEFT - RIGHT, size[1] - TOP - BOTTOM
     aside, below = SPEEDS * size[0], SPEEDS * size[1]
     beside = min((width - LEFT - aside) / box[0], height / box[1])
@@ -79,7 +79,7 @@ def layout(size: tuple[float, float], box: tuple[float, float]) -> Layout:
 
 
 class Painter:
-    """Paints the states of one gas."""
+    """Painter of the states of one gas."""
 
     def __init__(
         self,
@@ -90,9 +90,10 @@ class Painter:
         rms_speed: float,
         by_species: bool,
     ) -> None:
-        """size: width and height of a frame, pixels. rms_speed: about the largest that will be shown.
+        """Prepare what is the same in all frames.
 
-        by_species: what the colour of a disc says, its species or its speed.
+        size: width and height of a frame, pixels. rms_speed: approximate largest root-mean-square speed of the film,
+        length/time. by_species: whether the colour of a disc shows its species instead of its speed.
         """
         self._inside, self._gas, self._piston, self._by_species = walls_inside(scene), gas, piston, by_species
         self._periodic = np.array(scene.properties.periodic)
@@ -113,7 +114,7 @@ class Painter:
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 
     def paint(self, state: LogState) -> np.ndarray:
-        """(height, width, 4) u1 of a state; good until the next call."""
+        """Paint a state: frame (height, width, 4) uint8, valid until the next call."""
         speed = np.hypot(*state.velocity.T)
         energy = float(self._gas.mass @ speed**2) / 2
         self._place(state.position, speed)
@@ -147,7 +148,7 @@ class Painter:
             self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
 
     def _draw_speeds(self, axes: Axes) -> None:
-        """With the colours of the discs along the x axis."""
+        """Draw the axes of the speed distribution, with the colours of the discs along the x axis."""
         top = self._edges[-1]
         self._speeds = np.linspace(0, top, 200)
         highest = 1.8 * self._law((top / FASTEST) ** 2 * float(self._gas.mass.mean()) / 2).max()
@@ -172,7 +173,7 @@ class Painter:
         axes.legend(handles=handles, frameon=False, loc="upper right")
 
     def _place(self, position: np.ndarray, speed: np.ndarray) -> None:
-        """Put the discs where they are, and their images at joined sides."""
+        """Draw the discs at their positions, and their periodic images at periodic sides."""
         if self._by_species:
             colours = to_rgba_array(self._kinds)
         else:
@@ -192,7 +193,7 @@ class Painter:
         self._discs.set(facecolors=colours[which])
 
     def _walls_at(self, time: float) -> list[Artist]:
-        """Segments that are there, as gates may be open, and the piston."""
+        """Draw the walls that are present at a time, as gates may be open, and the piston."""
         lines = [line for line, wall in zip(self._walls, self._inside, strict=True) if wall.is_there(time)]
         if self._piston is None:
             return lines
@@ -201,7 +202,7 @@ class Painter:
         return [*lines, self._piston_line]
 
     def _law(self, temperature: float) -> np.ndarray:
-        """Density of speeds in equilibrium at a temperature, all species together."""
+        """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""
         if not temperature > 0:
             return np.zeros_like(self._speeds)
         shares = self._species.number / self._species.number.sum()

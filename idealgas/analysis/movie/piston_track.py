@@ -1,4 +1,4 @@
-"""Where a piston is: known where discs hit it and where it was sampled, and falling in between."""
+"""Position of a piston in time: known at hits and samples, in between it moves on a parabola."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,20 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way."""
+    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way.
+
+    outward: +1 if the gas is below it on this axis, -1 if above.
+    """
 
     axis: int
     time: np.ndarray
     place: np.ndarray
     pull: float
     limits: tuple[float, float]
+    outward: float
 
     def at(self, time: float) -> float:
-        """Coordinate at a time: on the parabola through the knots before and after it, if no end stop is in its way."""
+        """Coordinate of the piston at a time, on the parabola through the known positions before and after it."""
         k = int(np.clip(self.time.searchsorted(time, "right") - 1, 0, len(self.time) - 2))
         before, after = time - self.time[k], time - self.time[k + 1]
         step = self.time[k + 1] - self.time[k]
@@ -28,7 +32,10 @@ class PistonTrack:
 
 
 def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
-    """Of the piston between two times; None if there is none, or too little to tell. Discs that hit it touch it."""
+    """Track of the piston between two times, from its samples and from the positions of discs that hit it.
+
+    None if there is no piston, or if its position is not known.
+    """
     piston = log.scene.piston
     if piston is None:
         return None
@@ -45,4 +52,5 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
     if len(time) < 2:
         return None
     pull = piston.acceleration(log.box, log.scene.gravity)
-    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, (0.0, log.box[piston.axis]))
+    limits = (0.0, log.box[piston.axis])
+    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward)

@@ -1,4 +1,4 @@
-"""Pressure from the walls and from the virial; of several logs the equation of state."""
+"""Pressure from the walls and from the virial; from several logs the equation of state."""
 
 from idealgas.analysis.core.declaration import Analysis, Section
 

@@ -1,4 +1,4 @@
-"""Pressures of several logs, or of the points of a sweep: the equation of state."""
+"""Equation of state from the pressures of several logs, or of the points of a sweep."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,13 +9,17 @@ from idealgas.analysis.pressure.measure import PAIRS, Pressure
 
 
 def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | EquationOfState:
-    """The pressure of a log, or the equation of state of several or of a sweep. UserError where theory knows no Z."""
+    """Pressure of a single log, or the equation of state of several logs or of a sweep.
+
+    Raises:
+        UserError: if theory does not know Z for one of several gases.
+    """
     if len(results) == 1 and isinstance(results[0], Pressure):
         return results[0]
     return equation_of_state([sample_of(found) if isinstance(found, Pressure) else found for found in results])
 
 
 def restore_pressure(found: dict[str, Any], label: str) -> Sample:
-    """Z of a point of a sweep, whose label says nothing that its result does not."""
+    """Compressibility factor of one point of a sweep; `label`, the name of the point, is not needed."""
     pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
     return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

@@ -1,4 +1,4 @@
-"""The equation of state Z(φ) from many pressures, beside its theories, and the virial coefficients in it."""
+"""Equation of state Z(φ) from the pressures of many runs, compared with theory, and fitted virial coefficients."""
 
 import math
 from collections.abc import Sequence
@@ -14,15 +14,15 @@ from idealgas.analysis.theory.values import NoTheoryError, fluid
 from idealgas.errors import UserError
 
 FITTED = 0.25
-"""Packing fraction up to which virial coefficients are fitted."""
+"""Largest packing fraction in the fit of virial coefficients."""
 
 FREE_TERMS = 3
-"""Coefficients from B2 on that are fitted; those of the terms that follow are kept at their known values."""
+"""Number of fitted virial coefficients, from B2 on; higher coefficients have their known values."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Z of one run. theory: at its N, in its box."""
+    """Compressibility factor of one run; its theory is that of the same number of discs in the same box."""
 
     packing_fraction: float
     number: int
@@ -31,9 +31,11 @@ class Sample:
 
 @dataclass(frozen=True)
 class State:
-    """A packing fraction: Z of all its runs, whose theory is that at their N, and of endless gases.
+    """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
-    infinite: Z less what theory says the finite N and box make; theory: the series, resummed. virial: to B10.
+    packing_fraction: φ. number: of discs. runs: number of runs. compressibility: mean of Z over the runs; its theory is
+    that of the same number of discs in the same box. infinite: Z extrapolated to an infinite gas, by the ratio of the
+    theories; its theory is the resummed virial series. virial: virial series to B10. henderson: Henderson (1975).
     """
 
     packing_fraction: float
@@ -45,7 +47,7 @@ class State:
     henderson: float
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "packing_fraction": self.packing_fraction,
             "number": self.number,
@@ -59,18 +61,25 @@ class State:
 
 @dataclass(frozen=True)
 class EquationOfState:
-    """States in order of φ. b2: in units of the discs' area, theory 2; b3: over b2²; None with too few states."""
+    """Equation of state: states in order of φ, and fitted virial coefficients (no unit).
+
+    b2: B2 over the area of a disc; theory gives 2. b3: B3/B2². Both are None if there are too few states for the fit.
+    """
 
     states: tuple[State, ...]
     b2: Estimate | None
     b3: Estimate | None
 
     def check(self) -> Verdict:
-        """Whether Z agrees with theory at every φ. UserError without an error bar."""
+        """Check that Z agrees with the resummed virial series at every packing fraction.
+
+        Raises:
+            UserError: if a state has no error bar.
+        """
         return judge((f"φ = {s.packing_fraction:.5g}, N = {s.number}", s.infinite) for s in self.states)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "states": [state.as_dict() for state in self.states],
             "B2": self.b2.as_dict() if self.b2 else None,
@@ -79,13 +88,17 @@ class EquationOfState:
 
 
 def sample_of(measured: Pressure) -> Sample:
-    """Z of a run by the virial of its pairs."""
+    """Compressibility factor of a run from the virial of its pair collisions."""
     pairs = next(route.compressibility for route in measured.routes if route.name == PAIRS)
     return Sample(measured.packing_fraction, measured.number, pairs)
 
 
 def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
-    """Put runs of the same N and φ together. UserError where theory knows no Z of a run."""
+    """Equation of state of many runs; runs of the same number of discs and packing fraction are averaged.
+
+    Raises:
+        UserError: if theory does not know Z for one of the runs.
+    """
     together: dict[tuple[float, int], list[Sample]] = {}
     for sample in samples:
         if sample.compressibility.theory is None:
@@ -118,7 +131,7 @@ def _state(runs: Sequence[Sample]) -> State:
 
 
 def _virial_coefficients(states: Sequence[State]) -> tuple[Estimate | None, Estimate | None]:
-    """B2 and B3 by weighted least squares to (Z - 1)/2φ = Σ b_k (2φ)^(k - 2), whose later terms are known."""
+    """Virial coefficients B2 and B3 by a weighted least-squares fit of (Z - 1)/2φ = Σ b_k (2φ)^(k - 2)."""
     used = [s for s in states if 0 < s.packing_fraction <= FITTED and s.infinite.standard_error > 0]
     if len(used) <= FREE_TERMS:
         return None, None

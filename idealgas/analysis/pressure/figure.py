@@ -1,4 +1,4 @@
-"""The pictures of the pressure: Z by every route, and the equation of state."""
+"""Pictures of the pressure: compressibility factor Z by every route, and the equation of state."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -10,12 +10,12 @@ from idealgas.analysis.theory import hard_discs
 
 
 def pressure_figure(result: Pressure | EquationOfState) -> Figure:
-    """Z of one log by every route, or of several against the packing fraction."""
+    """Picture of Z of one log by every route, or of several logs against the packing fraction."""
     return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
 
 
 def _of_log(result: Pressure) -> Figure:
-    """Z by every route with its error bar, and the theories as lines."""
+    """Picture of Z of one log: every route with its error bar, theories as lines."""
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
     values = [route.compressibility.value for route in routes]
@@ -33,7 +33,7 @@ def _of_log(result: Pressure) -> Figure:
 
 
 def _of_states(result: EquationOfState) -> Figure:
-    """Z against φ with the theories, and below what is left when the resummed series is taken away."""
+    """Picture of Z against φ with theories, and below it the deviation from the resummed virial series."""
     figure, (above, below) = panels(2)
     phi = np.array([state.packing_fraction for state in result.states])
     z = np.array([state.infinite.value for state in result.states])

@@ -1,8 +1,9 @@
-"""Pressure from the walls and from the virial, and PV = NkT with its error bar.
+"""Pressure from the walls and from the virial, and the compressibility factor Z = PA/NT with its error bar.
 
-Clausius: in equilibrium 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ, pairs on the left, walls on the right. Each side gives
-Z = PA/NT by its own events; they agree up to what Σ r·p happens to be at the ends. The plain force per length of wall
-is larger by a wall correction, as the walls act on the discs' centres, a radius inwards.
+Virial theorem of Clausius, in equilibrium over a time τ: 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ, with pair collisions on the
+left and wall hits on the right. Each side gives Z by its own events; they differ only by the change of Σ r·p between
+the start and the end. The force per length of wall is larger than the pressure, as walls act on the centres of the
+discs one radius inside the box.
 """
 
 import math
@@ -34,28 +35,31 @@ from idealgas.log import Log
 from idealgas.sides import OUTWARD, SIDES, axis_of
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
-"""Names of the routes that are checked against theory."""
+"""Names of the two routes that `Pressure.check` compares with theory."""
 
 
 @dataclass(frozen=True)
 class Route:
-    """A pressure, and Z = PA/NT beside theory, by one way of measuring."""
+    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring."""
 
     name: str
     pressure: Estimate
     compressibility: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"pressure": self.pressure.as_dict(), "compressibility": self.compressibility.as_dict()}
         return {"route": self.name, **values}
 
 
 @dataclass(frozen=True)
 class Pressure:
-    """All routes; Z by each theory that applies; collision rates and free paths from the same events.
+    """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
 
-    no_theory: why there is none of this gas in its box, as part of a sentence; empty where there is.
+    window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
+    packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
+    that applies. collision_rates: of each pair of species. free_paths: of each species. no_theory: why there is no
+    theory of this gas in its box, as part of a sentence; empty if there is.
     """
 
     window: Window
@@ -70,12 +74,16 @@ class Pressure:
     no_theory: str = ""
 
     def check(self) -> Verdict:
-        """Whether Z by the walls' and by the pairs' virial agrees with theory. UserError without an error bar."""
+        """Check that Z by the virial of the walls and of the pairs agrees with theory.
+
+        Raises:
+            UserError: if a route with a theory has no error bar.
+        """
         judged = ((route.name, route.compressibility) for route in self.routes if route.name in (WALLS, PAIRS))
         return judge(judged, self.no_theory)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "number": self.number,
@@ -97,7 +105,18 @@ def pressure(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Pressure:
-    """Measure the pressure of a log between two times, by default from detected equilibrium to the end."""
+    """Measure the pressure of a gas between two times of its log, and compare Z = PA/NT with theory.
+
+    The routes: momentum given to each wall per time and length, and by Clausius's virial theorem that given to all
+    walls and that passed on in collisions of discs. Theory is that of hard discs in this box, see `hard_disc_theories`;
+    collision rates and free paths come from the same events.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read.
+
+    Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects for which the
+    virial theorem needs further terms: gravity, wall segments, a piston, collisions that lose energy.
+    """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
@@ -121,7 +140,7 @@ def pressure(
 
 
 def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:
-    """Z at the gas's packing fraction: of an ideal gas, and where they apply of hard discs, in this box and endless."""
+    """Compressibility factor Z at the packing fraction of a gas, by the name of each theory that applies to it."""
     phi = gas.packing_fraction
     theories = {"ideal gas": Theory(1.0, 0.0, "ideal gas")}
     if in_box.pairs:
@@ -167,7 +186,7 @@ def _routes(
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
-    """Weighted mean of theories that have their errors in common; None if one has no value."""
+    """Weighted mean of theories with a common error; None if one of them has no value."""
     known = [(theory, weight) for theory, weight in parts if theory]
     if not known or len(known) < len(parts):
         return None

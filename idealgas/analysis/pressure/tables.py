@@ -1,4 +1,4 @@
-"""Tables of pressures and of the equation of state."""
+"""Tables of the pressure and of the equation of state."""
 
 from idealgas.analysis.core.tables import Number, Table, collision_tables, describe, estimates
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
@@ -6,7 +6,7 @@ from idealgas.analysis.pressure.measure import Pressure
 
 
 def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
-    """Routes, theories and collisions of one log, or states and virial coefficients of several."""
+    """Tables of routes, theories and collisions of one log, or of states and virial coefficients of several logs."""
     return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
 
 

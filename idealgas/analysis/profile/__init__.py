@@ -1,4 +1,4 @@
-"""Density and temperature in strips along an axis, and the heat that walls give."""
+"""Profiles of density and temperature in strips along an axis, and the heat given by walls."""
 
 from idealgas.analysis.core.declaration import Analysis, Option, Section
 
@@ -6,16 +6,16 @@ BINS = 20
 
 ANALYSIS = Analysis(
     __name__,
-    help="""Measure density and temperature in strips along an axis, and the heat that walls give.
+    help="""Measure density and temperature in strips along an axis, and the heat given by walls.
 
-    Theory: uniform in a closed or periodic box, barometric under gravity, T^(3/2) in a straight line between two
-    thermal sides. It is that of a dilute gas, without the jump of the temperature at a thermal side.
+    Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and T^(3/2) linear in the
+    position between two thermal sides, without the temperature jump at a thermal side.
     """,
     options=(
         Option(
             "along",
             str,
-            "The axis.  [default: that of gravity, or of two thermal sides; else x]",
+            "Axis of the profile.  [default: that of gravity, or of two thermal sides; else x]",
             choices=("x", "y"),
         ),
         Option("bins", int, "Number of strips.", default=BINS, least=1, most=1000),

@@ -1,4 +1,4 @@
-"""The picture of a gas in strips."""
+"""Picture of the profiles of density and temperature."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,7 +9,7 @@ from idealgas.analysis.profile.measure import Profile
 
 
 def profile_figure(result: Profile) -> Figure:
-    """Density above and temperature below against the place on the axis, theory dashed; spins as crosses."""
+    """Picture of density and temperature against position, theory dashed; spin temperature as crosses."""
     figure, (density, temperature) = panels(2)
     for entry, colour in zip(result.species, COLOURS * len(result.species), strict=False):
         points = {"fmt": "o", "ms": 4, "color": colour, "capsize": 2}

@@ -1,4 +1,4 @@
-"""Density and temperature in strips across an axis, averaged over time, and the heat that walls give."""
+"""Density and temperature in strips along an axis, averaged over time, and the heat given by walls."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,12 +16,16 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 FEWEST_FRAMES = 32
-"""Frames with a disc in a strip, below which its temperature is not told."""
+"""Smallest number of frames with a disc in a strip for an estimate of its temperature."""
 
 
 @dataclass(frozen=True)
 class SpeciesProfile:
-    """Of one species, a value a strip: discs per area, m v²/2 a disc, and I ω² a disc where discs have spin."""
+    """Profiles of one species, one value for each strip.
+
+    species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, energy. spin: mean I ω² per
+    disc, energy; None for discs without spin.
+    """
 
     species: str
     density: tuple[Estimate, ...]
@@ -29,7 +33,7 @@ class SpeciesProfile:
     spin: tuple[Estimate, ...] | None
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         columns = {"density": self.density, "temperature": self.temperature, "spin": self.spin}
         values = {name: [e.as_dict() for e in column] for name, column in columns.items() if column is not None}
         return {"species": self.species, **values}
@@ -37,9 +41,11 @@ class SpeciesProfile:
 
 @dataclass(frozen=True)
 class Profile:
-    """axis: 0 or 1. edges: (K + 1,) of the strips, length. law: of the theory, in words; None without one.
+    """Profiles of all species in K strips along one axis.
 
-    frames: that the averages are taken from. heat: energy per time that each wall gives to the discs, by its name.
+    window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. frames: number
+    of averaged frames. law: name of the theory; None without one. species: profiles of each species. heat: energy per
+    time that each wall gives to the discs, by the name of the wall.
     """
 
     window: Window
@@ -52,11 +58,11 @@ class Profile:
 
     @property
     def middles(self) -> np.ndarray:
-        """(K,)."""
+        """Coordinates (K,) of the centres of the strips, length."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "axis": "xy"[self.axis],
@@ -76,10 +82,14 @@ def profile(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Profile:
-    """Measure a log in strips of equal width over all that centres reach, by default from detected equilibrium on.
+    """Measure density and temperature in strips across an axis, and the heat that walls give, between two times.
 
-    along: "x" or "y"; by default the axis along which something changes. Frames are as far apart as the events of a
-    disc, or farther. UserError without events or positions, or if the window is empty.
+    along: "x" or "y"; by default the axis along which something changes. bins: number of strips, of equal width, over
+    all that centres of discs reach. Averages are taken over states at least as far apart as the events of a disc.
+    Theory, where there is one: a uniform gas, the barometric law, or Fourier's law between two thermal walls.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    states are read. Raises UserError without events or positions, or if the window is empty.
     """
     if not log.has_positions:
         raise UserError(f"{log.path}: discs of this method have no positions")
@@ -101,7 +111,7 @@ def profile(
 def _collect(
     log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Callable[[int, int], None] | None
 ) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """(F, S, K, 3) sums over the discs of a strip of 1, m v²/2 and I ω²; and what stands still in equilibrium."""
+    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, and series to detect equilibrium."""
     gas, frame = log.discs, drift(log)
     shape = (len(gas.species_names), len(edges) - 1)
     sums = np.zeros((len(times), *shape, 3))
@@ -126,7 +136,7 @@ def _collect(
 def _of_species(
     name: str, sums: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
 ) -> SpeciesProfile:
-    """sums: (F, K, 3). strip: area."""
+    """Profiles of one species from its sums (F, K, 3); strip: area of a strip, length²."""
     strips = range(sums.shape[1])
     n, t = (None, None) if expected is None else (expected.density, expected.temperature)
 
@@ -144,7 +154,7 @@ def _of_species(
 
 
 def _heat(log: Log, window: Window) -> dict[str, Estimate]:
-    """Energy per time by the account of every wall that gave any, from sample to sample of it in the window."""
+    """Energy per time that each wall gave to the discs, by its name, from the stored samples in the window."""
     if "wall_energy" not in log.observables:
         return {}
     time, given = log.observables["wall_energy"]

@@ -1,4 +1,4 @@
-"""Tables of profiles."""
+"""Tables of profiles of density and temperature."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ from idealgas.analysis.profile.measure import Profile
 
 
 def profile_tables(result: Profile) -> list[Table]:
-    """Density and temperatures of each species, strip by strip, and what walls give."""
+    """Tables of density and temperature of each species in every strip, and of the heat given by walls."""
     axis = "xy"[result.axis]
     strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in zip(result.edges, result.edges[1:], strict=False)]
     tables = []

@@ -1,4 +1,4 @@
-"""Density and temperature along an axis where theory knows them: of dilute gases, of discs small beside a strip."""
+"""Profiles of density and temperature by theory, for dilute gases of discs that are small compared with a strip."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,16 @@ from idealgas.log import Log
 from idealgas.sides import sides_across
 
 POINTS = 64
-"""Places in a strip that averages over it are taken from."""
+"""Number of points in a strip over which the theory is averaged."""
 
 
 @dataclass(frozen=True)
 class Expected:
-    """law: in words. density, temperature: (S, K), averages over the strips; temperature of each degree of freedom."""
+    """Profiles by theory for S species and K strips.
+
+    law: name of the law. density: (S, K), mean number density of each strip, 1/length². temperature: (S, K), mean
+    temperature of each degree of freedom, energy.
+    """
 
     law: str
     density: np.ndarray
@@ -23,7 +27,7 @@ class Expected:
 
 
 def natural_axis(log: Log) -> int:
-    """The axis along which something changes: that of gravity, or of thermal sides of two temperatures; else x."""
+    """Axis (0 for x, 1 for y) of gravity, or of two thermal sides of different temperatures; else x."""
     if log.gravity[1] != 0:
         return 1
     bottom, top = (log.scene.properties.emits[side] for side in sides_across(1))
@@ -31,11 +35,13 @@ def natural_axis(log: Log) -> int:
 
 
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
-    """In the strips between edges (K + 1,), from time start on; None where no simple theory applies."""
+    """Profiles by theory in the strips between edges (K + 1,), for a gas from time `start` on; None if unknown."""
     properties, discs = log.scene.properties, composition(log.discs)
     if start < properties.clear_from or not properties.fixed_walls or log.gravity[1 - axis]:
         return None
-    reach = np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius  # of centres, from the sides
+    reach = (
+        np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius
+    )  # distance of the centres from the sides
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
     size = np.diff(inside)
     places = inside[:, :-1, None] + size[:, :, None] * (np.arange(POINTS) + 0.5) / POINTS
@@ -50,7 +56,7 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
 
 
 def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tuple[str, np.ndarray, np.ndarray] | None:
-    """The law, and at places (S, K, P) relative density and temperature."""
+    """Name of the law, and relative density and temperature at the coordinates `places` (S, K, P); None if unknown."""
     one = np.ones_like(places)
     properties = log.scene.properties
     low, high = (properties.emits[side] for side in sides_across(axis))

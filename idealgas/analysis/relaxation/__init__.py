@@ -1,19 +1,19 @@
-"""How the velocities of a gas come to follow Maxwell and Boltzmann's distribution."""
+"""Relaxation of the velocities of a gas to Maxwell-Boltzmann's distribution."""
 
 from idealgas.analysis.core.declaration import Analysis, Option, Section
 
 ANALYSIS = Analysis(
     __name__,
-    help="""Measure how the velocities come to follow Maxwell and Boltzmann.
+    help="""Measure the relaxation of the velocities to Maxwell-Boltzmann's distribution.
 
     The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error comes from groups
-    of discs. Several logs lie on one plot.
+    of discs. Several logs are drawn in one picture.
     """,
     options=(
         Option(
             "every",
             float,
-            "Also show the speeds every so many trials of a Monte Carlo run, or units of time of any other.",
+            "Also show the speed distribution every X trials (Monte Carlo) or X units of time (other runs).",
             positive=True,
             metavar="X",
         ),

@@ -1,4 +1,4 @@
-"""What became of the trials of a Monte Carlo run: how many were accepted, beside kinetic theory and a published run."""
+"""Acceptance of the trials of a Monte Carlo run, compared with kinetic theory and with a published run."""
 
 import math
 from dataclasses import dataclass
@@ -16,16 +16,19 @@ from idealgas.scene.defaults import reference_speed
 
 PUBLISHED = 6_552
 """Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970): 200 molecules, v_ref 5 times their
-speed. It is 6.7 % below what theory expects."""
+speed. This number is 6.7 % below what theory expects."""
 
-MANY = 2000  # discs beyond which the mean over their pairs is taken over some of them
+MANY = 2000  # largest number of discs for which the mean over pairs takes all discs
 
 
 @dataclass(frozen=True)
 class Acceptance:
-    """acceptance: its theory is that of these discs in equilibrium. at_start: of the pairs as they were then.
+    """Acceptance of the trials of a Monte Carlo run: share of the trials that became collisions.
 
-    expected: in equilibrium, by name of the ensemble. published: collisions.
+    number: of trials. collisions: number of accepted trials. collisions_per_disc: their number per disc. acceptance:
+    measured share; its theory is that of these discs in equilibrium. at_start: share expected for the velocities at the
+    start. expected: share expected in equilibrium, by the name of the ensemble. published: published number of
+    collisions; None for other scenes.
     """
 
     number: int
@@ -37,7 +40,7 @@ class Acceptance:
     published: int | None
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "trials": self.number,
             "collisions": self.collisions,
@@ -50,7 +53,7 @@ class Acceptance:
 
 
 def acceptance(log: Log) -> Acceptance | None:
-    """Of a whole log; None if its method makes no trials."""
+    """Measure the acceptance of all trials of a log; None if its method has no trials."""
     if "trial" not in log.columns:
         return None
     number = log.summary["trials"] if log.complete else last_trial(log)
@@ -69,19 +72,22 @@ def acceptance(log: Log) -> Acceptance | None:
 
 
 def last_trial(log: Log) -> int:
-    """Number of the last trial that became a collision; 0 without any."""
+    """Number of the last trial that became a collision; 0 if there is none."""
     return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
 
 
 def largest_product(log: Log) -> float:
-    """Sum of radii times relative speed at which a pair is accepted for certain."""
+    """Sum of radii times relative speed of a pair at which a trial is always accepted, length²/time."""
     gas = log.discs
     v_ref = reference_speed(log.scene.run, float(np.hypot(*gas.velocity.T).max()))
     return float(np.sort(gas.radius)[-2:].sum()) * v_ref
 
 
 def equilibrium_acceptance(log: Log, temperature: float, dof: float = math.inf) -> float:
-    """Mean of S |v| over all pairs, in units of the largest: √(π/2)/5 for equal discs if v_ref is 5 times the rms."""
+    """Acceptance in equilibrium: mean of the sum of radii times relative speed over its largest value.
+
+    It is √(π/2)/5 for equal discs if v_ref is 5 times the root-mean-square speed.
+    """
     discs = composition(log.discs)
     sigma = discs.radius[:, None] + discs.radius
     speed = hard_discs.mean_relative_speeds(temperature, discs.mass, dof)
@@ -90,7 +96,7 @@ def equilibrium_acceptance(log: Log, temperature: float, dof: float = math.inf) 
 
 
 def start_acceptance(log: Log) -> float:
-    """The same for the velocities at the start: (4/π)/5 for equal speeds in random directions."""
+    """Acceptance for the velocities at the start: (4/π)/5 for equal speeds in random directions."""
     gas = log.discs
     some = slice(None, None, -(-len(gas) // MANY))
     v, r = gas.velocity[some], gas.radius[some]
@@ -99,7 +105,7 @@ def start_acceptance(log: Log) -> float:
 
 
 def is_published(scene: Scene) -> bool:
-    """Whether a scene is the published run."""
+    """Whether a scene is that of the published run of Novak & Bortz (1970)."""
     run = scene.run
     if len(scene.species) != 1 or scene.disc or run.trials != 28_000 or run.events or run.collisions_per_disc:
         return False

@@ -1,4 +1,4 @@
-"""Relaxations of several gases side by side."""
+"""Relaxation of several gases, log by log."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,15 +9,15 @@ from idealgas.analysis.relaxation.measure import Relaxation
 
 @dataclass(frozen=True)
 class Relaxations:
-    """What was seen in each log."""
+    """Relaxation of the gas of each log."""
 
     logs: tuple[Relaxation, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"logs": [found.as_dict() for found in self.logs]}
 
 
 def combine_relaxation(results: Sequence[Relaxation]) -> Relaxations:
-    """One log after another."""
+    """Combine the relaxation of several logs, in their order."""
     return Relaxations(tuple(results))

@@ -1,4 +1,4 @@
-"""The picture of relaxations: several logs on one plot, against collisions per disc and against time."""
+"""Picture of relaxations: several logs together, against collisions per disc and against time."""
 
 from pathlib import Path
 
@@ -16,7 +16,10 @@ ENTROPIES = (-0.1, -0.05, 0, 0.05, 0.1, 0.2, 0.5, 1, 2)
 
 
 def relaxation_figure(found: Relaxations) -> Figure:
-    """Kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H; left against collisions, right time."""
+    """Picture of kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H.
+
+    They are drawn against collisions per disc on the left and against time on the right.
+    """
     figure, axes = panels(3, columns=2)
     for k, result in enumerate(found.logs):
         colour, style = COLOURS[k % len(COLOURS)], STYLES[k // len(COLOURS) % len(STYLES)]

@@ -1,4 +1,4 @@
-"""How a gas comes to equilibrium: its velocities at instants, held against Maxwell and Boltzmann's distribution.
+"""Relaxation of a gas: its velocities at several instants, compared with Maxwell-Boltzmann's distribution.
 
 All measures look at the reduced energy x = m v²/2T of a disc, whose law in equilibrium is exp(-x) whatever its mass:
 the Kolmogorov-Smirnov distance D; the kurtosis ⟨v⁴⟩/⟨v²⟩², from 1 of equal speeds to 2; and, since the energy is
@@ -28,12 +28,14 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 HORIZON = 40.0
-"""Collisions per disc after the start that are looked at unless an end is given: about ten relaxation times."""
+"""Default length of the window in collisions per disc: about ten relaxation times."""
 
 SAMPLES = 320
-GROUPS = 20  # of discs, for the jackknife
-CELLS = 32  # of equal probability, for H
-LEAST_RELAXATION = 4.0  # standard deviations of the kurtosis in equilibrium from which there is something to fit
+GROUPS = 20  # groups of discs for the jackknife
+CELLS = 32  # cells of equal probability for H
+LEAST_RELAXATION = (
+    4.0  # smallest deviation of the kurtosis at the start for a fit, in its standard deviations in equilibrium
+)
 SETTLED = 3.0
 """Relaxation times after which a gas counts as settled: 5 % of the distance is left."""
 
@@ -47,13 +49,16 @@ equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
 
 @dataclass(frozen=True)
 class Relaxation:
-    """What was seen at the instants `time` (K,), after `collisions` (K,) per disc.
+    """Relaxation of the gas of one log at K instants.
 
-    kurtosis, distance, entropy: (K,), entropy being H - H_eq per disc. equilibrium_kurtosis: of N discs.
-    critical_distance: what one in twenty gases of N discs in equilibrium exceeds. in_time, in_collisions: the fitted
-    relaxation time of the kurtosis; None if it starts where it fluctuates in equilibrium.
-    first_indistinguishable: index of the first instant at which the distance is below the critical one; None if it
-    never is. acceptance: of the trials; None for a method that makes none. speeds: at instants, if they were asked for.
+    path: of the log. number: of discs. time: (K,), times. collisions: (K,), collisions per disc since the first
+    instant. kurtosis: (K,), ⟨v⁴⟩/⟨v²⟩² in reduced energies. distance: (K,), Kolmogorov-Smirnov distance. entropy: (K,),
+    H - H_eq per disc. equilibrium_kurtosis: mean kurtosis of this number of discs in equilibrium. critical_distance:
+    distance that one in twenty gases of this number of discs in equilibrium exceeds. in_time, in_collisions: fitted
+    relaxation time of the kurtosis, in units of time and in collisions per disc; None if the kurtosis at the start is
+    within its fluctuations in equilibrium. first_indistinguishable: index of the first instant at which the distance is
+    below the critical distance; None if there is none. acceptance: acceptance of Monte Carlo trials; None for other
+    methods. speeds: speed distributions; None unless they were counted.
     """
 
     path: str
@@ -72,7 +77,7 @@ class Relaxation:
     speeds: SpeedDistributions | None
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         k = self.first_indistinguishable
         return {
             "path": self.path,
@@ -102,11 +107,11 @@ def relaxation(
     progress: Callable[[int, int], None] | None = None,
     every: float | None = None,
 ) -> Relaxation:
-    """Follow a log from `start`, by default its own, to `end`, by default HORIZON collisions per disc later.
+    """Follow how the speeds of a gas come to Maxwell and Boltzmann's distribution, and fit the time that it takes.
 
-    every: trials of a Monte Carlo run, or time of any other, between instants whose speeds are counted; None for none.
-
-    UserError if there is nothing in between, or if the energy of the discs is not constant.
+    start, end: times; by default from the start of the log until HORIZON collisions per disc later. progress(done, in
+    all) is called as states are read. Raises UserError if no two discs collide in between, or if the energy of the
+    discs is not constant, so that there is no distribution that they tend to.
     """
     check_steady(log)
     first, last = colliding_span(log, start, end)
@@ -126,7 +131,7 @@ def relaxation(
     collisions = collisions_per_disc(log, time)
     target = 2 * equilibrium.dof / (equilibrium.dof + 2)
     critical = critical_distance(number)
-    told = np.flatnonzero(distance < critical)
+    indistinguishable = np.flatnonzero(distance < critical)
     return Relaxation(
         path=str(log.path),
         number=number,
@@ -139,14 +144,18 @@ def relaxation(
         critical_distance=critical,
         in_time=_fit(time - first, sums, members, target),
         in_collisions=_fit(collisions, sums, members, target),
-        first_indistinguishable=int(told[0]) if len(told) else None,
+        first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
     )
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
-    """From `start` to `end`, by default HORIZON collisions per disc later or at the end of the log."""
+    """First and last time to follow; by default it ends after HORIZON collisions per disc or at the end of the log.
+
+    Raises:
+        UserError: if no discs collide between the two times.
+    """
     first, last = span(log, start, end)
     most = HORIZON * len(log.discs) if end is None else math.inf
     found = 0
@@ -161,23 +170,24 @@ def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[fl
 
 
 def relative_entropy(energy: np.ndarray) -> float:
-    """∫ p ln(p/e^(-x)) dx from reduced energies, by cells of equal probability; less the bias (cells - 1)/2N.
+    """Relative entropy ∫ p ln(p/e^(-x)) dx of reduced energies (N,), estimated in cells of equal probability (no unit).
 
-    Bias: Miller (1955). At most ln(cells): equal speeds, for which H is infinite, fill one cell.
+    The bias (cells - 1)/2N is subtracted: Miller (1955). The estimate is at most ln(cells), for equal speeds, whose
+    relative entropy is infinite.
     """
     n = len(energy)
     cells = max(2, min(CELLS, n // 5))
-    place = np.minimum((reduced_energy_cdf(energy) * cells).astype(int), cells - 1)
-    share = np.bincount(place, minlength=cells) / n
+    cell = np.minimum((reduced_energy_cdf(energy) * cells).astype(int), cells - 1)
+    share = np.bincount(cell, minlength=cells) / n
     seen = share[share > 0]
     return float((seen * np.log(seen * cells)).sum() - (cells - 1) / (2 * n))
 
 
 def critical_distance(number: int) -> float:
-    """The distance that one in twenty gases of N discs in equilibrium exceeds.
+    """Kolmogorov-Smirnov distance that one in twenty gases of `number` discs in equilibrium exceeds (no unit).
 
-    Their energies add up to the right mean, as for an exponential law with fitted mean: Stephens, J. Am. Stat. Assoc.
-    69, 730 (1974), table 1.5.
+    It is that of an exponential law with fitted mean, as the total energy is fixed: Stephens, J. Am. Stat. Assoc. 69,
+    730 (1974), table 1.5.
     """
     root = math.sqrt(number)
     return 1.094 / (root + 0.26 + 0.5 / root) + 0.2 / number
@@ -188,10 +198,10 @@ def _kurtosis(sums: np.ndarray, number: int | np.ndarray) -> np.ndarray:
 
 
 def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float) -> Estimate | None:
-    """Relaxation time of the kurtosis, from its first value to its target, by least squares.
+    """Relaxation time of the kurtosis from its first value to its target by least squares, in the unit of `time`.
 
-    The error is the jackknife's over groups of discs: each is followed through all of time, so that what is correlated
-    in time, as fluctuations are that decay as slowly as the kurtosis itself, needs no model.
+    The error is that of a jackknife over groups of discs. As each group is followed over the whole time, fluctuations
+    that are correlated in time need no model.
     """
     whole = _kurtosis(sums.sum(axis=2), members.sum())
     if abs(whole[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(members.sum()):
@@ -207,8 +217,9 @@ def _fit(time: np.ndarray, sums: np.ndarray, members: np.ndarray, target: float)
 
 
 def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """The τ whose target + (series[0] - target) exp(-time/τ) is nearest to the series, by least squares; in its unit of
-    time. time, series: (S,).
+    """Relaxation time τ of target + (series[0] - target) exp(-time/τ), fitted to a series by least squares.
+
+    time, series: (S,). The result has the unit of `time`.
     """
 
     def misfit(logarithm: float) -> float:

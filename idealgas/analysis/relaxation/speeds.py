@@ -1,4 +1,4 @@
-"""The distribution of speeds as it develops: counts at instants, side by side."""
+"""Speed distributions at several instants: numbers of discs in classes of speed."""
 
 import math
 from dataclasses import dataclass
@@ -22,18 +22,20 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 
 CLASSES = 0.3 * np.arange(9)
-"""Lower ends of the classes of speed, in units of the root mean square; the last class is open."""
+"""Lower ends of the classes of speed, in units of the root-mean-square speed; the last class has no upper end."""
 
 MOST_INSTANTS = 10_000
 
 
 @dataclass(frozen=True)
 class SpeedDistributions:
-    """Discs by speed, relative to the centre of mass where that moves on for ever, at the instants `time` (K,).
+    """Speed distributions at K instants in C classes of speed.
 
-    rms: root mean square of the speeds, length/time. edges: (C,) lower ends of the classes, length/time.
-    counts: (K, C). expected: (C,) by Maxwell and Boltzmann. trials: (K,) made until then, None for a method that makes
-    none. collisions: (K,) per disc. distance: (K,) Kolmogorov-Smirnov's.
+    Speeds are relative to the centre of mass along axes where momentum is conserved. time: (K,), times. trials: (K,),
+    Monte Carlo trials until then; None for a method without trials. collisions: (K,), collisions per disc until then.
+    distance: (K,), Kolmogorov-Smirnov distance from Maxwell-Boltzmann's distribution. rms: root-mean-square speed,
+    length/time. edges: (C,), lower ends of the classes, length/time. counts: (K, C), numbers of discs. expected: (C,),
+    numbers of discs by Maxwell-Boltzmann's distribution.
     """
 
     time: np.ndarray
@@ -46,7 +48,7 @@ class SpeedDistributions:
     expected: np.ndarray
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "time": self.time.tolist(),
             "trials": None if self.trials is None else self.trials.tolist(),
@@ -62,7 +64,11 @@ class SpeedDistributions:
 def speed_distributions(
     log: Log, every: float, start: float | None = None, end: float | None = None
 ) -> SpeedDistributions:
-    """Count speeds at the start and every so often: trials of a Monte Carlo run, else time. UserError if too often."""
+    """Count discs by speed at the start and after every `every` trials (Monte Carlo) or units of time (other methods).
+
+    Raises:
+        UserError: if there would be more than MOST_INSTANTS instants, or if the gas does not relax (`check_steady`).
+    """
     check_steady(log)
     first, last = span(log, start, end)
     trials = None
@@ -91,7 +97,7 @@ def speed_distributions(
 
 
 def _at_trials(log: Log, every: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of trials, and times of the last collision until each of them."""
+    """Numbers of trials, and time of the last collision up to each of them."""
     total = log.summary["trials"] if log.complete else last_trial(log)
     _check_number(total / every)
     wanted = np.arange(0, total + 1, max(int(every), 1))

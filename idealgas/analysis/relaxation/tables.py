@@ -1,4 +1,4 @@
-"""Tables of relaxations: times in both units, trials of Monte Carlo runs, and speeds at instants."""
+"""Tables of relaxations: times in both units, trials of Monte Carlo runs, and speed distributions."""
 
 from collections.abc import Iterator
 
@@ -11,18 +11,18 @@ from idealgas.analysis.relaxation.combine import Relaxations
 from idealgas.analysis.relaxation.measure import LINEAR, SETTLED, Relaxation
 from idealgas.analysis.relaxation.speeds import SpeedDistributions
 
-HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "not told apart")
+HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "indistinguishable")
 
 NOTES = (
     "Relaxation time: of the kurtosis; after three of them 5 % of the distance is left, and the gas has settled.",
-    "Not told apart: the first time that the speeds pass a Kolmogorov-Smirnov test at 5 %.",
+    "Indistinguishable: from the first time on at which the speeds pass a Kolmogorov-Smirnov test at 5 %.",
     "A collision counts for both discs. Near equilibrium theory expects a relaxation time of "
     f"{LINEAR:g} collisions per disc, farther away more.",
 )
 
 
 def relaxation_tables(found: Relaxations) -> list[Table]:
-    """Speeds where they were asked for, relaxation times of all logs, and what became of trials."""
+    """Tables of speed distributions, if they were counted, of relaxation times, and of Monte Carlo trials."""
     in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in found.logs]
     in_collisions = [_row(r, r.in_collisions, r.collisions) for r in found.logs]
     tried = {r.path: r.acceptance for r in found.logs if r.acceptance is not None}
@@ -47,7 +47,7 @@ def _row(result: Relaxation, fit: Estimate | None, series: np.ndarray) -> tuple[
 
 
 def _trials(tried: dict[str, Acceptance]) -> list[Table]:
-    """Acceptance of each log beside theory and, for the classic run, beside what was published."""
+    """Tables of the acceptance of each log, compared with theory and with the value of the published run."""
     counts = [
         (path, Number(found.number, ","), Number(found.collisions, ","), Number(found.collisions_per_disc, ".5g"))
         for path, found in tried.items()
@@ -70,7 +70,7 @@ def _expected(path: str, found: Acceptance) -> Iterator[tuple[Cell, ...]]:
 
 
 def _speeds(path: str, found: SpeedDistributions) -> Table:
-    """Counts of discs by speed, one row an instant, Maxwell and Boltzmann's last."""
+    """Table of the numbers of discs by speed, one row for each instant; Maxwell-Boltzmann's numbers in the last row."""
     title = f"{path}: discs by speed, in classes from multiples of {found.rms:.4g} (rms)"
     classes = (f"{edge / found.rms:.1f}" for edge in found.edges)
     clock = [Number(t, ".4g") for t in found.time.tolist()]

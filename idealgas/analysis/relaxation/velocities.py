@@ -1,4 +1,4 @@
-"""What is looked at of velocities that come to equilibrium: reduced energies, whose law is exp(-x), at instants."""
+"""Reduced energies of discs, whose probability density in equilibrium is exp(-x), and collisions per disc."""
 
 import numpy as np
 
@@ -8,7 +8,11 @@ from idealgas.log import Log
 
 
 def check_steady(log: Log) -> None:
-    """UserError if there is no law of Maxwell and Boltzmann that the discs of the log tend to, or no event in it."""
+    """Check that the velocities of a log can relax to Maxwell-Boltzmann's distribution.
+
+    Raises:
+        UserError: if the log has no events, if the kinetic energy of its discs is not constant, or if no disc moves.
+    """
     if not log.has_events:
         raise UserError(f"{log.path}: has no events (made with log.events = false)")
     if restless := log.scene.lacking("conserves_motion"):
@@ -18,16 +22,16 @@ def check_steady(log: Log) -> None:
 
 
 def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """(K,) collisions that a disc had on average from time[0] up to each of the times; a collision counts for both."""
+    """Mean number (K,) of collisions of a disc from time[0] up to each time; a collision counts for both discs."""
     rows_until = np.zeros(len(time))
     for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
-        place = np.searchsorted(time, rows.time[rows.partner >= 0])
-        rows_until += np.bincount(place, minlength=len(time))
+        instant = np.searchsorted(time, rows.time[rows.partner >= 0])
+        rows_until += np.bincount(instant, minlength=len(time))
     return np.cumsum(rows_until) / len(log.discs)
 
 
 def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
-    """m v²/2T of every disc, with the T that it tends to."""
+    """Reduced energy m v²/2T of every disc (no unit), with its mean kinetic energy T in equilibrium."""
     gas = log.discs
     square = ((velocity - equilibrium.drift) ** 2).sum(axis=1)
     return gas.mass * square / (2 * equilibrium.of_species[gas.species])

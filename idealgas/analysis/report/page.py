@@ -1,4 +1,4 @@
-"""A log as one page: what it is, every analysis that applies to it, and a player; nothing else is needed to read it."""
+"""Report of a log as one HTML page without other files: the run, all analyses that apply to it, and a player."""
 
 import base64
 import io
@@ -58,7 +58,7 @@ SUMMARY = {
     "seconds": "wall time (s)",
     "compile_seconds": "making or loading machine code, before that (s)",
 }
-"""What is shown of the summary of a run, with units."""
+"""Labels, with units, of the values in the summary of a run that the report shows."""
 
 
 def write_report(
@@ -68,10 +68,17 @@ def write_report(
     start: float | None = None,
     on_step: Callable[[int, int], None] = lambda done, total: None,
 ) -> Path:
-    """Write the page; start: of what the player shows, time. on_step(done, total).
+    """Write the report page of a log and return its path.
 
-    UserError for another ending than .html, a start that the log does not cover, and (exit code 1) if it cannot be
-    written.
+    Args:
+        log: the log to show.
+        output: path of the page, with the ending .html or .htm.
+        start: first time in the player; None for the start of the log.
+        on_step: called with the number of finished sections and the number of all sections.
+
+    Raises:
+        UserError: for another ending, or if the log does not cover `start`; with exit code 1, if the page cannot be
+            written.
     """
     path = Path(output)
     if path.suffix.lower() not in (".html", ".htm"):
@@ -125,7 +132,7 @@ def _text(name: str) -> str:
 
 
 def _player(log: Log, played: Player | None, heading: str) -> str:
-    """The player's part of the page, and which part of the log it has."""
+    """HTML of the player, with a note on the time that it shows."""
     if played is None:
         why = "no events are on record" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
         return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {why}.</p></section>'
@@ -153,7 +160,7 @@ def _data(played: Player) -> str:
 
 
 def _run(log: Log, found: dict) -> str:
-    """Scene, discs and how the run ended."""
+    """HTML of the section on the run: discs, state and summary of the run, and the scene."""
     species = [
         (s["name"], Number(s["number"], ","), Number(s["radius"]), Number(s["mass"])) for s in found["gas"]["species"]
     ]

@@ -1,7 +1,7 @@
-"""What the page of a report needs to move the discs: a state, and the events after it, as compact arrays.
+"""Data of the player in a report page: a state of the gas and the events after it, as compact arrays.
 
-The page flies each disc from its last event, as a log's reader does, so that every instant is exact up to the 24 bits
-of a 32-bit float.
+The page computes the flight of each disc from its last event, so that positions at any time are exact up to the 24
+bits of a 32-bit float.
 """
 
 import base64
@@ -21,17 +21,20 @@ from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 
 MOST_ROWS = 600_000
-"""Events that are put into a page, about 19 MB."""
+"""Largest number of event rows in a page, about 19 MB."""
 
 MOST_DISCS = 100_000
 SHADES = 16
 TICKS = 2.0**32 - 1
-"""Times are whole numbers of the player's span over this many."""
+"""Number of steps in the time of the player; times of events are whole numbers of these steps."""
 
 
 @dataclass(frozen=True)
 class Player:
-    """head: plain values for JSON. arrays: little-endian bytes, base64, by name. start, end: of what is played."""
+    """Data of the player.
+
+    head: plain values for JSON. arrays: little-endian numbers as base64 text, by name. start, end: played time.
+    """
 
     head: dict[str, Any]
     arrays: dict[str, str]
@@ -40,7 +43,10 @@ class Player:
 
 
 def player(log: Log, start: float | None = None) -> Player | None:
-    """From `start`, by default the log's own, as far as the page can hold; None if it has no events or many discs."""
+    """Data of the player from time `start`, by default the start of the log, for at most MOST_ROWS event rows.
+
+    None if the log has no events or more than MOST_DISCS discs.
+    """
     gas = log.discs
     if not log.has_events or len(gas) > MOST_DISCS:
         return None
@@ -86,13 +92,13 @@ def player(log: Log, start: float | None = None) -> Player | None:
 
 
 def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
-    """Where it begins and ends, and how it falls in between; the events of the page tell where discs hit it."""
+    """Positions of the piston at both times, and its acceleration; the page finds the other positions from its hits."""
     track = piston_track(log, first, last)
-    if track is None or log.scene.piston is None:
+    if track is None:
         return None
     return {
         "axis": track.axis,
-        "outward": log.scene.piston.outward,
+        "outward": track.outward,
         "pull": track.pull,
         "limits": track.limits,
         "ends": [track.at(first), track.at(last)],
@@ -100,7 +106,7 @@ def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
 
 
 def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
-    """Columns of the events after the first time up to the last, and which of them were hits of the piston."""
+    """Columns of the events between two times, and the indices of those that are hits of the piston."""
     names = ("time", "disc", "kind", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks(names, start, log.row_at(last, "right")))
     empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
@@ -116,7 +122,7 @@ def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
 
 
 def _packed(array: np.ndarray) -> str:
-    """Floats with 32 bits, base64."""
+    """Array as base64 text, floats with 32 bits."""
     narrow = array.astype("<f4") if array.dtype.kind == "f" else array
     return base64.b64encode(np.ascontiguousarray(narrow).tobytes()).decode()
 

@@ -1,4 +1,4 @@
-"""The analyses of a report: what each of them shows of a log, or why it does not apply to it."""
+"""Sections of a report: tables and picture of each analysis, or the reason why it does not apply to the log."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,7 +13,11 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page. caption: of the picture, for those who do not see it too. left_out: why it does not apply."""
+    """A section of the report page.
+
+    title: heading. picture: figure of the analysis. caption: text below the picture, also read aloud to blind readers.
+    tables: tables of the analysis. left_out: reason why the analysis does not apply; None if it does.
+    """
 
     title: str
     picture: Figure | None = None
@@ -23,7 +27,7 @@ class Section:
 
 
 def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, total: None) -> list[Section]:
-    """Every section of every analysis, in order; on_step(done, total) after each."""
+    """Make the sections of all analyses in order; on_step(done, total) is called after each section."""
     found = []
     parts = [(analysis, section) for analysis in registry.analyses() for section in analysis.sections]
     for k, (analysis, section) in enumerate(parts):

@@ -1,4 +1,4 @@
-"""Temperatures of every degree of freedom and species, which equipartition says are the same."""
+"""Temperature of every degree of freedom and species; by equipartition all are equal."""
 
 from idealgas.analysis.core.declaration import Analysis, Section
 

@@ -1,4 +1,4 @@
-"""The picture of the temperature of every species against time."""
+"""Picture of the temperature of every species against time."""
 
 from matplotlib.figure import Figure
 
@@ -6,11 +6,11 @@ from idealgas.analysis.core.style import COLOURS, GREY, _repeated, panels
 from idealgas.analysis.temperature.measure import Temperature
 
 LEAST_RANGE = 0.05
-"""Share of itself that an axis shows of a conserved quantity: its last digits are of no interest."""
+"""Smallest relative range of the temperature axis, so that rounding of a conserved quantity is not visible."""
 
 
 def temperature_figure(result: Temperature) -> Figure:
-    """Temperature of every species against time; the window is where it is not shaded."""
+    """Picture of the temperature of every species against time; the time before the window is shaded."""
     figure, (ax,) = panels(1)
     edges = result.window.edges
     for entry, colour in zip(result.apart, _repeated(COLOURS), strict=False):

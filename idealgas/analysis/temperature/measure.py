@@ -1,4 +1,4 @@
-"""Equipartition: the temperature of every degree of freedom, species by species."""
+"""Temperature of every degree of freedom of each species, compared with equipartition."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,9 +16,10 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class SpeciesTemperature:
-    """Mean of m vx², m vy² and m v²/2 of the discs of one species, k_B = 1, beside what equipartition gives them.
+    """Temperatures of the discs of one species (energy, k_B = 1), compared with equipartition.
 
-    history: (B,), m v²/2 in every block that was read, those before the window included.
+    species: name. number: of its discs. x, y, both: mean of m vx², m vy² and m v²/2. history: (B,), mean m v²/2 in
+    every block that was read, including those before the window.
     """
 
     species: str
@@ -29,14 +30,18 @@ class SpeciesTemperature:
     history: np.ndarray
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {"x": self.x.as_dict(), "y": self.y.as_dict(), "both": self.both.as_dict()}
         return {"species": self.species, "number": self.number, **values, "history": self.history.tolist()}
 
 
 @dataclass(frozen=True)
 class Temperature:
-    """Temperatures by species, the last of them that of all discs; expected: its E/N if that is known beforehand."""
+    """Temperatures of each species, and last of all discs.
+
+    window: the time that was used. expected: E/N in equilibrium, energy; None if it is not known beforehand. species:
+    temperatures of each species and of all discs.
+    """
 
     window: Window
     expected: float | None
@@ -44,11 +49,11 @@ class Temperature:
 
     @property
     def apart(self) -> tuple[SpeciesTemperature, ...]:
-        """Those that differ: with one species alone, it is all discs."""
+        """Temperatures that are not the same: with one species only those of all discs."""
         return self.species[:1] if len(self.species) == 2 else self.species
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {
             "window": self.window.as_dict(),
             "expected": self.expected,
@@ -63,7 +68,14 @@ def temperature(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Temperature:
-    """Measure the temperatures of a log between two times, by default from detected equilibrium to the end."""
+    """Measure the temperature of every direction of motion, species by species, between two times of a log.
+
+    By equipartition all are the same in equilibrium: m⟨vx²⟩ = m⟨vy²⟩ = m⟨v²⟩/2 = T, with k_B = 1, less what a conserved
+    momentum takes away in a finite gas.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if there are no events in the window.
+    """
     moments = Moments(log.gravity)
     window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
@@ -76,7 +88,7 @@ def temperature(
     sums = moments.flights[:, :, 1:3] / window.width
 
     def entry(name: str, number: int, expected: float | None, directions: np.ndarray) -> SpeciesTemperature:
-        """directions: (B, 2), sums of m vx² and m vy²."""
+        """Temperatures of one species from sums (B, 2) of m vx² and m vy² over its discs."""
         x, y = directions[window.first :].T / number
         history = directions.sum(axis=1) / (2 * number)
         return SpeciesTemperature(

@@ -1,11 +1,11 @@
-"""Tables of temperatures."""
+"""Table of temperatures."""
 
 from idealgas.analysis.core.tables import Table, describe, estimates
 from idealgas.analysis.temperature.measure import Temperature
 
 
 def temperature_tables(result: Temperature) -> list[Table]:
-    """Temperature of every degree of freedom, species by species."""
+    """Table of the temperature of every degree of freedom of each species."""
     rows = [
         (f"{entry.species}: {direction}", estimate)
         for entry in result.species

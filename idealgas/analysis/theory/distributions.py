@@ -1,8 +1,9 @@
 """Probability laws of a gas in equilibrium, each with `pdf`, `cdf` and `mean`.
 
-The velocity laws take `temperature` = mean kinetic energy of the disc (two degrees of freedom, k_B = 1) and `dof` = D,
-the gas's velocity degrees of freedom at fixed total energy. With D = ∞ they are Maxwell-Boltzmann's; otherwise a disc's
-energy over its largest possible value TD/2 follows Beta(1, D/2 - 1): the uniform distribution on a sphere, projected.
+The velocity laws take `temperature`, the mean kinetic energy T of a disc (two degrees of freedom, k_B = 1), and `dof`,
+the number D of velocity degrees of freedom of a gas at fixed total energy. With D = ∞ they are Maxwell-Boltzmann's
+laws. Otherwise the kinetic energy of a disc, divided by its largest possible value TD/2, follows the distribution
+Beta(1, D/2 - 1), the projection of the uniform distribution on a sphere.
 """
 
 import math
@@ -18,26 +19,36 @@ from idealgas.analysis.theory.hard_discs import mean_speed
 
 
 class Law(Protocol):
-    """A continuous distribution of one quantity."""
+    """Continuous probability distribution of one quantity."""
 
     @property
-    def mean(self) -> float: ...
-    def pdf(self, x: np.ndarray) -> np.ndarray: ...
-    def cdf(self, x: np.ndarray) -> np.ndarray: ...
+    def mean(self) -> float:
+        """Mean of the quantity, in its unit."""
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density at the values x, in 1/unit of the quantity; same shape as x."""
+
+    def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a value of at most x; same shape as x."""
 
 
 @dataclass(frozen=True)
 class EnergyLaw:
-    """Kinetic energy of a disc: exponential; at fixed total energy P(> e) = (1 - 2e/TD)^(D/2 - 1)."""
+    """Distribution of the kinetic energy of a disc: exponential; at fixed total energy P(> e) = (1 - 2e/TD)^(D/2 - 1).
+
+    temperature: T, energy. dof: D.
+    """
 
     temperature: float
     dof: float = math.inf
 
     @property
     def mean(self) -> float:
+        """Mean kinetic energy T, energy."""
         return self.temperature
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density of the energies x, 1/energy."""
         share = np.maximum(x, 0.0) / self.temperature
         if math.isinf(self.dof):
             return np.where(np.asarray(x) < 0, 0.0, np.exp(-share) / self.temperature)
@@ -48,6 +59,7 @@ class EnergyLaw:
         return np.where(possible, density, 0.0)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a kinetic energy of at most x."""
         share = np.maximum(x, 0.0) / self.temperature
         if math.isinf(self.dof):
             return -np.expm1(-share)
@@ -57,7 +69,10 @@ class EnergyLaw:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Speed of a disc: f(v) = (m v/T) exp(-m v²/2T), or its counterpart at fixed total energy."""
+    """Distribution of the speed of a disc: f(v) = (m v/T) exp(-m v²/2T), or its counterpart at fixed total energy.
+
+    temperature: T, energy. mass: m of the disc, mass. dof: D.
+    """
 
     temperature: float
     mass: float
@@ -65,19 +80,26 @@ class SpeedLaw:
 
     @property
     def mean(self) -> float:
+        """Mean speed, length/time."""
         return mean_speed(self.temperature, self.mass, self.dof)
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density of the speeds x, time/length."""
         speed = np.maximum(x, 0.0)
         return EnergyLaw(self.temperature, self.dof).pdf(self.mass * speed**2 / 2) * self.mass * speed
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a speed of at most x."""
         return EnergyLaw(self.temperature, self.dof).cdf(self.mass * np.maximum(x, 0.0) ** 2 / 2)
 
 
 @dataclass(frozen=True)
 class ComponentLaw:
-    """One velocity component: normal with variance T/m; at fixed total energy density ∝ (1 - m v²/TD)^((D - 3)/2)."""
+    """Distribution of a velocity component of a disc: normal with mean 0 and variance T/m.
+
+    At fixed total energy its density is proportional to (1 - m v²/TD)^((D - 3)/2). temperature: T, energy. mass: m of
+    the disc, mass. dof: D.
+    """
 
     temperature: float
     mass: float
@@ -85,9 +107,11 @@ class ComponentLaw:
 
     @property
     def mean(self) -> float:
+        """Mean velocity component: 0."""
         return 0.0
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density of the velocity components x, time/length."""
         z = np.asarray(x) * math.sqrt(self.mass / self.temperature)
         if math.isinf(self.dof):
             return np.exp(-(z**2) / 2) * math.sqrt(self.mass / (2 * math.pi * self.temperature))
@@ -95,6 +119,7 @@ class ComponentLaw:
         return norm * np.maximum(1 - z**2 / self.dof, 0.0) ** ((self.dof - 3) / 2)  # D > 3
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a velocity component of at most x."""
         z = np.asarray(x) * math.sqrt(self.mass / self.temperature)
         if math.isinf(self.dof):
             return special.ndtr(z)
@@ -103,7 +128,7 @@ class ComponentLaw:
 
 
 def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -> np.ndarray:
-    """⟨|v - u|⟩ over the velocities u of discs of `mass`, for a disc of given speed v.
+    """Mean relative speed ⟨|v - u|⟩ of a disc of speed v and discs of `mass` with thermal velocities u, length/time.
 
     √(πT/2m) e^(-x/2) [(1 + x) I₀(x/2) + x I₁(x/2)], x = m v²/2T: the mean of a Rice distribution.
     """
@@ -114,12 +139,15 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
 
 @dataclass(frozen=True)
 class _FlightLaw(ABC):
-    """Free flight of a disc of `mass` that meets species j (`masses`) at the mean rate `rates[j]`.
+    """Distribution of the free flights of a disc of `mass` that collides with species j at the mean rate `rates[j]`.
 
-    A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩, w thermal, and leaves a collision
-    with the speed density f(v) ν(v)/Γ (by reversal it is that of the discs about to collide). Partners must be met
-    independently: exact in the dilute limit (Boltzmann). In denser gases discs meet again sooner: at φ = 0.1 to 0.3 the
-    distribution functions were measured to be off by 0.006 at most.
+    A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩ with thermal velocities w, and has
+    after a collision the speed density f(v) ν(v)/Γ (by time reversal that of discs before a collision). The law assumes
+    independent collisions: it is exact in the dilute limit (Boltzmann). In denser gases two discs collide again sooner:
+    at φ = 0.1 to 0.3 the measured distribution functions differ by at most 0.006.
+
+    temperature: T, energy. mass: of the disc, mass. masses: of the discs of each species, mass. rates: collision rates
+    of the disc with each species, 1/time.
     """
 
     temperature: float
@@ -129,9 +157,9 @@ class _FlightLaw(ABC):
 
     @cached_property
     def _nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Speed, probability weight of a flight, and ν at the nodes of a quadrature in the speed."""
+        """Speed, probability weight of a flight and collision rate ν at the nodes of a quadrature over the speed."""
         y, weight = np.polynomial.legendre.leggauss(120)
-        y, weight = 3.5 * (y + 1), 3.5 * weight  # y = v √(m/2T); exp(-7²) is beyond float64
+        y, weight = 3.5 * (y + 1), 3.5 * weight  # y = v √(m/2T); exp(-7²) is negligible in float64
         speed = y * math.sqrt(2 * self.temperature / self.mass)
         rate = np.zeros_like(speed)
         for other, mean_rate in zip(self.masses, self.rates, strict=True):
@@ -141,29 +169,32 @@ class _FlightLaw(ABC):
 
     @abstractmethod
     def _decay(self) -> np.ndarray:
-        """Decay rate of the survival of a flight at each node: per time or per length."""
+        """Decay rate of the survival probability of a flight at each node, in 1/time or 1/length."""
 
     @property
     def mean(self) -> float:
+        """Mean free time (time) or mean free path (length)."""
         return float((self._nodes[1] / self._decay()).sum())
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density of the free times or paths x, 1/time or 1/length."""
         decay = self._decay()
         return np.exp(-np.multiply.outer(np.asarray(x, float), decay)) @ (self._nodes[1] * decay)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a free time or path of at most x."""
         return 1 - np.exp(-np.multiply.outer(np.maximum(x, 0.0), self._decay())) @ self._nodes[1]
 
 
 class FreeTimeLaw(_FlightLaw):
-    """Time between two successive collisions of a disc with other discs; its mean is 1/Γ."""
+    """Distribution of the time between two successive collisions of a disc with other discs; its mean is 1/Γ."""
 
     def _decay(self) -> np.ndarray:
         return self._nodes[2]
 
 
 class FreePathLaw(_FlightLaw):
-    """Length of path between two successive collisions of a disc with other discs; its mean is ⟨v⟩/Γ."""
+    """Distribution of the path between two successive collisions of a disc with other discs; its mean is ⟨v⟩/Γ."""
 
     def _decay(self) -> np.ndarray:
         return self._nodes[2] / self._nodes[0]
@@ -171,16 +202,22 @@ class FreePathLaw(_FlightLaw):
 
 @dataclass(frozen=True)
 class WaitLaw:
-    """Time between successive events of the whole gas: exponential when many discs collide independently."""
+    """Distribution of the time between events of the whole gas: exponential if many discs collide independently.
+
+    rate: events per time, 1/time.
+    """
 
     rate: float
 
     @property
     def mean(self) -> float:
+        """Mean waiting time 1/rate, time."""
         return 1 / self.rate
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density of the waiting times x, 1/time."""
         return self.rate * np.exp(-self.rate * np.asarray(x))
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a waiting time of at most x."""
         return -np.expm1(-self.rate * np.maximum(x, 0.0))

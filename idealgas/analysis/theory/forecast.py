@@ -1,4 +1,4 @@
-"""What kinetic theory expects of a scene before it is run."""
+"""Forecast of a run by kinetic theory: collision rates, number of events and size of the log."""
 
 import math
 from dataclasses import dataclass
@@ -16,15 +16,20 @@ from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
-"""Size of an event's row in the log, by compression..."""
+"""Bytes of one event row in the log, by the kind of compression."""
 
 MORE_BYTES = {"angular_velocity": {"gzip": 7, "none": 8}, "image": {"gzip": 2, "none": 8}}
-"""...and what further columns add to it."""
+"""Bytes that each further column adds to an event row, by the kind of compression."""
 
 
 @dataclass(frozen=True)
 class SpeciesForecast:
-    """One species at the start; collision_rate: collisions per disc and time in equilibrium, None if not known."""
+    """One species: its discs at the start, and its collision rate in equilibrium.
+
+    name: of the species. number: of its discs. radius: length. mass: mass. packing_fraction: area of its discs over the
+    area of the box. temperature: mean kinetic energy of its discs at the start, energy. collision_rate: collisions of
+    one disc with other discs per time, 1/time; None if theory does not know it.
+    """
 
     name: str
     number: int
@@ -37,10 +42,16 @@ class SpeciesForecast:
 
 @dataclass(frozen=True)
 class Forecast:
-    """The gas in equilibrium: rates per time, collision_rate per disc too. Of the run: duration to bytes.
+    """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    None stands for what the theory of a uniform gas that keeps its energy does not know; beyond: the effects that make
-    it so. rough: why rates, and what follows from them, are only about right; empty where they are within 2 %.
+    Values are None if the theory, which is that of a uniform gas of constant energy, does not know them.
+
+    number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
+    the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
+    discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
+    duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
+    bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
+    approximate; empty if their error is below 2 %.
     """
 
     number: int
@@ -59,17 +70,18 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
-"""Properties of the gases that the theory knows."""
+"""Properties that a scene needs for the theory to apply."""
 
 
 ROUGH = 0.02
-"""Relative error of rates from which a forecast is called rough."""
+"""Relative error of rates above which a forecast is marked as approximate."""
 
 
 class _Rates(NamedTuple):
-    """In equilibrium. per_disc: (species,), collisions per disc and time; pairs, hits, trials: numbers per time.
+    """Rates of a gas in equilibrium, in 1/time.
 
-    rough: why they are only about right.
+    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials: pair collisions,
+    wall hits and Monte Carlo trials of the whole gas. rough: why the rates are approximate; empty if they are not.
     """
 
     temperature: float
@@ -81,7 +93,7 @@ class _Rates(NamedTuple):
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
-    """Rates by Enskog's theory at the temperature all species will share; sizes by the stop rule met first."""
+    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule."""
     beyond = scene.lacking(*KNOWN)
     rates = None if beyond else _rates(scene, gas)
     duration = _duration(scene, len(gas), rates)
@@ -117,7 +129,7 @@ def _bytes_a_row(scene: Scene) -> int:
 
 
 def _spin_energy(scene: Scene) -> float:
-    """At the start."""
+    """Total energy of the spins of all discs at the start, energy."""
     if (factor := scene.properties.inertia) is None:
         return 0.0
     energy = 0.0
@@ -137,7 +149,7 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, radius, mass, number)
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
-    per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # no disc meets itself
+    per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, rough=rough)
@@ -152,7 +164,7 @@ def _why_rough(
     periodic: tuple[bool, bool],
     per_disc: np.ndarray,
 ) -> str:
-    """Why Enskog's rates are only about right, as part of a sentence; empty if they are within ROUGH."""
+    """Why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
     theory = box_theory(radius, number, gas.box, periodic)
     if theory.why_not:
         return theory.why_not
@@ -166,7 +178,7 @@ def _why_rough(
 def _rates_without_positions(
     scene: Scene, gas: Gas, temperature: float, radius: np.ndarray, mass: np.ndarray, number: np.ndarray
 ) -> _Rates:
-    """Of a gas without positions, whose pairs are tried at the rate of the fastest there may be."""
+    """Rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
     contacts = hard_discs.contacts_without_positions(radius, number, gas.box)
     per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
@@ -197,7 +209,10 @@ def _wall_hit_rate(
     temperature: float,
     periodic: tuple[bool, bool],
 ) -> float:
-    """Flux onto the lines that the centres reach; hard discs stand Z times as dense there as in the gas."""
+    """Wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
+
+    The density of hard discs at a wall is Z times the mean density.
+    """
     crowding = hard_discs.mixture_compressibility(radius, number, gas.area)
     rate = 0.0
     for r, m, n in zip(radius, mass, number, strict=True):
@@ -211,7 +226,7 @@ def _wall_hit_rate(
 
 
 def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
-    """Time at which the first stop rule is met."""
+    """Simulated time at which the first stop rule is met; None if theory does not know it."""
     run = scene.run
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None

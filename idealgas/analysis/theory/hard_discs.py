@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 from idealgas.physics.contact_value import contact_value
 
 VIRIAL = (1.0, 1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114873, 0.064993, 0.036219, 0.019954)
-"""B_k/B_2^(k-1) for k = 1 … 10: Clisby & McCoy, J. Stat. Phys. 122, 15 (2006)."""
+"""Virial coefficients B_k/B_2^(k-1) for k = 1 to 10 (no unit): Clisby & McCoy, J. Stat. Phys. 122, 15 (2006)."""
 
 FREEZING = 0.70
-"""Packing fraction at which the fluid ends: Engel et al., Phys. Rev. E 87, 042134 (2013)."""
+"""Packing fraction above which the gas is no longer a fluid: Engel et al., Phys. Rev. E 87, 042134 (2013)."""
 
 _SERIES = Polynomial([b * 2.0**k for k, b in enumerate(VIRIAL)])
 _RESUMMED = Polynomial((_SERIES * Polynomial([1.0, -2.0, 1.0])).coef[: len(VIRIAL)])
@@ -27,17 +27,17 @@ _RESUMMED = Polynomial((_SERIES * Polynomial([1.0, -2.0, 1.0])).coef[: len(VIRIA
 
 
 def virial_series(packing_fraction: ArrayLike, terms: int = len(VIRIAL)) -> np.ndarray:
-    """Z = PA/NT, the virial series cut off after B_terms."""
+    """Compressibility factor Z = PA/NT by the virial series with its first `terms` coefficients (`VIRIAL`)."""
     return Polynomial(_SERIES.coef[:terms])(np.asarray(packing_fraction, float))
 
 
 def compressibility(packing_fraction: ArrayLike, number: float = math.inf) -> np.ndarray:
-    """Z = PA/NT of the hard-disc fluid: the virial series to B10 resummed as a polynomial over (1 - φ)².
+    """Compressibility factor Z = PA/NT of the hard-disc fluid: virial series to B10, resummed with 1/(1 - φ)².
 
-    The polynomial's coefficients fall off so fast that the neglected ones hardly matter up to φ = 0.5, as far as it was
-    compared with simulations; towards freezing it is an extrapolation. A closed system of `number` discs has, to first
-    order in 1/N, Z_N = Z - (φ/2N) (φZ)″/(φZ)′ (Lebowitz & Percus, Phys. Rev. 124, 1673 (1961)): at low density the
-    factor 1 - 1/N in the number of pairs.
+    The polynomial over (1 - φ)² has quickly decreasing coefficients, so that the neglected ones are unimportant up to
+    φ = 0.5, where it was compared with simulations; from there to freezing it is an extrapolation. A closed system of
+    `number` discs has, to first order in 1/N, Z_N = Z - (φ/2N) (φZ)″/(φZ)′: Lebowitz & Percus, Phys. Rev. 124, 1673
+    (1961). At low density this is the factor 1 - 1/N in the number of pairs.
     """
     phi = np.asarray(packing_fraction, float)
     if math.isinf(number):
@@ -49,18 +49,18 @@ def compressibility(packing_fraction: ArrayLike, number: float = math.inf) -> np
 
 
 def henderson_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
-    """Z = (1 + φ²/8)/(1 - φ)²: Henderson, Mol. Phys. 30, 971 (1975)."""
+    """Compressibility factor Z = (1 + φ²/8)/(1 - φ)² of hard discs: Henderson, Mol. Phys. 30, 971 (1975)."""
     phi = np.asarray(packing_fraction, float)
     return (1 + phi**2 / 8) / (1 - phi) ** 2
 
 
 def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:
-    """χ = (Z - 1)/2φ of equal discs, by the resummed virial series; number: of the discs of a closed system."""
+    """Contact value χ = (Z - 1)/2φ of equal discs by the resummed virial series, for `number` discs in all."""
     return float((compressibility(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
 def mixture_contact_value(radius: ArrayLike, number: ArrayLike, area: float) -> np.ndarray:
-    """χ_ij of a mixture, shape (S, S): Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
+    """Contact values χ_ij (S, S) of a mixture: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
 
     χ_ij = 1/(1 - φ) + (9/8) (R_i R_j/(R_i + R_j)) π Σ n_k R_k/(1 - φ)²; for one species it is Henderson's χ.
     """
@@ -71,7 +71,7 @@ def mixture_contact_value(radius: ArrayLike, number: ArrayLike, area: float) -> 
 
 
 def mixture_compressibility(radius: ArrayLike, number: ArrayLike, area: float) -> float:
-    """Z = 1 + (π/2NA) Σ N_i N_j σ_ij² χ_ij with the mixture's contact values."""
+    """Compressibility factor Z = 1 + (π/2NA) Σ N_i N_j σ_ij² χ_ij of a mixture, with `mixture_contact_value`."""
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     sigma = radius[:, None] + radius
     pairs = number[:, None] * number * sigma**2 * mixture_contact_value(radius, number, area)
@@ -87,14 +87,13 @@ def confinement(
     periodic: tuple[bool, bool] = (False, False),
     axis: int | None = None,
 ) -> np.ndarray:
-    """How much oftener discs i and j touch in a box than in a part of the plane of its size, (S, S).
+    """Factor (S, S) by which walls change the number of contacts of species i and j, compared with a periodic box.
 
-    Walls hold the centres within (Lx - 2R)(Ly - 2R), which crowds them, and take partners away, which does the
-    opposite. For two discs alone it is exact: the part of the contact circle that stays inside, averaged. In a gas it
-    is so to first order in the density; in simulations Z - 1 follows it within 1e-3 up to φ = 0.5 in boxes of nine
-    diameters or more, and within 1.5 % at φ = 0.3 in one of five. Joined sides are no walls.
-
-    axis: count contacts by what they pass on along it, as the pressure on the walls across it does.
+    Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts, and a disc near a
+    wall has neighbours on one side only, which decreases it. The factor is the average part of the contact circle that
+    lies inside the box. It is exact for two discs alone, and in a gas to first order in the density; `values.ERRORS`
+    has the error that simulations found. Periodic axes have no walls and give the factor 1. With an `axis`, contacts
+    count by the part of the pair virial along it, which the walls across this axis balance.
     """
     radius = np.asarray(radius, float)
     own, other = radius[:, None, None], radius[:, None]
@@ -103,7 +102,7 @@ def confinement(
     for side, is_periodic, component in zip(box, periodic, (np.cos(angle), np.sin(angle)), strict=True):
         if is_periodic:
             continue
-        a, b = side - 2 * own, side - 2 * other  # lengths that the centres reach
+        a, b = side - 2 * own, side - 2 * other  # lengths of the ranges of the centres
         inside = np.clip((a + b) / 2 - (own + other) * np.abs(component), 0.0, np.minimum(a, b))
         share = share * inside * side / (a * b)
     return np.broadcast_to(share, (len(radius), len(radius), len(angle))).mean(axis=2)
@@ -112,10 +111,10 @@ def confinement(
 def box_contacts(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> np.ndarray:
-    """2 σ_ij n_j χ_ij of discs in a closed box, (S, S): their collision rate per relative speed.
+    """Collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of a disc of species i with species j, 1/length.
 
-    No disc meets itself, walls confine the discs, and equal discs have the better χ = (Z - 1)/2φ. Not a number beyond
-    freezing.
+    A disc does not collide with itself, and walls confine the discs (`confinement`). Equal discs have the contact value
+    (Z - 1)/2φ of the resummed virial series, mixtures that of Jenkins & Mancini (1987). Not a number above freezing.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     area = box[0] * box[1]
@@ -131,7 +130,10 @@ def box_contacts(
 
 
 def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:
-    """2 σ_ij n_j χ of discs without positions, (S, S): no disc meets itself, and χ is Henderson's for all."""
+    """Collision rate per relative speed 2 σ_ij n_j χ (S, S) of discs without positions, 1/length.
+
+    A disc does not collide with itself; χ is Henderson's contact value at the total packing fraction.
+    """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     area = box[0] * box[1]
     chi = contact_value(math.pi * (number * radius**2).sum() / area)
@@ -141,7 +143,10 @@ def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[
 def box_compressibility(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
-    """Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij of discs in a closed box: what both virials tend to."""
+    """Compressibility factor Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij in a box: expected value of both virials.
+
+    The contacts are those of `box_contacts`.
+    """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     contacts = box_contacts(radius, number, box, periodic)
     return float(1 + math.pi / 4 * (number[:, None] * (radius[:, None] + radius) * contacts).sum() / number.sum())
@@ -153,7 +158,8 @@ def box_compressibility(
 def finite_speed_factor(dof: float) -> float:
     """Mean speed at fixed total energy over its Maxwell-Boltzmann value: √(D/2) Γ(D/2)/Γ(D/2 + 1/2), about 1 + 1/4D.
 
-    It holds for relative speeds too: both are lengths of a two-dimensional projection of a sphere in D dimensions.
+    dof: D, degrees of freedom that share the energy. The factor holds for relative speeds too: both are lengths of
+    two-dimensional projections of a uniform distribution on a sphere in D dimensions.
     """
     if math.isinf(dof):
         return 1.0
@@ -164,18 +170,18 @@ def finite_speed_factor(dof: float) -> float:
 def mean_speed(temperature: float, mass: float, dof: float = math.inf) -> float: ...
 @overload
 def mean_speed(temperature: float, mass: np.ndarray, dof: float = math.inf) -> np.ndarray: ...
-def mean_speed(temperature, mass, dof=math.inf):
+def mean_speed(temperature: float, mass: float | np.ndarray, dof: float = math.inf) -> float | np.ndarray:
     """⟨v⟩ = √(πT/2m) of discs of a mass, or of each of an array of masses; of a reduced mass a mean relative speed."""
     return np.sqrt(math.pi * temperature / (2 * mass)) * finite_speed_factor(dof)
 
 
 def mean_relative_speed(temperature: float, mass: float, dof: float = math.inf) -> float:
-    """⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass."""
+    """Mean relative speed ⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass, length/time."""
     return math.sqrt(2) * float(mean_speed(temperature, mass, dof))
 
 
 def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.inf) -> np.ndarray:
-    """⟨|v_i - v_j|⟩ = √(πT/2μ_ij), shape (S, S), with the reduced mass μ_ij. mass: (S,)."""
+    """Mean relative speeds ⟨|v_i - v_j|⟩ = √(πT/2μ_ij) (S, S) of species of masses (S,), with reduced masses μ_ij."""
     mass = np.asarray(mass, float)
     return mean_speed(temperature, mass[:, None] * mass / (mass[:, None] + mass), dof)
 
@@ -183,7 +189,10 @@ def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.
 def collision_rate(
     diameter: float, number_density: float, temperature: float, mass: float, packing_fraction: float
 ) -> float:
-    """Collisions with discs per disc and time, Γ = 2σnχ√(πT/m); the gas has NΓ/2 pair collisions per time."""
+    """Collision rate Γ = 2σnχ√(πT/m) of one disc with other discs, 1/time; the gas has NΓ/2 pair collisions per time.
+
+    χ is Henderson's contact value: Enskog's theory.
+    """
     chi = float(contact_value(packing_fraction))
     return 2 * diameter * number_density * chi * mean_relative_speed(temperature, mass)
 
@@ -191,7 +200,7 @@ def collision_rate(
 def mixture_collision_rate(
     radius: ArrayLike, mass: ArrayLike, number: ArrayLike, area: float, temperature: float
 ) -> np.ndarray:
-    """Γ_ij, shape (S, S): rate at which one disc of species i meets discs of species j.
+    """Collision rates Γ_ij (S, S) of one disc of species i with the discs of species j, 1/time.
 
     Γ_ij = 2σ_ij n_j χ_ij √(πT/2μ_ij) with the reduced mass μ_ij. radius, mass, number: (S,).
     """
@@ -201,32 +210,37 @@ def mixture_collision_rate(
 
 
 def mean_free_path(diameter: float, number_density: float, packing_fraction: float) -> float:
-    """λ = ⟨v⟩/Γ = 1/(2√2 σnχ)."""
+    """Mean free path λ = ⟨v⟩/Γ = 1/(2√2 σnχ) of equal discs, length, with Henderson's contact value χ."""
     return 1 / (2 * math.sqrt(2) * diameter * number_density * float(contact_value(packing_fraction)))
 
 
 def effusion_flux(number_density: float, temperature: float, mass: float) -> float:
-    """Discs that cross unit length of a slit per time, one way: n⟨v⟩/π. A reflecting wall is hit at this rate too."""
+    """Flux n⟨v⟩/π through a slit in one direction, in discs per length and time; also the hit rate of a wall."""
     return number_density * mean_speed(temperature, mass) / math.pi
 
 
 def enskog_diffusion(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Self-diffusion D = T/mΓ = √(T/πm)/(2σnχ), Enskog's theory in its first approximation.
+    """Self-diffusion coefficient D = T/mΓ = √(T/πm)/(2σnχ) in the first approximation of Enskog's theory, length²/time.
 
-    Velocities are forgotten like exp(-Γt) in it: Gass, J. Chem. Phys. 54, 1898 (1971).
+    In it the velocity correlation decays like exp(-Γt). Source: Gass, J. Chem. Phys. 54, 1898 (1971).
     """
     return math.sqrt(temperature / (math.pi * mass)) / (2 * diameter * number_density * chi)
 
 
 def enskog_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Shear viscosity η₀ (1/χ + y + 0.8729 χy²), y = πnσ²/2, η₀ = 1.022 √(mT/π)/2σ: Gass, ibid."""
+    """Shear viscosity η₀ (1/χ + y + 0.8729 χy²) by Enskog's theory, mass/time.
+
+    y = πnσ²/2 and η₀ = 1.022 √(mT/π)/2σ: Gass, J. Chem. Phys. 54, 1898 (1971).
+    """
     y = math.pi * number_density * diameter**2 / 2
     dilute = 1.022 * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
     return dilute * (1 / chi + y + 0.8729 * chi * y * y)
 
 
 def long_time_tail(time: ArrayLike, number_density: float, diffusion: float, kinematic_viscosity: float) -> np.ndarray:
-    """⟨v(0)·v(t)⟩/⟨v²⟩ → 1/(8πn(D + ν)t): Alder & Wainwright, Phys. Rev. A 1, 18 (1970); Ernst, Hauge & van Leeuwen,
-    Phys. Rev. Lett. 25, 1254 (1970).
+    """Velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at late times t (no unit).
+
+    Sources: Alder & Wainwright, Phys. Rev. A 1, 18 (1970); Ernst, Hauge & van Leeuwen, Phys. Rev. Lett. 25, 1254
+    (1970).
     """
     return 1 / (8 * math.pi * number_density * (diffusion + kinematic_viscosity) * np.asarray(time, float))

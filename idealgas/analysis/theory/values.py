@@ -1,15 +1,15 @@
 """Theory with its own error and range: the pressure and the collision rates of hard discs in a box.
 
-Where a theory does not hold there is no value, only the reason. Errors are of one standard deviation, so that a
-measurement deviates from theory by so many √(s.e.² + error²).
+Outside its range a theory has no value, only a reason. Errors are standard deviations, to be combined with those of a
+measurement as √(s.e.² + error²).
 
 Resummed virial series (`hard_discs.compressibility`): within 1.5e-4 of Z - 1 up to φ = 0.5 and 2.5e-4 at 0.6, by
 molecular dynamics (Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985)) and by this engine. Above, the error grows by a
 factor e every 0.0166 in φ: measured with 870 discs, 8e-4 at 0.62 and 3e-3 at 0.64; 1.7 % at 0.67. No value above 0.62.
 
 Finite gases (`hard_discs.box_compressibility`): the first order in 1/N and in the walls. Its error is what simulations
-of 3 to 400 discs found (ERRORS, made by tests/physics/test_theory_errors.py); where it exceeds a tenth of Z - 1 there
-is no value. Two discs are exact.
+of 3 to 400 discs found (ERRORS; tests/physics/test_theory_errors.py repeats them); where it exceeds a tenth of Z - 1
+there is no value. Two discs are exact.
 """
 
 import math
@@ -26,18 +26,18 @@ HIGHEST = 0.62
 """Packing fraction up to which the resummed series is used."""
 
 LARGEST_ERROR = 0.1
-"""Of Z - 1, up to which a formula counts as a theory."""
+"""Largest relative error of Z - 1 with which a formula counts as a theory."""
 
 PUBLISHED = {0.670: (7.98678, 3e-5), 0.680: (8.51325, 4e-5), 0.690: (8.96990, 8e-5), 0.700: (9.1297, 2e-4)}
 """βP(2R)² and its error by packing fraction, of 870 discs in a square periodic box: Li, Nishikawa, Höllmer, Carillo,
 Maggs & Krauth, J. Chem. Phys. 157, 234111 (2022)."""
 
 PUBLISHED_NUMBER, SAME_FRACTION, SLOPE = 870, 1e-4, 50.0
-"""Discs of the published simulations, how near a packing fraction must be to theirs, and dZ/dφ there at most."""
+"""Number of discs in the published simulations, largest allowed distance from their φ, and largest dZ/dφ there."""
 
 TOO_SLOW = ((0.0, 0.1, 0.3, 0.45), (0.0, 0.11, 0.25, 0.31))
-"""By how much Enskog's self-diffusion falls short, by packing fraction: measured with 500 discs, and it grows with N.
-Above 0.45 it becomes less again: 0.13 at 0.55 and 0.04 at 0.62."""
+"""Packing fractions, and the part by which the measured self-diffusion exceeds Enskog's there: with 500 discs, more
+with larger N. Above 0.45 it decreases again, to 0.13 at 0.55 and 0.04 at 0.62."""
 
 FRACTIONS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 NUMBERS = (3, 4, 6, 10, 20, 50, 100)
@@ -70,34 +70,35 @@ ERRORS = {
         (0.001, 0.002, 0.003, 0.004, 0.008, 0.008, 0.018),
     ),
 }
-"""Error of Z - 1 over Z - 1 by NUMBERS (rows) and FRACTIONS, of equal discs in a square box: of the virials where all
-sides are periodic, and where not; of the pressure along one axis where the two differ. In a longer box it is at most
-that of as many discs as the square of its shorter side holds."""
+"""Relative error of Z - 1 by number of discs (rows, NUMBERS) and packing fraction (columns, FRACTIONS) in a square box:
+by the virials in a periodic box and in one with walls; by the pressure along one axis if the two axes differ. In a
+longer box the error is at most that of the number of discs in a square of its shorter side."""
 
 
 @dataclass(frozen=True)
 class Theory:
-    """What theory says, its own error (one standard deviation), and which theory it is."""
+    """Value of a quantity by theory. error: standard deviation of its error, in the same unit. source: which theory."""
 
     value: float
     error: float
     source: str
 
     def times(self, factor: float) -> "Theory":
-        """Of a quantity that is so many times as large."""
+        """Theory of the quantity multiplied by a factor."""
         return Theory(self.value * factor, self.error * abs(factor), self.source)
 
 
 class NoTheoryError(ValueError):
-    """Theory has no value here; the message says why, as part of a sentence."""
+    """Theory has no value; the message is the reason, as part of a sentence."""
 
 
 class BoxTheory(NamedTuple):
-    """Z = PA/NT of a gas in a box by each way of measuring, and its rates; None without a theory or without a wall.
+    """Theory of Z = PA/NT of a gas in a box for each way of measuring it, and of its contacts.
 
-    pairs, walls: by the virials. sides: (x, y), by the force on the walls across x and across y, over the whole length
-    of the box's side. contacts: (S, S), 2 σ_ij n_j χ_ij as `hard_discs.box_contacts`, and rate_error, (S, S), its
-    relative error; not a number without a theory. why_not: why there is none; empty where there is.
+    pairs, walls: Z by the virial of the pairs and of the walls. sides: Z by the force on the walls across x and across
+    y, divided by the whole length of the side. None without a theory, or without such walls. contacts: (S, S),
+    2 σ_ij n_j χ_ij as from `hard_discs.box_contacts`. rate_error: (S, S), relative error of the contacts. Both nan
+    without a theory. why_not: why there is no theory; empty if there is one.
     """
 
     pairs: Theory | None
@@ -109,7 +110,11 @@ class BoxTheory(NamedTuple):
 
 
 def fluid(packing_fraction: float) -> Theory:
-    """Z of an endless fluid of equal discs. NoTheoryError above φ = 0.62."""
+    """Compressibility factor Z of an infinite fluid of equal discs.
+
+    Raises:
+        NoTheoryError: above φ = 0.62.
+    """
     if packing_fraction > HIGHEST:
         raise NoTheoryError(f"the packing fraction is above {HIGHEST:g}, where the virial series ends to hold")
     z = float(hard_discs.compressibility(packing_fraction))
@@ -117,7 +122,7 @@ def fluid(packing_fraction: float) -> Theory:
 
 
 def diffusion_error(packing_fraction: float) -> float:
-    """Relative error of Enskog's self-diffusion, which knows of no long-time tail."""
+    """Relative error of Enskog's self-diffusion coefficient, which lacks the long-time tail."""
     return float(np.interp(packing_fraction, *TOO_SLOW))
 
 
@@ -129,14 +134,19 @@ def box_theory(
     *,
     ergodic: bool = True,
 ) -> BoxTheory:
-    """The pressure and the rates of a uniform gas at its own N, in its own box. radius, number: (S,), by species.
+    """Theory of the pressure and of the contacts of a uniform gas of finite N in its box.
 
-    ergodic: whether the discs come everywhere that their energy allows; without that theory has no value.
+    Args:
+        radius: radius of each species, (S,), length.
+        number: number of discs of each species, (S,).
+        box: width and height of the box, length.
+        periodic: whether the box is periodic along x and along y.
+        ergodic: False for a gas that does not reach all states of its energy, of which theory knows nothing.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     try:
         if not ergodic:
-            raise NoTheoryError("two discs without total momentum never come to most places in a box")
+            raise NoTheoryError("two equal discs that start without momentum do not reach all states between walls")
         if number.sum() == 2:
             return _two(radius, number, box, periodic)
         if len(radius) > 1 and np.ptp(radius) > 0:
@@ -192,11 +202,11 @@ def _equal_discs(
 def _mixture(
     radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]
 ) -> BoxTheory:
-    """By Jenkins and Mancini, in simulations of 45 to 400 discs, ratios of radii 2 to 100, φ = 0.1 to 0.6.
+    """Theory of a mixture by Jenkins and Mancini, with the errors found in simulations.
 
-    Its Z - 1 is too large by as much as Henderson's of equal discs. Rates of single pairs of species are off by up to
-    0.04 φ more; those of large discs among many small ones, which push them together, by as much more as they are
-    larger than the mean.
+    In 45 to 400 discs with ratios of radii 2 to 100 at φ = 0.1 to 0.6, Z - 1 is too large by as much as Henderson's of
+    equal discs. The rates of single pairs of species have an additional error of up to 0.04 φ; for two discs larger
+    than the mean, which many small ones push together, it is larger by the ratio of their radius to the mean radius.
     """
     n = int(number.sum())
     phi = math.pi * float((number * radius**2).sum()) / (box[0] * box[1])
@@ -217,7 +227,7 @@ def _mixture(
 
 
 def mixture_error(packing_fraction: float) -> float:
-    """Error of Z - 1 over Z - 1 of endless mixtures by Jenkins and Mancini: that of Henderson's equal discs."""
+    """Relative error of Z - 1 of infinite mixtures by Jenkins and Mancini: that of Henderson's for equal discs."""
     series, z = fluid(packing_fraction), float(hard_discs.henderson_compressibility(packing_fraction))
     return math.hypot(z - series.value, series.error) / (series.value - 1)
 
@@ -234,12 +244,16 @@ def _published(n: int, phi: float, box: tuple[float, float], periodic: tuple[boo
 
 
 def _series_error(phi: float) -> float:
-    """Of Z - 1 over Z - 1."""
+    """Relative error of Z - 1 by the resummed virial series."""
     return float(np.exp(np.interp(phi, (0.5, 0.6, 0.67), np.log((1.5e-4, 2.5e-4, 1.7e-2)))))
 
 
 def _finite_error(kind: str, n: int, radius: float, phi: float, box: tuple[float, float]) -> float:
-    """Error of Z - 1 over Z - 1 of the formula for finite gases: interpolated in ERRORS. NoTheoryError out of range."""
+    """Relative error of Z - 1 by the formula for finite gases, interpolated in ERRORS.
+
+    Raises:
+        NoTheoryError: outside the range of simulations, or if the error is too large.
+    """
     across = min(box) / (2 * radius)
     n_square = min(n, 4 * phi / math.pi * across**2 * (1 + 1e-9))  # discs in the square of the shorter side
     if n_square < NUMBERS[0]:

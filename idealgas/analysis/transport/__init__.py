@@ -1,13 +1,13 @@
-"""How discs move among each other: collisions, memory of the velocity, diffusion, and neighbours."""
+"""Transport: collision rates, free paths, velocity correlation, diffusion and pair distribution."""
 
 from idealgas.analysis.core.declaration import Analysis, Section
 
 ANALYSIS = Analysis(
     __name__,
-    help="""Measure collision rates, free paths, the memory of velocities, diffusion and the pair distribution.
+    help="""Measure collision rates, free paths, velocity correlation, diffusion and the pair distribution.
 
-    Beside them stand kinetic theory's rates and Enskog's diffusion; the distribution of free paths is that of `idealgas
-    histogram --quantity free-path`.
+    They are compared with the rates of kinetic theory and Enskog's diffusion coefficient. `idealgas histogram
+    --quantity free-path` measures the distribution of free paths.
     """,
-    sections=(Section("Transport", "Memory of the velocity, mean square displacement and pair distribution"),),
+    sections=(Section("Transport", "Velocity correlation, mean square displacement and pair distribution"),),
 )

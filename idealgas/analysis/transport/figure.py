@@ -1,4 +1,4 @@
-"""The picture of a gas's transport."""
+"""Picture of the transport in a gas."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,7 +8,7 @@ from idealgas.analysis.transport.measure import Transport
 
 
 def transport_figure(result: Transport) -> Figure:
-    """Memory of velocities, mean square displacement, and pair distribution."""
+    """Picture of velocity correlation, mean square displacement and pair distribution."""
     figure, (correlation, displacement, pairs) = panels(3)
     for entry, colour in zip(result.diffusion, COLOURS * len(result.diffusion), strict=False):
         correlation.errorbar(entry.lag, entry.correlation, entry.correlation_error, color=colour, label=entry.species)

@@ -1,7 +1,7 @@
-"""How discs move among each other: collisions, memory of the velocity, diffusion, and neighbours.
+"""Transport: collision rates, free paths, velocity correlation, diffusion and pair distribution.
 
-Rates and free paths count every event of the window; velocities and displacements are those of discs at evenly spaced
-instants, exact by their events.
+Rates and free paths count every event of the window. Velocity correlation and displacement use the exact positions and
+velocities of discs at evenly spaced instants.
 """
 
 import math
@@ -32,20 +32,22 @@ from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import UserError
 from idealgas.log import Log
 
-LAGS = 200  # steps of the correlation functions
-LONGEST_LAG = 20.0  # in mean free times, of which every step is a tenth
+LAGS = 200  # number of steps of the correlation functions
+LONGEST_LAG = 20.0  # mean free times; a step is a tenth of a mean free time
 FEWEST_SEGMENTS, MOST_SEGMENTS = 8, 64
-MOST_SAMPLES = 2**21  # discs times instants
-FITTED_FROM = 0.5  # share of the longest lag from which on displacements grow by diffusion
+MOST_SAMPLES = 2**21  # largest number of discs times instants
+FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
 
 
 @dataclass(frozen=True)
 class Diffusion:
-    """One species. lag: (L,), time. correlation: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩; displacement: (L,), mean square, length².
+    """Velocity correlation and diffusion of one species at L lags.
 
-    Errors beside both. tail: (L,), what becomes of the correlation by theory, for one species alone. coefficient: D, a
-    quarter of the slope of the displacement at late lags; theory: Enskog's.
-    velocity_correlation_time: ∫ correlation dt to the last lag.
+    species: name. lag: (L,), time. correlation, correlation_error: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩ and its standard error (no
+    unit). displacement, displacement_error: (L,), mean square displacement and its standard error, length². tail: (L,),
+    correlation at late times by theory; None for several species or above freezing. coefficient: diffusion coefficient
+    D, a quarter of the slope of the displacement at late lags, length²/time; its theory is Enskog's.
+    velocity_correlation_time: integral of the correlation up to the last lag, time.
     """
 
     species: str
@@ -59,7 +61,7 @@ class Diffusion:
     velocity_correlation_time: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         series = ("lag", "correlation", "correlation_error", "displacement", "displacement_error")
         return {
             "species": self.species,
@@ -72,20 +74,24 @@ class Diffusion:
 
 @dataclass(frozen=True)
 class Contact:
-    """χ, the pair distribution at contact, by the rate of collisions."""
+    """Contact value χ of the pair distribution of two species (no unit), from their collision rate."""
 
     species: str
     other: str
     value: Estimate
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return {"species": self.species, "other": self.other, "value": self.value.as_dict()}
 
 
 @dataclass(frozen=True)
 class Transport:
-    """All of it, species by species. walled: whether walls turn diffusing discs back."""
+    """Transport in the gas of one log.
+
+    window: the time that was used. walled: whether walls reflect diffusing discs. collision_rates, contacts,
+    pair_distributions: of each pair of species. free_paths, diffusion: of each species.
+    """
 
     window: Window
     walled: bool
@@ -96,7 +102,7 @@ class Transport:
     pair_distributions: tuple[PairDistribution, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {
             name: [entry.as_dict() for entry in getattr(self, name)]
             for name in ("collision_rates", "free_paths", "contacts", "diffusion", "pair_distributions")
@@ -110,7 +116,15 @@ def transport(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Transport:
-    """Measure a log between two times, by default from detected equilibrium to the end."""
+    """Measure how discs of a gas move about between two times of its log, and compare with Enskog's theory.
+
+    Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
+    displacement, velocity autocorrelation and from the first the diffusion coefficient; pair distribution functions.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    events are read. Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects
+    other than periodic sides.
+    """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
@@ -133,7 +147,7 @@ def transport(
 def _contacts(
     discs: Composition, area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
 ) -> tuple[Contact, ...]:
-    """Γ_ij over what it would be if discs did not crowd each other. No disc meets itself."""
+    """Contact values χ_ij: measured collision rates Γ_ij over those of discs at random positions."""
     contacts = []
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
     for k, found in enumerate(rates):
@@ -172,7 +186,7 @@ def _diffusion(
 
 
 def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float, float, float] | None:
-    """(number density, D, kinematic viscosity); None above the packing fractions at which χ is known."""
+    """Number density, Enskog's diffusion coefficient and kinematic viscosity of equal discs; None above φ = 0.62."""
     gas = log.discs
     if gas.packing_fraction > HIGHEST:
         return None
@@ -191,7 +205,10 @@ def _of_species(
     enskog: tuple[float, float, float] | None,
     off: float,
 ) -> Diffusion:
-    """places, velocities: (segments, L, discs, 2). off: relative error of Enskog's D."""
+    """Diffusion of one species from positions and velocities (segments, L, discs, 2).
+
+    off: relative error of Enskog's diffusion coefficient.
+    """
     correlation = autocorrelation(velocities)
     square = correlation[:, 0].mean()
     displacement = mean_square_displacement(places)
@@ -213,7 +230,7 @@ def _of_species(
 
 
 def autocorrelation(velocities: np.ndarray) -> np.ndarray:
-    """(segments, L): ⟨v(t)·v(t + lag)⟩ over discs and over the times t of each segment.
+    """Velocity autocorrelation ⟨v(t)·v(t + lag)⟩ (segments, L), averaged over discs and the times t of each segment.
 
     velocities: (segments, L, discs, 2), at equal steps.
     """
@@ -224,13 +241,13 @@ def autocorrelation(velocities: np.ndarray) -> np.ndarray:
 
 
 def mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """(segments, L): ⟨|r(t + lag) - r(t)|²⟩ over discs and over the times t of each segment.
+    """Mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and times t of a segment, length².
 
-    places: (segments, L, discs, 2), at equal steps. By Σ r² and the autocorrelation of places: Calandrini et al.,
-    Collection SFN 12, 201 (2011).
+    places: (segments, L, discs, 2), at equal steps. It is computed from Σ r² and the autocorrelation of the
+    positions: Calandrini et al., Collection SFN 12, 201 (2011).
     """
     length = places.shape[1]
-    places = places - places[:, :1]  # keeps the digits
+    places = places - places[:, :1]  # smaller numbers keep more digits
     square = (places**2).sum(axis=3).mean(axis=2)
     both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
     steps = np.arange(length)

@@ -1,4 +1,4 @@
-"""The pair distribution g(r) of discs at some instants."""
+"""Pair distribution g(r) of discs, averaged over several instants."""
 
 import math
 from dataclasses import dataclass
@@ -10,14 +10,18 @@ from scipy.spatial import cKDTree
 from idealgas.analysis.core.composition import Composition
 from idealgas.log import Log
 
-FRAMES = 64  # instants, at most
+FRAMES = 64  # number of instants
 BINS_A_DIAMETER = 20
-REACH = 5.0  # in units of the sum of the radii
+REACH = 5.0  # largest distance, in units of the sum of the radii
 
 
 @dataclass(frozen=True)
 class PairDistribution:
-    """g(r) of species and other. edges: (bins + 1,), length, from contact on. value, error: (bins,)."""
+    """Pair distribution g(r) of two species (no unit).
+
+    species, other: names of the species. edges: (bins + 1,), edges of the bins from contact on, length. value, error:
+    (bins,), g(r) and its standard error.
+    """
 
     species: str
     other: str
@@ -26,13 +30,16 @@ class PairDistribution:
     error: np.ndarray
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         values = {name: getattr(self, name).tolist() for name in ("edges", "value", "error")}
         return {"species": self.species, "other": self.other, **values}
 
 
 def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:
-    """Of every pair of species; in a box with walls beside how often discs are so far apart by chance."""
+    """Pair distribution of every pair of species between two times.
+
+    In a box with walls the numbers of pairs are divided by those of discs at random positions in the same box.
+    """
     sigma = discs.radius[:, None] + discs.radius
     pairs = [(i, j) for i in range(len(discs.name)) for j in range(i, len(discs.name))]
     edges = {}
@@ -43,10 +50,10 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
     members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
     box = np.array(log.box)
-    turn = np.where(log.periodic, box, 0.0)  # 0: no images along this axis
+    period = np.where(log.periodic, box, 0.0)  # 0: no images along this axis
     for state in log.frames(np.linspace(start, end, FRAMES)):
         inside = np.where(log.periodic, np.clip(state.position, 0.0, np.nextafter(box, 0.0)), state.position)
-        trees = [cKDTree(inside[ids], boxsize=turn) for ids in members]
+        trees = [cKDTree(inside[ids], boxsize=period) for ids in members]
         for i, j in pairs:
             found = trees[i].count_neighbors(trees[j], edges[i, j], cumulative=True)
             counts[i, j].append(np.diff(found))
@@ -56,7 +63,7 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
 def _normalised(
     log: Log, discs: Composition, i: int, j: int, edges: np.ndarray, counts: np.ndarray
 ) -> PairDistribution:
-    """counts: (frames, bins), each pair of like discs twice."""
+    """Pair distribution from numbers of pairs (frames, bins), in which a pair of the same species counts twice."""
     reach = [
         (side, side) if periodic else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
         for side, periodic in zip(log.box, log.periodic, strict=True)
@@ -69,7 +76,7 @@ def _normalised(
 
 
 def chance_within(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
-    """Probability that two points at random, in rectangles of sides `reach` about one centre, are closer than r."""
+    """Probability that two random points in concentric rectangles of sides `reach` are closer than the distances r."""
     angle = (np.arange(720) + 0.5) / 720 * math.pi / 2
     steps = np.linspace(0.0, 1.0, 65)
     rho = (r[:, None] * steps)[:, :, None]

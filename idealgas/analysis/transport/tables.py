@@ -1,15 +1,15 @@
-"""Tables of transport."""
+"""Tables of the transport in a gas."""
 
 from dataclasses import replace
 
 from idealgas.analysis.core.tables import Table, collision_tables, describe, estimates
 from idealgas.analysis.transport.measure import Transport
 
-WALLED = "Walls turn discs back: D is that of an endless gas only in a box much wider than their way."
+WALLED = "Walls reflect discs: D is that of an infinite gas only if the box is much wider than their displacement."
 
 
 def transport_tables(result: Transport) -> list[Table]:
-    """Collisions, neighbours at contact, and diffusion, species by species."""
+    """Tables of collisions, pair distribution at contact, and diffusion of each species."""
     rates, paths = collision_tables(result.collision_rates, result.free_paths)
     contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in result.contacts]
     diffusion = [

@@ -1,4 +1,4 @@
-"""Where some discs are and how they move at many instants, exactly, from their events."""
+"""Exact positions and velocities of some discs at many instants, from their events."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from idealgas.physics.motion import position_after
 
 
 def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and velocities (G, M, 2) of M discs at G increasing times; periodic sides are unwrapped.
+    """Positions (length) and velocities (length/time) of M discs at G increasing times, each (G, M, 2).
 
-    For flights along straight lines.
+    Positions are unwrapped along periodic axes. Flights must be straight lines, without gravity.
     """
     state = log.state_at(times[0])
     box = np.array(log.box)

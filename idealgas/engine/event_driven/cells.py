@@ -1,4 +1,7 @@
-"""Square-ish cells, at least one diameter wide, with a ring of empty ones around them; each holds a chain of discs."""
+"""Cells of the neighbour search: nearly square, at least one diameter wide, with a ring of empty ones around them.
+
+Each cell has a doubly linked list of the discs whose centres it contains.
+"""
 
 import math
 from typing import NamedTuple
@@ -7,17 +10,25 @@ import numpy as np
 
 from idealgas._jit import aligned, inline
 
-LINK = np.dtype([("next", "i4"), ("previous", "i4")], align=True)
-MARGIN = 1e-9
-MOST_A_SIDE = 30_000  # a disc's cell is stored in 16 bits
+LINK = np.dtype([("next", "i4"), ("previous", "i4")], align=True)  # indices of discs, or -1
+MARGIN = 1e-9  # by which a cell is wider than a diameter, relative
+MOST_A_SIDE = 30_000  # columns or rows: a disc's are stored in 16 bits
 
 U = np.uintp
 
 
 class Cells(NamedTuple):
-    """head: (rows * columns,) i4, first disc of each cell or -1. link: (N,) LINK. width, height: of a cell, length.
+    """Cells of the neighbour search.
 
-    columns, rows: cells along each axis, ring included. Lx, Ly: box.
+    Attributes:
+        head: (rows * columns,) i4, index of the first disc of each cell, or -1.
+        link: (N,) LINK, index of the next and the previous disc in the same cell, or -1.
+        width: width of a cell, length.
+        height: height of a cell, length.
+        columns: number of cells along x, ring included.
+        rows: number of cells along y, ring included.
+        Lx: width of the box, length.
+        Ly: height of the box, length.
     """
 
     head: np.ndarray
@@ -31,12 +42,15 @@ class Cells(NamedTuple):
 
 
 def discs_per_cell(packing_fraction: float) -> float:
-    """Mean filling that was fastest: 0.5 at packing fractions from 0.1 up, 1 at 0.01, 2 at 0.001."""
+    """Mean number of discs per cell that was fastest: 0.5 at packing fractions from 0.1 up, 1 at 0.01, 2 at 0.001."""
     return min(max(0.5 * (0.1 / max(packing_fraction, 1e-9)) ** 0.3, 0.5), 4.0)
 
 
 def make_cells(n: int, box: tuple[float, float], largest_radius: float, filling: float) -> Cells:
-    """Empty cells for n discs with about `filling` discs each, never smaller than the largest diameter."""
+    """Empty cells for n discs, never smaller than the largest diameter.
+
+    box: width and height, length. largest_radius: length. filling: mean number of discs per cell.
+    """
     Lx, Ly = box
     size = max(math.sqrt(Lx * Ly * filling / n), 2.0 * largest_radius * (1.0 + MARGIN))
     columns, rows = (min(max(int(length / size), 1), MOST_A_SIDE) for length in box)
@@ -46,7 +60,10 @@ def make_cells(n: int, box: tuple[float, float], largest_radius: float, filling:
 
 
 def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
-    """Column and row (N,) of positions (N, 2); a disc that rounding put outside the box belongs to the cell there."""
+    """Column and row (N,) of the cells of positions (N, 2), length.
+
+    A disc that rounding put outside the box belongs to the nearest cell.
+    """
     column = np.clip((position[:, 0] / cells.width).astype(np.int64) + 1, 1, cells.columns - 2)
     row = np.clip((position[:, 1] / cells.height).astype(np.int64) + 1, 1, cells.rows - 2)
     return column, row
@@ -60,7 +77,7 @@ def cell_index(cells, disc):
 
 @inline
 def enter(cells, i, cell):
-    """Put disc i at the head of a cell's chain."""
+    """Insert disc i at the head of a cell's list."""
     head = cells.head[U(cell)]
     link = cells.link[U(i)]
     link.next = head
@@ -72,7 +89,7 @@ def enter(cells, i, cell):
 
 @inline
 def leave(cells, i, cell):
-    """Take disc i out of a cell's chain."""
+    """Remove disc i from a cell's list."""
     link = cells.link[U(i)]
     if link.previous >= 0:
         cells.link[U(link.previous)].next = link.next

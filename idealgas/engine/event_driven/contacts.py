@@ -1,4 +1,4 @@
-"""The earliest contact of a disc: with the discs of the cells around it and the wall segments of its own."""
+"""Next contact of a disc: with the discs in the cells around it, and with the wall segments of its own cell."""
 
 import numpy as np
 
@@ -16,8 +16,11 @@ U = np.uintp
 
 
 @inline
-def place(index, count, is_periodic):
-    """A column or row, and the image it is met in, for an index that may lie beyond joined sides."""
+def wrapped_index(index, count, is_periodic):
+    """Column or row of a cell, wrapped along a periodic axis, and the image in which the cell is seen: -1, 0 or 1.
+
+    count: number of columns or rows, ring included.
+    """
     if is_periodic:
         if index < 1:
             return index + count - 2, -1
@@ -28,14 +31,17 @@ def place(index, count, is_periodic):
 
 @inline
 def gather_line(state, count, column, row, along_y, periodic):
-    """Put the first discs of three cells in a row or column, from (column, row) on, behind `count` candidates."""
+    """Append the first discs of three cells in a row or column, from (column, row) on, to `count` candidates.
+
+    Returns the new number of candidates.
+    """
     cells = state.cells
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
     for step in range(3):
         if periodic is not None:
-            c, image_x = place(column + (0 if along_y else step), cells.columns, periodic.x)
-            r, image_y = place(row + (step if along_y else 0), cells.rows, periodic.y)
+            c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
+            r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
             cell = r * cells.columns + c
             record_image(state.images, count, image_x, image_y)
         j = cells.head[U(cell)]
@@ -47,7 +53,7 @@ def gather_line(state, count, column, row, along_y, periodic):
 
 @inline
 def gather_block(state, disc, periodic):
-    """Make the first discs of a disc's own and the eight cells around it the candidates; return how many."""
+    """Make the first discs of a disc's own cell and of the eight around it the candidates; return their number."""
     column = np.int64(disc.column) - 1
     row = np.int64(disc.row) - 1
     count = gather_line(state, 0, column, row, False, periodic)
@@ -57,7 +63,7 @@ def gather_block(state, disc, periodic):
 
 @inline
 def images_to(state, k, ids, i, j, periodic):
-    """Box lengths between the records of disc i and candidate k, disc j."""
+    """Numbers of box lengths (x, y) between the records of disc i and of disc j, which is candidate k."""
     if periodic is not None:
         return images_between(periodic, ids[U(i)], ids[U(j)], image_of(state.images, k))
     return NO_IMAGES
@@ -65,7 +71,7 @@ def images_to(state, k, ids, i, j, periodic):
 
 @inline
 def store_images(prediction, images, periodic):
-    """Remember how many box lengths away a disc meets its partner."""
+    """Store in a prediction the numbers of box lengths (x, y) to the partner, where sides are periodic."""
     if periodic is not None:
         prediction.image_x = images[0]
         prediction.image_y = images[1]
@@ -73,7 +79,7 @@ def store_images(prediction, images, periodic):
 
 @inline
 def store_contact(state, record, ids, i, j, k, time, periodic):
-    """Make disc j, candidate k, the partner of disc i's contact."""
+    """Store the contact of disc i with disc j, candidate k, at a local time as disc i's next."""
     prediction = state.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
@@ -83,9 +89,10 @@ def store_contact(state, record, ids, i, j, k, time, periodic):
 
 @inline
 def test_candidates(record, ids, state, count, i, now, effects):
-    """Keep disc i's earliest contact among the candidates; the chains behind them are appended on the way.
+    """Store disc i's earliest contact among the candidates, extended by the further discs of their cells.
 
-    The quick loop has no branches; ties and contacts at this very instant are rare and settled by `test_carefully`.
+    The fast loop has no branches. Simultaneous contacts and contacts at the present time are rare; `resolve_ties`
+    decides them.
     """
     candidates = state.candidates
     disc = record[U(i)]
@@ -116,7 +123,10 @@ def test_candidates(record, ids, state, count, i, now, effects):
 
 @njit
 def resolve_ties(record, ids, state, count, i, effects):
-    """What `test_candidates` is for, with the rules for ties and for collisions that are done."""
+    """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
+
+    It does the work of `test_candidates`, and leaves out collisions that would change no digit of a velocity.
+    """
     prediction = state.prediction[U(i)]
     own = np.int64(ids[U(i)])
     for k in range(count):
@@ -137,7 +147,7 @@ def resolve_ties(record, ids, state, count, i, effects):
 
 @inline
 def test_segments(record, ids, state, i, segments, effects):
-    """Keep disc i's earliest contact among the wall segments of its cell."""
+    """Store disc i's contact with a wall segment of its cell if that is its earliest."""
     if segments is not None:
         cell = U(cell_index(state.cells, record[U(i)]))
         prediction = state.prediction[U(i)]
@@ -162,7 +172,7 @@ def test_segments(record, ids, state, i, segments, effects):
 
 @inline
 def predict_contact(record, ids, state, i, now, effects):
-    """Disc i's earliest contact with any disc of its own and the eight cells around, or a segment of its own."""
+    """Find disc i's earliest contact with a disc in its own cell or the eight around it, or with a wall segment."""
     prediction = state.prediction[U(i)]
     prediction.contact = NO_CONTACT
     prediction.partner = -1
@@ -174,7 +184,10 @@ def predict_contact(record, ids, state, i, now, effects):
 
 @inline
 def extend_contact(record, ids, state, i, crossing_code, now, effects):
-    """After a step into the next cell: test the three cells that came within reach; the contact so far stays valid."""
+    """Update disc i's contact after it crossed into a new cell: test the three cells that came within reach.
+
+    The contact found before stays valid. crossing_code: direction of the crossing, see PREDICTION.
+    """
     disc = record[U(i)]
     forward = 1 if crossing_code & 1 else -1
     along_y = crossing_code >= 2

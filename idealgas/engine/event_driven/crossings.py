@@ -1,4 +1,4 @@
-"""When a disc leaves its cell or meets a side of the box, and the step into the next cell."""
+"""The time at which a disc crosses into the next cell or meets a side of the box, and the crossing itself."""
 
 import numpy as np
 
@@ -18,7 +18,11 @@ U = np.uintp
 
 @inline
 def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic):
-    """Time, whether forward, and whether at a side of the box, along one axis in straight flight."""
+    """Next cell crossing or side contact along one axis in straight flight.
+
+    Returns its local time, whether it is in the positive direction, and whether it is a contact with a side of the box.
+    cell: column or row. size: of a cell, length. cells_across: columns or rows. length: of the box.
+    """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     forward = velocity > 0.0
     edge = cell if forward else cell - 1
@@ -35,7 +39,12 @@ def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_
 
 @inline
 def accelerated_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, pull):
-    """The same on a parabola. Cell edges are seen from now, when the disc is in its cell; sides from its record."""
+    """Next cell crossing or side contact along one axis under gravity.
+
+    Arguments and results are those of `straight_crossing`; pull: acceleration along the axis, length/time². Cell
+    crossings are computed from the disc's state at the local time `now`, when it is in its cell; side contacts from its
+    record.
+    """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     dt = max(now - disc.t, 0.0)
     here = position_after(position, velocity, pull, dt) - boundary_crossings * length
@@ -56,7 +65,7 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
 
 @inline
 def crossing_along(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, gravity):
-    """The one or the other."""
+    """Next cell crossing or side contact along one axis, with or without gravity; see `straight_crossing`."""
     if gravity is not None:
         pull = acceleration_along(gravity, along_y)
         return accelerated_crossing(
@@ -67,7 +76,10 @@ def crossing_along(disc, along_y, cell, size, cells_across, length, boundary_cro
 
 @inline
 def axis_crossing(disc, along_y, cells, own, now, effects):
-    """Time, whether forward, and whether at a side of the box, along one axis."""
+    """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
+
+    The time is NEVER at the piston's side, where contacts belong to the piston.
+    """
     cell = np.int64(disc.row) if along_y else np.int64(disc.column)
     size = cells.height if along_y else cells.width
     across = cells.rows if along_y else cells.columns
@@ -83,7 +95,7 @@ def axis_crossing(disc, along_y, cells, own, now, effects):
 
 @inline
 def predict_crossing(record, ids, state, i, now, effects):
-    """When and where disc i leaves its cell or meets a side of the box."""
+    """Store the time and kind of disc i's next cell crossing or side contact in its prediction."""
     disc = record[U(i)]
     own = ids[U(i)]
     x_time, right, x_side = axis_crossing(disc, False, state.cells, own, now, effects)
@@ -98,7 +110,7 @@ def predict_crossing(record, ids, state, i, now, effects):
 
 @inline
 def wrap_cell(disc, own, cells, along_y, periodic):
-    """Bring a disc that stepped beyond joined sides back into the cells, and count the turn."""
+    """Wrap the column or row of a disc that crossed a periodic side, and count the boundary crossing."""
     if periodic is not None:
         if along_y and periodic.y:
             cross_boundary = 1 if disc.row > cells.rows - 2 else (-1 if disc.row < 1 else 0)
@@ -112,7 +124,7 @@ def wrap_cell(disc, own, cells, along_y, periodic):
 
 @inline
 def cross_cell(record, ids, state, i, crossing_code, periodic):
-    """Move a disc from its cell's chain to the next cell's."""
+    """Move disc i from its cell's list to that of the next cell; crossing_code: direction, see PREDICTION."""
     disc = record[U(i)]
     leave(state.cells, i, cell_index(state.cells, disc))
     forward = 1 if crossing_code & 1 else -1

@@ -1,7 +1,8 @@
 """The event-driven method: cells find the neighbours, a tournament tree finds the next event.
 
 Every prediction is a pure function of the records involved, so the trajectory does not depend on cells, schedule or
-batches. The disc that predicted last owns a pair; a contact whose partner has moved on since is stale and re-predicted.
+batches. The disc that predicted last owns a pair's contact; a contact whose partner has had an event since is stale and
+predicted again.
 """
 
 import numpy as np
@@ -35,7 +36,7 @@ U = np.uintp
 
 @inline
 def predict(record, ids, state, i, now, effects):
-    """Everything disc i meets next, entered in the schedule."""
+    """Predict disc i's next contact and its next crossing, and enter the earlier one in the schedule."""
     predict_contact(record, ids, state, i, now, effects)
     predict_crossing(record, ids, state, i, now, effects)
     schedule(state.tree, state.prediction, ids, i)
@@ -44,14 +45,14 @@ def predict(record, ids, state, i, now, effects):
 
 @inline
 def predict_contact_again(record, ids, state, i, now, effects):
-    """The partner has moved on: another contact is disc i's, entered in the schedule."""
+    """Predict another contact of disc i, whose partner has had an event since, and enter it in the schedule."""
     predict_contact(record, ids, state, i, now, effects)
     schedule(state.tree, state.prediction, ids, i)
 
 
 @inline
 def enter_next_cell(record, ids, state, i, crossing_code, now, effects):
-    """Membership changes, the record does not; the contact found so far stays valid."""
+    """Move disc i to the next cell; its record is not changed, and the contact predicted before stays valid."""
     cross_cell(record, ids, state, i, crossing_code, effects.periodic)
     extend_contact(record, ids, state, i, crossing_code, now, effects)
     predict_crossing(record, ids, state, i, now, effects)
@@ -74,9 +75,8 @@ def rebuild(record, ids, state, effects):
 def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full.
 
-    Return the number of rows written and whether everything up to the limit of time has happened.
-
-    batch: None where no log is kept. counters: (1,) COUNTERS, updated.
+    Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
+    no log is kept. counters: (1,) COUNTERS, updated.
     """
     events = 0
     collisions = 0
@@ -131,7 +131,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
-        while i >= 0:  # both discs at one place: a second would double the machine code
+        while i >= 0:  # one call for both discs: a second call would double the machine code
             predict(record, ids, state, i, time, effects)
             i, other = other, np.int64(-1)
         events += 1
@@ -142,18 +142,18 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
 
 
 class EventDriven:
-    """The method as an object: what an epoch needs between its start and its end."""
+    """The event-driven method: its records, effects and predictions between the start and the end of an epoch."""
 
     without_positions = False
     single_epoch = False
 
     def __init__(self, filling: float | None = None) -> None:
-        """filling: discs per cell, chosen by packing fraction if not given; it changes the speed and nothing else."""
+        """Set the mean number of discs per cell, by default chosen by packing fraction; it changes the speed only."""
         self._filling = filling
         self._walls: tuple[bytes, WallCells] | None = None
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch: put the discs in memory in the order of their cells and predict everything."""
+        """Begin an epoch: sort the discs in memory by cell, and predict the next events of all."""
         filling = self._filling or discs_per_cell(gas.packing_fraction)
         largest_radius = float(gas.radius.max())
         cells = make_cells(len(gas), gas.box, largest_radius, filling)
@@ -166,7 +166,7 @@ class EventDriven:
         rebuild(self.discs.record, self.discs.id, self._state, effects)
 
     def _wall_cells(self, effects: Effects, cells: Cells, largest_radius: float) -> WallCells | None:
-        """Those of the epoch before, unless a gate has opened or closed since: the cells stay as they are."""
+        """Wall segments of each cell: those of the epoch before, unless a gate has opened or closed since."""
         if effects.segments is None:
             return None
         active = effects.segments.active.tobytes()
@@ -177,10 +177,10 @@ class EventDriven:
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """See `advance_events`."""
+        """Process events, see `advance_events`."""
         record, ids, _ = self.discs
         return advance_events(record, ids, self._state, self._effects, limits, epoch_start, batch, counters)
 
     def deepest_overlap(self) -> float:
-        """Deepest overlap at the start of the epoch; call it before `advance`."""
+        """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
         return deepest_overlap(self.discs.record, self._state, self._effects.periodic)

@@ -1,4 +1,4 @@
-"""The deepest overlap of discs, looked for in neighbouring cells only."""
+"""The deepest overlap of discs, searched for in neighbouring cells only."""
 
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import U, overlap_of
@@ -7,7 +7,7 @@ from idealgas.engine.event_driven.contacts import gather_block
 
 @inline
 def deepest_around(record, state, i, periodic):
-    """Deepest overlap of disc i with those before it in memory; 0 if there is none."""
+    """Deepest overlap of disc i with discs of smaller index, divided by the sum of the radii; 0 without any."""
     deepest = 0.0
     disc = record[U(i)]
     count = gather_block(state, disc, periodic)
@@ -22,7 +22,7 @@ def deepest_around(record, state, i, periodic):
 
 @njit
 def deepest_overlap(record, state, periodic):
-    """Deepest overlap among records at one time that stand in their cells."""
+    """Deepest overlap of all pairs of discs, divided by the sum of their radii; all records are at one time."""
     deepest = 0.0
     for i in range(record.shape[0]):
         deepest = max(deepest, deepest_around(record, state, i, periodic))

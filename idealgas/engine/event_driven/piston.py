@@ -1,4 +1,4 @@
-"""The piston in the schedule: one more leaf, which owns the contacts of all discs with the piston."""
+"""The piston in the schedule: one more leaf of the tree, which owns the contacts of all discs with the piston."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ U = np.uintp
 
 @inline
 def is_piston(i, ids, piston):
-    """Whether a leaf is the piston's."""
+    """Whether leaf i of the schedule is the piston's."""
     if piston is not None:
         return i == ids.shape[0]
     return False
@@ -20,7 +20,7 @@ def is_piston(i, ids, piston):
 
 @inline
 def keep_if_earlier(record, ids, prediction, j, time, side):
-    """Make disc j the piston's next if it is; return whether."""
+    """Store the contact of disc j at a local time as the piston's next if it is the earliest; return whether it is."""
     earlier = time < prediction.contact
     if time == prediction.contact:
         rank = wall_rank(side)
@@ -34,7 +34,7 @@ def keep_if_earlier(record, ids, prediction, j, time, side):
 
 @inline
 def predict_piston(record, ids, state, piston, gravity):
-    """What the piston meets next, entered in the schedule."""
+    """Predict the piston's next event, a contact with a disc or with its end stop, and enter it in the schedule."""
     if piston is not None:
         leaf = ids.shape[0]
         p = piston[0]
@@ -50,7 +50,7 @@ def predict_piston(record, ids, state, piston, gravity):
 
 @inline
 def offer_to_piston(record, ids, state, i, piston, gravity):
-    """After disc i's record changed: it may now be the piston's next."""
+    """Update the piston's next contact after disc i's record has changed."""
     if piston is not None:
         leaf = ids.shape[0]
         p = piston[0]

@@ -1,7 +1,7 @@
-"""The schedule: one entry a disc in an implicit 8-ary tournament tree; its root is the next event.
+"""The schedule: one entry a disc in an implicit 8-ary tournament tree, whose root is the next event.
 
-The keys of a level lie side by side, padded with times after NEVER, and each winner's place stands beside its key.
-An update climbs only while the winner of a group changes.
+The keys of a level are contiguous in memory, padded with times after NEVER; the index of the disc that won is stored
+beside each key. An update climbs the tree only while the winner of a group changes.
 """
 
 from typing import NamedTuple
@@ -15,32 +15,36 @@ from idealgas.sides import FIRST_SEGMENT
 
 PREDICTION = np.dtype(
     [
-        ("contact", "f8"),  # time of the best contact with another disc
-        ("crossing", "f8"),  # time at which the disc leaves its cell or meets a side of the box
-        ("partner", "i4"),  # place of the other disc, -1 for none, -2 - k for wall segment k
+        ("contact", "f8"),  # local time of the earliest contact with a disc or a wall segment
+        ("crossing", "f8"),  # local time at which the disc leaves its cell or meets a side of the box
+        ("partner", "i4"),  # index of the other disc, -1 for none, -2 - k for wall segment k
         (
             "partner_count",
             "u4",
-        ),  # the partner's count then: once it has moved on, the contact is stale
-        ("image_x", "i2"),  # box lengths to the other's record or the segment, where sides are periodic
+        ),  # the partner's count when predicted: the contact is stale once it differs
+        ("image_x", "i2"),  # box lengths to the partner's record or the segment, where sides are periodic
         ("image_y", "i2"),
-        ("crossing_code", "i4"),  # 0-3: into the cell on the left, right, below, above; 4-7: meets that side of the box
+        ("crossing_code", "i4"),  # 0-3: crosses to the cell left, right, below, above; 4-7: meets that side of the box
     ],
     align=True,
 )
 SIDE_OF_BOX = 4
 
-NO_CONTACT = 0.5 * NEVER  # before NEVER, so that a miss never ties with "none yet"
+NO_CONTACT = 0.5 * NEVER  # before NEVER: a pair without a contact, at NEVER, is not simultaneous with it
 NO_CONTACT_KEY = int(np.float64(NO_CONTACT).view(np.int64))
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
 
-U = np.uintp  # unsigned indices spare the check for negative ones
+U = np.uintp  # unsigned: negative indices need not be checked for
 
 
 class Tree(NamedTuple):
-    """time, key: (total,) f8 and the same memory as i8; times are not negative, so their bits are ordered as they are.
+    """Tournament tree of the discs' next events; its leaves are the discs, in order of index, and the piston.
 
-    winner: (total,) i4, place of the disc that each node's time belongs to. start: (levels,) first node of a level.
+    Attributes:
+        time: (total,) f8, local time of the earliest event below each node.
+        key: (total,) i8, the same memory; times are not negative, so their bits have the same order.
+        winner: (total,) i4, index of the disc with that event.
+        start: (levels,) i8, first node of each level.
     """
 
     time: np.ndarray
@@ -50,7 +54,7 @@ class Tree(NamedTuple):
 
 
 def make_tree(n: int) -> Tree:
-    """A tree of n leaves, to be cleared before use."""
+    """Tournament tree of n leaves, to be cleared before use."""
     start = [0]
     nodes = n
     total = -(-n // 8) * 8
@@ -66,32 +70,32 @@ def make_tree(n: int) -> Tree:
 
 @inline
 def clear(key):
-    """Schedule nothing; the keys differ, so that nothing ties with the padding."""
+    """Remove all events from the schedule; all keys then differ, so that none ties with the padding."""
     for node in range(key.shape[0]):
         key[node] = NEVER_KEY + node
 
 
 @inline
 def segment_partner(segment):
-    """What stands for a wall segment among partners."""
+    """Number that stands for a wall segment among the partners of a prediction."""
     return -2 - segment
 
 
 @inline
 def segment_of(partner):
-    """The wall segment that a partner stands for."""
+    """Number of the wall segment that a prediction's partner stands for."""
     return -2 - partner
 
 
 @inline
 def images_of(prediction):
-    """Box lengths between the record and what it meets."""
+    """Numbers of box lengths (x, y) between a disc's record and its partner."""
     return np.int64(prediction.image_x), np.int64(prediction.image_y)
 
 
 @inline
 def partner_rank(ids, partner):
-    """A partner's place in the order of simultaneous events."""
+    """Rank of a disc's partner in the order of simultaneous events: its id, or the rank of a wall."""
     if partner >= 0:
         return np.int64(ids[U(partner)])
     return np.int64(wall_rank(FIRST_SEGMENT + segment_of(partner)))
@@ -99,7 +103,10 @@ def partner_rank(ids, partner):
 
 @inline
 def contact_is_next(prediction, ids, i):
-    """Whether a disc's next event is its contact, not its exit; an exit into a cell precedes all events of its time."""
+    """Whether a disc's next event is its contact, not its crossing.
+
+    A crossing into a cell precedes all events of its time.
+    """
     if prediction.contact != prediction.crossing:
         return prediction.contact < prediction.crossing
     if prediction.crossing_code < SIDE_OF_BOX or prediction.partner == -1 or i == ids.shape[0]:
@@ -110,9 +117,9 @@ def contact_is_next(prediction, ids, i):
 
 @inline
 def event_ids(prediction, ids, i):
-    """The two ids by which the disc's next event is ordered among simultaneous ones.
+    """The two ids by which a disc's next event is ordered among simultaneous ones.
 
-    The last leaf, beyond the discs, is the piston's: its contact is a hit of its side, its exit the end stop.
+    The last leaf, beyond the discs, is the piston's: its contact is a hit of its side, its crossing the end stop.
     """
     contact = contact_is_next(prediction, ids, i)
     side = np.int64(wall_rank(prediction.crossing_code - SIDE_OF_BOX))
@@ -128,7 +135,7 @@ def event_ids(prediction, ids, i):
 
 @inline
 def first_of_tied(tree, group, key, predictions, ids):
-    """The node, of those in a group that share the earliest time, whose event comes first."""
+    """Node whose event comes first among those of a group that share the earliest time."""
     best = -1
     for node in range(group, group + 8):
         if tree.key[node] == key:
@@ -145,7 +152,7 @@ def first_of_tied(tree, group, key, predictions, ids):
 
 @inline
 def first_of_eight(tree, group, predictions, ids):
-    """Earliest key of a group of nodes and the node that has it."""
+    """Earliest key of a group of eight nodes, and the node that has it."""
     key = tree.key
     k0 = key[U(group)]
     k1 = key[U(group + 1)]
@@ -179,9 +186,9 @@ def first_of_eight(tree, group, predictions, ids):
 
 @inline
 def schedule(tree, predictions, ids, i):
-    """Enter disc i's next time.
+    """Enter the time of disc i's next event in the tree.
 
-    A group whose winner is another node needs no search: either the changed node beats it or nothing changes.
+    A group whose winner is another node needs no search: either the changed node is earlier or nothing changes.
     """
     _, key, winner, start = tree
     prediction = predictions[U(i)]
@@ -193,9 +200,9 @@ def schedule(tree, predictions, ids, i):
     shift = 0
     for level in range(1, start.shape[0]):
         group = node & ~7
-        place = (node - base) >> 3
+        offset = (node - base) >> 3
         base = start[U(level)]
-        parent = base + place
+        parent = base + offset
         if winner[U(parent)] >> shift != i >> shift and earliest != key[U(parent)]:
             if earliest > key[U(parent)]:
                 return
@@ -212,5 +219,5 @@ def schedule(tree, predictions, ids, i):
 
 @inline
 def next_disc(tree):
-    """Place of the disc whose event is next."""
+    """Index of the disc with the next event."""
     return np.int64(tree.winner[U(tree.start[U(tree.start.shape[0] - 1)])])

@@ -1,4 +1,4 @@
-"""What the event-driven method knows beyond the discs, all of it rebuilt at the start of an epoch."""
+"""State of the event-driven method beyond the discs' records, rebuilt at the start of each epoch."""
 
 from typing import NamedTuple
 
@@ -13,10 +13,16 @@ from idealgas.physics.periodic import NO_IMAGES
 
 
 class EventDrivenState(NamedTuple):
-    """cells, tree: see there. prediction: (N,) PREDICTION, and one more for the piston.
+    """Cells, predictions and schedule of the event-driven method.
 
-    candidates: scratch for places of discs; images: scratch beside it, (…, 2) i4, where sides are periodic.
-    walls: which segments each cell has, where there are any.
+    Attributes:
+        cells: cells of the neighbour search.
+        tree: schedule of the discs' next events.
+        prediction: (N,) PREDICTION by index, next events of each disc; with a piston (N + 1,), the last is the
+            piston's.
+        candidates: i4 scratch memory for indices of discs that may be in contact.
+        images: (…, 2) i4 scratch memory for the images of the candidates; None without periodic sides.
+        walls: wall segments of each cell; None without segments.
     """
 
     cells: Cells
@@ -28,9 +34,9 @@ class EventDrivenState(NamedTuple):
 
 
 def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) -> EventDrivenState:
-    """An agenda with nothing predicted."""
+    """Event-driven state of n discs, without any prediction."""
     leaves = n if effects.piston is None else n + 1
-    room = 9 * n + 16  # in a box of one cell each disc is a candidate in nine images
+    room = 9 * n + 16  # in a box of one cell, each disc is a candidate in nine images
     return EventDrivenState(
         cells,
         make_tree(leaves),
@@ -43,7 +49,7 @@ def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) 
 
 @inline
 def record_image(images, k, x, y):
-    """Remember in which image candidate k is met."""
+    """Store the image (x, y) in which candidate k is seen, where sides are periodic."""
     if images is not None:
         images[np.uintp(k), 0] = x
         images[np.uintp(k), 1] = y
@@ -51,7 +57,7 @@ def record_image(images, k, x, y):
 
 @inline
 def copy_image(images, to, k):
-    """A candidate behind candidate k is met in the same image."""
+    """Store for candidate `to` the image in which candidate k is seen, where sides are periodic."""
     if images is not None:
         images[np.uintp(to), 0] = images[np.uintp(k), 0]
         images[np.uintp(to), 1] = images[np.uintp(k), 1]
@@ -59,7 +65,7 @@ def copy_image(images, to, k):
 
 @inline
 def image_of(images, k):
-    """In which image candidate k is met."""
+    """Image (x, y) in which candidate k is seen, in box lengths; zeros without periodic sides."""
     if images is not None:
         return np.int64(images[np.uintp(k), 0]), np.int64(images[np.uintp(k), 1])
     return NO_IMAGES

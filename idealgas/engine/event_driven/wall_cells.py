@@ -1,4 +1,4 @@
-"""Which wall segments a disc may touch while its centre is in a cell."""
+"""Wall segments that a disc may touch while its centre is in a cell."""
 
 from typing import NamedTuple
 
@@ -10,8 +10,12 @@ from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, perio
 
 
 class WallCells(NamedTuple):
-    """The segments of cell c are item[start[c] : start[c + 1]]; both i4. image: (…, 2) i4, box lengths that each
-    stands away from its place, as seen from the cell.
+    """Wall segments of each cell: cell c has the entries from start[c] to before start[c + 1].
+
+    Attributes:
+        start: (cells + 1,) i4, first entry of each cell.
+        item: (entries,) i4, number of the wall segment.
+        image: (entries, 2) i4, box lengths (x, y) from the segment to its image near the cell.
     """
 
     start: np.ndarray
@@ -20,7 +24,10 @@ class WallCells(NamedTuple):
 
 
 def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
-    """Every active segment, in every cell of which some point is within the largest radius of it or nearly so."""
+    """Enter every present segment in all cells that have a point within the largest radius (length) of it.
+
+    A small margin makes sure that rounding leaves no cell out.
+    """
     reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
     across, along = (range(-1, 2) if is_periodic else (0,) for is_periodic in periodic_axes(periodic))
     cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
@@ -39,14 +46,14 @@ def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cel
 
 @inline
 def images_to_item(walls, entry, own, periodic):
-    """Box lengths between a disc's record and an entry of its cell."""
+    """Numbers of box lengths (x, y) between a disc's record and the segment of an entry of its cell."""
     if periodic is not None:
         return images_to_wall(periodic, own, (walls.image[entry, 0], walls.image[entry, 1]))
     return NO_IMAGES
 
 
 def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
-    """Indices of the cells whose centre is near enough to an image of a segment for a corner to be within reach."""
+    """Indices of the cells so near to an image of a segment that a corner may be within reach (length)."""
     start = np.array([segment.x + image[0] * cells.Lx, segment.y + image[1] * cells.Ly])
     tangent = np.array([segment.tx, segment.ty])
     length = segment.length

@@ -42,8 +42,10 @@ def _take_byte(items, byte, start, stop, out, place):
 
 @njit
 def shuffle(items, noise, blocks, planes):
-    """Gather each byte of unsigned items (n,) in a plane: the first `noise` planes in stored blocks, one behind the
-    other in `blocks`, the rest in `planes` (itemsize - noise, n).
+    """Gather the bytes of unsigned items (n,) in planes: the first bytes of all items, the second bytes, and so on.
+
+    The first `noise` planes go into stored blocks, one behind the other in `blocks`; the rest into `planes`
+    (itemsize - noise, n).
     """
     n = len(items)
     for first in range(0, n, _TILE):

@@ -54,6 +54,7 @@ class StoredColumn:
             self.id.write_direct_chunk(offset, self._encoder.compressed(data), chunks.COMPRESSED)
 
     def resize(self, rows: int) -> None:
+        """Give the dataset so many rows."""
         self.id.set_extent((rows, *self.chunk[1:]))
         self.extent = rows
 

@@ -10,7 +10,7 @@ from idealgas.physics.effects import Effects
 from idealgas.physics.restitution import Restitution
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
-from idealgas.scene.defaults import contact_duration
+from idealgas.scene.tables.restitution import contact_duration
 
 LAST_COLLISION = Column("last_collision", "f8", (), "time")
 """Counted from the checkpoint."""

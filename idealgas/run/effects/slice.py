@@ -16,8 +16,10 @@ Values = dict[Column, Any]
 
 
 class EnergyPart(NamedTuple):
-    """part: a field of `idealgas.run.energy.Energy`. of: the energy, from state, gas and local time. observed: as what
-    column samples have it, if they do.
+    """A part of the energy that an effect adds.
+
+    part: a field of `idealgas.run.energy.Energy`. of: the energy, from the effect's state, the gas and the local time.
+    observed: the column of the samples that holds it, None if they do not.
     """
 
     part: str

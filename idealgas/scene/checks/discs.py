@@ -24,6 +24,7 @@ RESOLUTION = 1e-9
 
 
 def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
+    """Species whose names are taken, or that do not say in exactly one way how their discs move."""
     first: dict[str, int] = {}
     for i, s in kinds:
         if s.name == "disc":

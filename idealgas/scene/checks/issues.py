@@ -1,4 +1,4 @@
-"""What is wrong with a scene as a whole: every check of every table, in one place."""
+"""What is wrong with a scene as a whole: every check of every table, put together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EFFECTS = (rotation, restitution, periodic, wall, gravity, piston)
 def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator[Issue]:
     """Faults between the tables of a scene, and between the keys of one.
 
-    Tables named in `invalid`, and None in an array of tables, have faults of their own and are left out.
+    Tables named in `invalid`, and None in an array of tables, have issues of their own and are left out.
     """
     kinds, discs = valid(scene.species), valid(scene.disc)
     box = None if "box" in invalid else scene.box

@@ -1,4 +1,4 @@
-"""Sides that are joined to none."""
+"""Checks of periodic sides: opposite sides are periodic together."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue, Key
-from idealgas.scene.defaults import contact_duration
+from idealgas.scene.tables.restitution import contact_duration
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document

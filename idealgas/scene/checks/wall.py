@@ -27,18 +27,18 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
         return
     box = scene.box
     first: dict[str, int] = {}
-    sound: list[tuple[int, Wall]] = []
+    whole: list[tuple[int, Wall]] = []
     for i, wall in valid(scene.wall):
         found = list(_own_issues(box, i, wall))
         yield from found
         if not found:
-            sound.append((i, wall))
+            whole.append((i, wall))
         if wall.name in SIDES:
             yield Issue((("wall", i, "name"),), "name taken by a side of the box", f'"{wall.name}"', "any other word")
         elif wall.name is not None and first.setdefault(wall.name, i) != i:
             yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a name of its own")
     for k, d in valid(scene.disc):
-        for i, wall in sound:
+        for i, wall in whole:
             distance = min(distance_to_wall(centre, wall) for centre in images(d.position, d.radius, box))
             if wall.there_at_start and distance < d.radius:
                 keys: tuple[Key, ...] = (("disc", k, "position"), ("disc", k, "radius"), ("wall", i))

@@ -38,5 +38,5 @@ class Box(Table):
 
     @property
     def periodic(self) -> tuple[bool, bool]:
-        """Whether left and right, and bottom and top, are joined: periodic."""
+        """Whether the sides across x, and across y, are periodic."""
         return self.left == PERIODIC, self.bottom == PERIODIC

@@ -1,9 +1,14 @@
 """The table of inelastic collisions."""
 
+import math
+from collections.abc import Sequence
+
 from pydantic import Field
 
 from idealgas.document.table import Positive, Table
+from idealgas.scene.defaults import mean_speed
 from idealgas.scene.properties import Effect, Properties
+from idealgas.scene.tables.discs import Disc, Species
 
 NAME = "restitution"
 
@@ -25,6 +30,16 @@ class Restitution(Table):
     def elastic(self) -> bool:
         """Whether nothing is lost."""
         return self.normal == 1 and self.wall == 1
+
+
+def contact_duration(restitution: Restitution, species: Sequence[Species], disc: Sequence[Disc]) -> float:
+    """As given, or a millionth of the mean diameter over the mean speed at the start; infinite if nothing moves."""
+    if restitution.contact_duration is not None:
+        return restitution.contact_duration
+    diameters = sum(2 * s.radius * s.count for s in species) + sum(2 * d.radius for d in disc)
+    speed = mean_speed(species, disc)
+    number = sum(s.count for s in species) + len(disc)
+    return 1e-6 * diameters / number / speed if speed > 0 else math.inf
 
 
 def effect(restitution: Restitution | None) -> Effect | None:

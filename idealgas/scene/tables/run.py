@@ -8,7 +8,7 @@ from idealgas.document.table import Positive, Table
 
 
 class Header(Table):
-    """`[scene]`"""
+    """`[scene]`: what the scene is called, and the seed of its random numbers."""
 
     title: str = Field(default="", description="one line for people")
     seed: int = Field(

@@ -1,1 +1,1 @@
-"""What accuracy costs in time, by methods, steps and digits."""
+"""CPU time and errors of the methods, by time step and by precision."""

@@ -1,4 +1,4 @@
-"""What averages of a scene come out as on a rung, beside those of the event-driven run and beside theory."""
+"""Averages of a scene in one case: collision rate, pressure, speed distribution, energy drift and overlap."""
 
 import math
 from collections.abc import Callable
@@ -16,11 +16,12 @@ from idealgas.scene import Scene
 
 @dataclass(frozen=True)
 class Averages:
-    """From a whole run of the scene, in its window of equilibrium; None where this gas has no such thing.
+    """Averages of a whole run of the scene in its window of equilibrium; None where a quantity does not apply.
 
-    rate: pair collisions per time. z_pairs, z_walls: PA/NT by either virial, with theory. distance: of Kolmogorov and
-    Smirnov, from the law of speeds; noise: what chance makes of it. drift: of the energy, relative. overlap: deepest,
-    of the sum of the radii. window: time at which it starts.
+    rate: pair collisions of the gas per time. z_pairs, z_walls: Z = PA/NT by the virial of the pairs and of the walls,
+    with theory. distance: Kolmogorov-Smirnov distance of the speeds from their law. noise: its expected value by
+    chance. drift: relative change of the energy. overlap: deepest overlap in units of the sum of two radii. window:
+    time at which the window starts.
     """
 
     rate: Estimate
@@ -36,9 +37,10 @@ class Averages:
 def measure_averages(
     scene: Scene, path: Path, window: float | None, progress: Callable[[float], None]
 ) -> tuple[Averages, Summary]:
-    """Run a scene to its end, into a log at `path` that is there only meanwhile.
+    """Run a scene to its end and measure its averages; the log at `path` is removed afterwards.
 
-    window: where it starts, so that all rungs have the same; if None, at detected equilibrium.
+    window: start of the window, time, the same for all cases; None for detected equilibrium. progress: called with the
+    share of the run that is done.
     """
     summary = simulate(scene, path, force=True, on_progress=lambda p: progress(p.share))
     with open_log(path) as log:
@@ -61,7 +63,7 @@ def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
         )  # mean of Kolmogorov's distribution
     try:
         found = pressure(log, window)
-    except UserError:  # this gas has no theory: what can be counted
+    except UserError:  # this gas has no theory: only count collisions
         count = summary.disc_collisions
         rate = Estimate(count / summary.end_time, math.sqrt(count) / summary.end_time, count)
         return Averages(rate, None, None, distance, noise, summary.energy_drift, summary.deepest_overlap, None)
@@ -79,7 +81,7 @@ def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
 
 
 def _total_rate(found: Pressure, log: Log) -> Estimate:
-    """Pair collisions of the gas per time; each pair of species counts once."""
+    """Pair collisions of the whole gas per time; each pair of species counts once."""
     number = {name: int((log.discs.species == k).sum()) for k, name in enumerate(log.discs.species_names)}
     value = variance = 0.0
     seen: set[frozenset[str]] = set()

@@ -1,4 +1,4 @@
-"""The rungs that accuracy is compared on: methods, steps and precisions, and how a gas is taken along one of them."""
+"""Cases whose accuracy is compared: methods, time steps and precisions, and how to run a gas in one of them."""
 
 import copy
 import time
@@ -17,15 +17,18 @@ from idealgas.physics.effects import Effects
 from idealgas.run.effects import make_effects
 from idealgas.scene import Scene, parse_scene
 
-FIRST_STEP = 0.5  # diameters that a disc of mean square speed moves in the longest step
-STEPS = 8  # each half as long as the one before
+FIRST_STEP = 0.5  # diameters that a disc of root-mean-square speed moves in the longest step
+STEPS = 8  # number of time steps, each half as long as the one before
 PRECISIONS = ("float32", "float64", "double-double")
-EQUILIBRATION = 10.0  # collisions a disc, after which a gas is taken to have forgotten its start
+EQUILIBRATION = 10.0  # collisions per disc after which a gas counts as equilibrated
 
 
 @dataclass(frozen=True)
 class Case:
-    """One way to run a scene. dt: time, of time steps. precision: of brute force."""
+    """One case of the methods compared: a way to run a scene.
+
+    method: name of the method. dt: time step of the time-driven method, time. precision: arithmetic of brute force.
+    """
 
     method: str
     dt: float | None = None
@@ -33,17 +36,21 @@ class Case:
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Name of the case in tables and pictures."""
         return f"dt = {self.dt:.3g}" if self.dt is not None else self.precision or "event-driven"
 
     def make(self) -> Method:
-        """A fresh method."""
+        """Make a new method object of this case."""
         if self.dt is not None:
             return TimeDriven(self.dt)
         return PreciseBruteForce(self.precision) if self.precision else EventDriven()
 
     def scene(self, scene: Scene, until: float) -> Scene:
-        """The scene run this way to a time, without other stop rules. SceneError if it cannot be."""
+        """Scene that is run in this case until a time, without other stop rules.
+
+        Raises:
+            SceneError: if the scene cannot be run with this method.
+        """
         ends = (f"run.until={until!r}", "run.events=", "run.collisions_per_disc=", "run.dt=", "run.precision=")
         settings = [f'run.method="{self.method}"', *ends, "log.events=true", "log.snapshot_every="]
         if self.dt is not None:
@@ -55,18 +62,18 @@ class Case:
 
 @dataclass(frozen=True)
 class Start:
-    """A gas in equilibrium, from which every rung can set out."""
+    """Equilibrated gas with its effects, from which all cases start."""
 
     gas: Gas
     effects: Effects
 
     def simulation(self, method: Method) -> Simulation:
-        """A run of its own; the effects are a copy."""
+        """Simulation from this start with a method and a copy of the effects."""
         return Simulation(self.gas, method, copy.deepcopy(self.effects))
 
 
 def compared_cases(gas: Gas, precise: bool) -> list[Case]:
-    """Event-driven, time steps from coarse to fine, and if asked for brute force in all precisions."""
+    """Cases for a gas: event-driven, time steps from long to short, with `precise` brute force in all precisions."""
     speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
     first = FIRST_STEP * 2 * float(gas.radius.min()) / speed
     steps = [Case("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]
@@ -78,7 +85,7 @@ def compared_cases(gas: Gas, precise: bool) -> list[Case]:
 
 
 def equilibrated(scene: Scene) -> Start:
-    """The scene's gas after MIXING collisions a disc, event-driven."""
+    """Gas of a scene after EQUILIBRATION collisions per disc, event-driven."""
     gas = make_gas(scene)
     simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
     stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
@@ -88,7 +95,7 @@ def equilibrated(scene: Scene) -> Start:
 
 
 def cpu_seconds(simulation: Simulation, until: float) -> float:
-    """CPU time that a simulation takes to a time; only the kernel's thread counts."""
+    """CPU time in seconds that a simulation needs until a time; only the thread of the kernel counts."""
     started = time.thread_time()
     simulation.run(pause=until)
     return time.thread_time() - started

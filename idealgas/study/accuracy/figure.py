@@ -1,4 +1,4 @@
-"""The pictures of a study of accuracy: error against time, error against collisions, and survival against digits."""
+"""Pictures of the accuracy: errors against CPU time, errors against collisions, and lifetime of an orbit."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ from idealgas.study.accuracy.orbit import OrbitStudy
 from idealgas.study.accuracy.study import Accuracy, Row
 
 Measure = Callable[[Row], tuple[float, float] | None]
-"""An error of a row with its standard error; None if it has none."""
+"""Function that gives an error of a row with its standard error; None if the row has no such error."""
 
 
 def _estimate(name: str) -> Measure:
@@ -55,11 +55,11 @@ AVERAGES: dict[str, Measure] = {
     "Kolmogorov-Smirnov distance": _distance,
 }
 MARKERS = "osD^vP*X"
-ENTRIES = (0.5, 1.0, 2.0)  # collisions a disc at which trajectories are shown against time
+ENTRIES = (0.5, 1.0, 2.0)  # collisions per disc at which errors of trajectories are shown against CPU time
 
 
 def accuracy_figure(found: Accuracy) -> Figure:
-    """Errors of averages and of the motion against time; trajectories against collisions. Lines join the time steps."""
+    """Picture of errors of averages and of the motion against CPU time, and of trajectories against collisions."""
     motion = bool(len(found.collisions))
     figure, axes = panels(3 if motion else 1)
     _errors_against_time(axes[0], found, AVERAGES)
@@ -75,7 +75,7 @@ def accuracy_figure(found: Accuracy) -> Figure:
 
 
 def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]) -> None:
-    """One curve for each error; the event-driven run and the precisions are points."""
+    """Draw one curve over the time steps for each error; the event-driven run and the precisions are points."""
     for (name, measure), colour, marker in zip(measures.items(), COLOURS, MARKERS, strict=False):
         points = [(row.timing.median, *error) for row in found.steps if (error := measure(row))]
         if points:
@@ -97,12 +97,12 @@ def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlabel("CPU seconds per unit of simulated time")
-    ax.plot([], [], color=GREY, label="joined: time steps, coarse to fine")
+    ax.plot([], [], color=GREY, label="lines: time steps, long to short")
     ax.legend(frameon=False, fontsize="x-small", loc="center left", bbox_to_anchor=(1, 0.5))
 
 
 def _trajectories(ax: Axes, found: Accuracy) -> None:
-    """Typical distance from the double-double motion."""
+    """Draw the rms distance from the double-double motion against collisions per disc."""
     rows = [row for row in found.rows if row.case.precision != "float64"]
     for k, row in enumerate(rows):
         if row.trajectory is None:
@@ -126,7 +126,7 @@ def _trajectories(ax: Axes, found: Accuracy) -> None:
 
 
 def orbit_figure(found: OrbitStudy) -> Figure:
-    """Survival against digits: every placement, the medians, and a line through them."""
+    """Picture of the lifetime of the orbit against digits: every box, the medians, and a line through them."""
     figure, (ax,) = panels(1)
     for k, survival in enumerate(found.survivals):
         x = survival.digits + np.linspace(-0.5, 0.5, len(survival.times))

@@ -1,4 +1,4 @@
-"""How far the motion itself is wrong on a rung: missed collisions, trajectories, and the way back."""
+"""Errors of the motion in a case: missed collisions, trajectories, and return after reversal of the velocities."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -15,34 +15,35 @@ from idealgas.physics.effects import Effects
 from idealgas.run.layout import row_columns
 from idealgas.study.accuracy.cases import Case, Start
 
-STARTS = 200  # at most, from which collisions are compared
-ENOUGH = 5_000  # collisions compared
-BETWEEN = 2.0  # collisions a disc between two starts
+STARTS = 200  # largest number of starts from which collisions are compared
+ENOUGH = 5_000  # number of compared collisions that is enough
+BETWEEN = 2.0  # collisions per disc between two starts
 
 
 @dataclass(frozen=True)
 class Missed:
-    """Of first collisions after a common start: how many there were, and how many discs flew straight through."""
+    """Numbers of first collisions after a common start that were compared, and of those that were missed."""
 
     compared: int
     missed: int
 
     @property
     def share(self) -> float:
+        """Share of missed collisions."""
         return self.missed / self.compared if self.compared else math.nan
 
     @property
     def error(self) -> float:
-        """Standard error of the share; of one, where none was missed."""
+        """Standard error of the share; that of one missed collision if none was missed."""
         return math.sqrt(max(self.missed, 1)) / self.compared if self.compared else math.nan
 
 
 def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Callable[[float], None]) -> list[Missed]:
-    """Compare each rung with the event-driven motion, over a mean free time from many starts.
+    """Count the collisions that each case misses, compared with the event-driven motion over a mean free time.
 
-    rate: collisions per disc and time. Compared are the collisions of two discs that have met no other disc yet: both
-    fly straight, or from wall to wall, in both runs. Missed is one if on the rung neither disc has met anybody by the
-    end of the step after.
+    Only collisions of two discs without an earlier collision with other discs are compared. A collision is missed if,
+    in the case, neither disc has collided by the end of the next time step. rate: collisions per disc and time.
+    progress: called with the share of the work that is done.
     """
     reference = start.simulation(EventDriven())
     compared, missed = np.zeros((2, len(cases)), int)
@@ -63,7 +64,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
 
 
 def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """When each disc first meets another, infinite if it does not, and whom."""
+    """Times (N,) of the first collision of each disc, infinite if there is none, and partners (N,), or -1."""
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
     simulation = start.simulation(case.make())
@@ -79,14 +80,17 @@ def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndar
 
 
 def batch_for(effects: Effects) -> EventBatch:
-    """A batch with the columns that the effects call for."""
+    """Empty batch of events with the columns that the effects need."""
     return empty_batch(columns=row_columns(effects))
 
 
 def flown_through(
     truth: tuple[np.ndarray, np.ndarray], found: tuple[np.ndarray, np.ndarray], dt: float
 ) -> tuple[int, int]:
-    """Of the pairs whose first collision is with each other: how many are found or flown through; the latter."""
+    """Numbers of compared and of missed collisions of pairs whose first collision is with each other.
+
+    truth, found: times and partners of first collisions in the event-driven run and in the case. dt: time step.
+    """
     time, partner = truth
     i = np.flatnonzero(partner >= 0)
     i = i[(partner[partner[i]] == i) & (i < partner[i])]
@@ -97,7 +101,7 @@ def flown_through(
 
 
 def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
-    """(T, N, 2): where the discs are."""
+    """Positions (T, N, 2) of the discs at T times, length."""
     found = []
     for time in times:
         simulation.run(pause=time)
@@ -106,12 +110,12 @@ def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
 
 
 def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
-    """Root mean square over the discs, in mean diameters; last axes (N, 2)."""
+    """Root-mean-square distance over the discs between positions a and b (..., N, 2), in mean diameters."""
     return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
 
 
 def error_on_return(start: Start, case: Case, duration: float) -> float:
-    """Run, reverse all velocities, run as long again: rms distance from the start, in mean diameters."""
+    """Run, reverse all velocities and run as long again: rms distance from the start, in mean diameters."""
     if case.precision is not None:
         return _error_on_precise_return(start, case.precision, duration)
     simulation = start.simulation(case.make())
@@ -123,7 +127,7 @@ def error_on_return(start: Start, case: Case, duration: float) -> float:
 
 
 def _error_on_precise_return(start: Start, precision: str, duration: float) -> float:
-    """The same with all the digits of the precision."""
+    """Rms distance from the start after reversal, in mean diameters, with all digits of a precision."""
     columns = origin = make_columns(start.gas, precision)
     for _ in range(2):
         method = PreciseBruteForce(precision, columns)
@@ -135,6 +139,6 @@ def _error_on_precise_return(start: Start, precision: str, duration: float) -> f
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Of two columns of nearly the same numbers."""
+    """Difference of two columns of nearly equal numbers, as float64."""
     rest = a.astype(float) - b
     return rest if rest.ndim == 1 else rest.sum(axis=1)

@@ -1,8 +1,9 @@
-"""How long an unstable periodic orbit of three discs lives, by the digits that the arithmetic carries.
+"""Lifetime of an unstable periodic orbit of three discs, by the number of digits of the arithmetic.
 
-Discs that meet with the line of centres at 45° to their motion are both turned by 90°. The middle disc dances in turn
-with the disc on its right and with that on its left: they meet, one goes down and one up, the sides send them back, and
-they meet again. Box sides, radius and speed are free; all else follows from the wish to arrive at the same time.
+Two discs that collide with the line of centres at 45° to their motion are both deflected by 90°. The middle disc
+collides in turn with the disc on its right and with the disc on its left: after the collision one moves down and one
+up, the sides reflect them, and they collide again. Box sides, radius and speed are free; all other lengths follow from
+the condition that the discs arrive at the same time.
 """
 
 import math
@@ -22,18 +23,21 @@ DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-
 """Decimal digits of a number in each precision."""
 
 PLACEMENTS = 25
-SPREAD = 0.25  # relative: how much box sides and radii differ among placements
-LEAST_ROOM = 0.1  # radii: shortest flights between meetings and before a wall
-MOST_PERIODS = 200  # of a trial; what has not broken by then never will
-AGREEMENT = 1e-9  # of the box: how well a scene must fit
+SPREAD = 0.25  # relative variation of box sides and radii
+LEAST_ROOM = 0.1  # radii: shortest flights between collisions and before a wall
+MOST_PERIODS = 200  # length of a run; an orbit that is not broken by then never breaks
+AGREEMENT = 1e-9  # largest deviation of the start of a scene from the orbit, relative to the box
 
 LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4
 DANCE = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
-"""Whom each disc meets, in a period."""
+"""Partners (discs or sides) that each disc meets in one period, in order."""
 
 
 class Orbit(NamedTuple):
-    """An orbit at its start, with 50 digits. x, y: positions, length. The middle disc flies right, the others left."""
+    """Start of an orbit at speed 1, with 50 digits; the middle disc moves right, the others left.
+
+    x, y: coordinates of the discs, length. period: time. room: shortest flight, length.
+    """
 
     x: tuple[Decimal, ...]
     y: tuple[Decimal, ...]
@@ -42,10 +46,10 @@ class Orbit(NamedTuple):
 
 
 def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
-    """The orbit in a box at speed 1; there is one if the room for its flights is positive.
+    """Orbit in a box of width and height `box` at speed 1; it exists if the room for its flights is positive.
 
-    d is how far discs in contact are apart along x and y; drop how long a disc is away below or above; flight how far
-    the middle disc flies between its two dances.
+    In the code, d is the distance along x and along y of two discs in contact, drop the path of a disc below or above,
+    and flight the path of the middle disc from one partner to the other.
     """
     with localcontext() as context:
         context.prec = 50
@@ -60,7 +64,7 @@ def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
 
 
 def is_on_orbit(gas: Gas) -> bool:
-    """Whether the discs stand and move, to rounding, as on the orbit that fits their box and radius."""
+    """Whether positions and velocities of a gas are, within rounding, those of the orbit in its box."""
     if len(gas) != 3 or np.ptp(gas.radius) or np.ptp(gas.mass):
         return False
     orbit = three_disc_orbit(gas.box, float(gas.radius[0]))
@@ -72,10 +76,11 @@ def is_on_orbit(gas: Gas) -> bool:
 
 @dataclass(frozen=True)
 class Survival:
-    """Of the orbit in one precision: time units at speed 1 until the first meeting that the exact motion has not.
+    """Lifetime of the orbit in one precision: time at speed 1 until the first collision that the exact motion lacks.
 
-    scene: in the scene's own box; None if it never broke. times: in other boxes, those that broke. unbroken: the number
-    of those that did not in MOST_PERIODS. median: of all, with so many periods for these.
+    precision: name of the arithmetic. digits: its decimal digits. scene: lifetime in the box of the scene; None if the
+    orbit never broke. times: lifetimes in other boxes, for orbits that broke. unbroken: number of orbits in other boxes
+    that did not break in MOST_PERIODS periods. median: of all lifetimes, with MOST_PERIODS periods for unbroken orbits.
     """
 
     precision: str
@@ -88,7 +93,11 @@ class Survival:
 
 @dataclass(frozen=True)
 class OrbitStudy:
-    """The survival in each precision, and time per decimal digit by a line through the medians."""
+    """Lifetime of the orbit in every precision.
+
+    period: of the orbit in the scene, time at speed 1. placements: number of other boxes and radii. survivals: lifetime
+    in each precision. time_per_digit: slope of a line through the medians, time per decimal digit.
+    """
 
     period: float
     placements: int
@@ -96,11 +105,11 @@ class OrbitStudy:
     time_per_digit: float
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values by name, ready for JSON."""
         return asdict(self)
 
     def sentences(self) -> list[str]:
-        """What was found, in words."""
+        """Results in sentences."""
         found = self.survivals
         medians = ", ".join(f"{s.median:.3g} in {s.precision} ({s.digits:.1f} digits)" for s in found)
         unbroken = sum(s.unbroken for s in found)
@@ -117,7 +126,7 @@ class OrbitStudy:
 
 
 def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
-    """The start of an orbit with all the digits of a precision; gas: its discs, rounded."""
+    """Start of an orbit with all digits of a precision; gas: the same discs in float64."""
 
     def column(values: tuple[Decimal, ...]) -> np.ndarray:
         high = np.array([float(value) for value in values])
@@ -133,7 +142,7 @@ def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
 
 
 def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
-    """The discs of an orbit, rounded."""
+    """Gas of the discs of an orbit, rounded to float64."""
     return Gas(
         box=box,
         position=np.array([orbit.x, orbit.y], float).T.copy(),
@@ -146,7 +155,7 @@ def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
 
 
 def survival(box: tuple[float, float], radius: float, precision: str) -> float:
-    """Time until a disc first meets what it would not in the exact motion; infinite if it never does."""
+    """Time until the first collision that the exact motion lacks; infinite if there is none in MOST_PERIODS periods."""
     orbit = three_disc_orbit(box, radius)
     gas = orbit_gas(orbit, box, radius)
     simulation = Simulation(gas, PreciseBruteForce(precision, columns_at(orbit, gas, precision)))
@@ -164,7 +173,7 @@ def survival(box: tuple[float, float], radius: float, precision: str) -> float:
 
 
 def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, float], float]]:
-    """Boxes and radii around those of a scene, for which there is an orbit."""
+    """Random boxes and radii near those of a gas for which the orbit exists."""
     random = np.random.default_rng(seed)
     found: list[tuple[tuple[float, float], float]] = []
     while len(found) < number:
@@ -178,7 +187,11 @@ def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, floa
 def study_orbit(
     gas: Gas, number: int = PLACEMENTS, seed: int = 0, progress: Callable[[str, float], None] = lambda what, share: None
 ) -> OrbitStudy:
-    """Survival of the orbit of a gas that `is_on_orbit`, and of others like it, in every precision."""
+    """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in every precision.
+
+    gas: start on the orbit (`is_on_orbit`). seed: of the random boxes. progress: called with the name of the work that
+    is being done and its share that is done.
+    """
     boxes = placements(gas, number, seed)
     period = float(three_disc_orbit(gas.box, float(gas.radius[0])).period)
     found = []

@@ -1,4 +1,4 @@
-"""What a study of accuracy found: as rows for tables and files, and in sentences made from the numbers."""
+"""Results of a study of accuracy: rows for tables and files, and sentences made from the numbers."""
 
 import csv
 import json
@@ -18,17 +18,17 @@ from idealgas.errors import UserError
 from idealgas.study.accuracy.orbit import OrbitStudy
 from idealgas.study.accuracy.study import Accuracy, Row
 
-TARGET = 0.01  # relative, of the first sentence
-CLEAR = 3.0  # standard errors, from which a bias is one
-LARGEST = 0.03  # bias up to which it is taken as proportional to the step
-LOST = 0.1  # diameters, at which a trajectory is another
+TARGET = 0.01  # relative error in the sentences on its cost
+CLEAR = 3.0  # standard errors from which on a bias is significant
+LARGEST = 0.03  # largest bias that is taken as proportional to the time step
+LOST = 0.1  # rms distance in diameters from which on a trajectory is lost
 
 
 def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
-    """One row of the CSV: numbers only, None where there is none."""
+    """Row of the CSV file for one case; None where a number was not measured."""
     averages, at = row.averages, nearest(found.collisions, 1.0)
     return {
-        "rung": row.case.name,
+        "case": row.case.name,
         "method": row.case.method,
         "dt": row.case.dt,
         "precision": row.case.precision,
@@ -53,14 +53,14 @@ def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
 
 
 def with_error(name: str, estimate: Estimate | None) -> dict[str, float | None]:
-    """An estimate in two columns."""
+    """Columns of an estimate: value and standard error."""
     if estimate is None:
         return {name: None, f"{name}_error": None}
     return {name: number(estimate.value), f"{name}_error": number(estimate.standard_error)}
 
 
 def number(value: float) -> float | None:
-    """None for what is not one."""
+    """The value, or None if it is not finite."""
     return float(value) if math.isfinite(value) else None
 
 
@@ -70,7 +70,7 @@ def nearest(values: np.ndarray, target: float) -> int:
 
 
 def lost_after(row: Row, found: Accuracy) -> float | None:
-    """Collisions a disc after which discs are LOST diameters (rms) from where they should be; None if never."""
+    """Collisions per disc after which the rms error of the positions is LOST diameters; None if it never is."""
     if row.trajectory is None or not (gone := row.trajectory > LOST).any():
         return None
     return float(found.collisions[int(gone.argmax())])
@@ -80,7 +80,7 @@ def lost_after(row: Row, found: Accuracy) -> float | None:
 
 
 def sentences(found: Accuracy) -> list[str]:
-    """What was found, in words."""
+    """Results in sentences."""
     said = [_of_rate(found), _of_pressure(found), _of_missed(found), *_of_motion(found)]
     if found.left_out:
         said.append(f"No trajectories were compared: {found.left_out}.")
@@ -88,7 +88,7 @@ def sentences(found: Accuracy) -> list[str]:
 
 
 def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) -> tuple[float, float] | None:
-    """a of bias = a dt, from clear biases that are not too large, with its standard error; None if there are none."""
+    """Coefficient a of bias = a dt with its standard error, from significant biases up to LARGEST; None without any."""
     estimates = [(row.case.dt or 0.0, bias(row)) for row in rows]
     points = [(dt, found) for dt, found in estimates if found is not None and abs(found.value) < LARGEST]
     if not any(abs(found.value) > CLEAR * found.standard_error > 0 for _, found in points):
@@ -99,7 +99,7 @@ def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) 
 
 
 def cost_of(dt: float, rows: list[Row]) -> float:
-    """CPU seconds per time of a step: a power law between two measured steps, and beyond them."""
+    """CPU seconds per unit of simulated time for a time step dt, by a power law between measured time steps."""
     steps = np.log([row.case.dt or 0.0 for row in rows][::-1])
     costs = np.log([row.timing.median for row in rows][::-1])
     k = int(np.clip(np.searchsorted(steps, math.log(dt)), 1, len(steps) - 1))
@@ -108,7 +108,7 @@ def cost_of(dt: float, rows: list[Row]) -> float:
 
 
 def price(found: Accuracy, what: str, bias: Callable[[Row], Estimate | None]) -> str:
-    """What a bias of TARGET costs by time steps; empty if no bias was seen."""
+    """Sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
     if (fit := linear_coefficient(found.steps, bias)) is None:
         return ""
     dt = TARGET / abs(fit[0])
@@ -179,7 +179,7 @@ def _of_motion(found: Accuracy) -> list[str]:
 
 
 def accuracy_dict(found: Accuracy) -> dict[str, Any]:
-    """For JSON: the rows of the CSV, and the trajectories."""
+    """Plain values, ready for JSON: the rows of the CSV file, the trajectories and the sentences."""
     rows = []
     for row in found.rows:
         error = None if row.trajectory is None else [number(value) for value in row.trajectory]
@@ -196,12 +196,16 @@ def accuracy_dict(found: Accuracy) -> dict[str, Any]:
 
 
 def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
-    """For JSON."""
+    """Plain values by name, ready for JSON."""
     return asdict(found) | {"sentences": found.sentences()}
 
 
 def make_folder(path: str | os.PathLike[str]) -> Path:
-    """A folder for the files, made if it is not there. UserError (exit code 1) if it cannot be."""
+    """Make the folder for the files if it does not exist.
+
+    Raises:
+        UserError: with exit code 1, if it cannot be made.
+    """
     folder = Path(path)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -213,7 +217,11 @@ def make_folder(path: str | os.PathLike[str]) -> Path:
 def write_files(
     folder: Path, name: str, result: dict[str, Any], rows: list[dict[str, Any]], figure: Figure
 ) -> list[Path]:
-    """NAME.csv, NAME.json and NAME.png in a folder; those that are there are replaced."""
+    """Write NAME.csv, NAME.json and NAME.png into a folder, replacing existing files, and return their paths.
+
+    Raises:
+        UserError: with exit code 1, if a file cannot be written.
+    """
     paths = [folder / f"{name}.{ending}" for ending in ("csv", "json", "png")]
     try:
         with paths[0].open("w", newline="", encoding="utf-8") as file:

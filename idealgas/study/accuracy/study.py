@@ -1,4 +1,4 @@
-"""How wrong each way of running a scene is, and what it costs: the ladder of rungs, climbed in one process."""
+"""Errors and CPU time of every case of the methods compared, measured in one process."""
 
 import math
 import statistics
@@ -19,19 +19,23 @@ from idealgas.study.accuracy.averages import Averages, measure_averages
 from idealgas.study.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated
 from idealgas.study.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
 
-SHORTEST_TIMING = 0.1  # CPU seconds of a run that is timed
-LONGEST_RUN = 40.0  # CPU seconds that a rung may take for its averages, and the reference for the trajectories
-MOST_PRECISE = 4000  # discs, whose time brute force takes
+SHORTEST_TIMING = 0.1  # least CPU seconds of a timed run
+LONGEST_RUN = 40.0  # most CPU seconds of a case for its averages, and of the reference trajectories
+MOST_PRECISE = 4000  # largest number of discs for brute force
 FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
-"""Collisions a disc at which trajectories are compared: at the last, no digit of a float64 is left."""
+"""Collisions per disc at which trajectories are compared; at the last one no digit of a float64 is correct."""
 
 Progress = Callable[[str, float], None]
-"""Called with what is being done, and the share of it."""
+"""Function that is called with the name of the work that is being done and its share that is done."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """CPU seconds per unit of simulated time: median, least and most of the repeats. collisions: per unit of time."""
+    """CPU time of a case.
+
+    median, least, most: CPU seconds per unit of simulated time over the repeats. collisions: pair collisions per unit
+    of simulated time.
+    """
 
     median: float
     least: float
@@ -46,11 +50,12 @@ class Timing:
 
 @dataclass(frozen=True)
 class Row:
-    """A rung and all its errors; None where there is no such number.
+    """CPU time and errors of one case; None where an error was not measured.
 
-    rate, z_pairs, z_walls: relative bias with its standard error, of the collision rate against the event-driven run
-    and of the pressure against theory. trajectory: (T,) rms distance from the reference, in diameters. way_back:
-    rms distance from the start after going back, in diameters.
+    case: method, time step and precision. timing: CPU time. averages: averages of the whole run. rate: relative bias of
+    the collision rate against the event-driven run. z_pairs, z_walls: relative bias of the pressure, by the virial of
+    pairs and of walls, against theory. missed: missed collisions. trajectory: (T,), rms distance from the reference
+    trajectories, in diameters. way_back: rms distance from the start after reversal of all velocities, in diameters.
     """
 
     case: Case
@@ -66,8 +71,11 @@ class Row:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """The rows of all rungs. until: time that averages were run for. collisions: (T,) a disc, where trajectories were
-    compared; none if they were not. left_out: why there are no precisions; empty if there are.
+    """CPU time and errors of all cases for one scene.
+
+    title: of the scene. number: of discs. until: simulated time of the runs for averages. repeats: number of timings of
+    each case. collisions: (T,), collisions per disc at which trajectories were compared; empty if they were not.
+    left_out: reason why brute force in several precisions was not run; empty if it was. rows: one for each case.
     """
 
     title: str
@@ -80,23 +88,28 @@ class Accuracy:
 
     @property
     def event_driven(self) -> Row:
+        """Row of the event-driven run."""
         return self.rows[0]
 
     @property
     def steps(self) -> list[Row]:
-        """Time steps, from coarse to fine."""
+        """Rows of the time steps, from long to short."""
         return [row for row in self.rows if row.case.dt is not None]
 
     @property
     def precisions(self) -> list[Row]:
-        """Brute force, from few digits to many."""
+        """Rows of brute force, from few digits to many."""
         return [row for row in self.rows if row.case.precision is not None]
 
 
 def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda what, share: None) -> Accuracy:
-    """Run a scene on all rungs. UserError if it cannot be run in time steps, or nothing collides."""
+    """Run a scene in all cases and measure CPU time and errors.
+
+    Raises:
+        UserError: if the scene cannot be run in time steps, or if no discs collide in it.
+    """
     check(scene)
-    progress("mixing the gas", 0.0)
+    progress("equilibrating the gas", 0.0)
     start = equilibrated(scene)
     left_out = why_not_precise(scene, start.gas)
     cases = compared_cases(start.gas, precise=not left_out)
@@ -126,7 +139,11 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
 
 
 def check(scene: Scene) -> None:
-    """UserError unless the scene can be run in time steps, and anything collides."""
+    """Check that a scene can be run in time steps and has at least two discs.
+
+    Raises:
+        UserError: if not.
+    """
     if scene.run.method == "monte_carlo":
         raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
     if strange := scene.lacking("in_steps"):
@@ -136,7 +153,7 @@ def check(scene: Scene) -> None:
 
 
 def why_not_precise(scene: Scene, gas: Gas) -> str:
-    """Why a gas cannot be run in all precisions; empty if it can."""
+    """Reason why a gas cannot be run in all precisions; empty if it can."""
     if scene.effects:
         return f"no other precision than float64 knows of {', '.join(scene.effects)}"
     if len(gas) > MOST_PRECISE:
@@ -145,14 +162,14 @@ def why_not_precise(scene: Scene, gas: Gas) -> str:
 
 
 def relative(value: Estimate, reference: Estimate) -> Estimate:
-    """value/reference - 1, of independent estimates."""
+    """Relative deviation value/reference - 1 of two independent estimates."""
     ratio = value.value / reference.value
     error = ratio * math.hypot(value.standard_error / value.value, reference.standard_error / reference.value)
     return Estimate(ratio - 1, error, math.inf)
 
 
 def from_theory(value: Estimate | None) -> Estimate | None:
-    """value/theory - 1, with the errors of both."""
+    """Relative deviation value/theory - 1 of an estimate, with the errors of both; None without theory."""
     if value is None or value.theory is None or not math.isfinite(value.theory):
         return None
     error = math.hypot(value.standard_error, value.theory_error) / value.theory
@@ -160,7 +177,7 @@ def from_theory(value: Estimate | None) -> Estimate | None:
 
 
 def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
-    """CPU time on every rung, in turn; each run is as long as it takes to be timed, found out before."""
+    """Measure the CPU time of all cases in turn; each run is long enough to be timed (SHORTEST_TIMING)."""
     durations = []
     for k, case in enumerate(cases):
         progress("compiling and first timing", k / len(cases))
@@ -180,7 +197,7 @@ def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress:
 
 
 def _long_enough(start: Start, case: Case) -> float:
-    """Simulated time that takes SHORTEST_TIMING; the machine code is there afterwards."""
+    """Simulated time of a run of SHORTEST_TIMING CPU seconds; it also compiles the machine code."""
     speed = float(np.hypot(*start.gas.velocity.T).mean())
     duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
     cpu_seconds(start.simulation(case.make()), duration)
@@ -194,7 +211,10 @@ def _long_enough(start: Start, case: Case) -> float:
 def _all_averages(
     scene: Scene, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress
 ) -> tuple[list[Averages | None], float]:
-    """From runs of the whole scene, on the rungs that are quick enough; the event-driven one says how long."""
+    """Averages of the whole scene in all cases that are fast enough, and the simulated time of the runs.
+
+    The event-driven run, which is the first, determines this time.
+    """
     found: list[Averages | None] = []
     with tempfile.TemporaryDirectory(prefix="idealgas-accuracy-") as folder:
         path = Path(folder) / "run.h5"
@@ -216,7 +236,10 @@ def _all_averages(
 def _motion(
     start: Start, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
 ) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
-    """Collisions a disc, distance from the double-double motion on each rung, and from the start after going back."""
+    """Errors of the motion: collisions per disc at which they are measured, and rms distances in diameters by case.
+
+    The distances are those from the double-double motion, and those from the start after reversal of all velocities.
+    """
     if cases[-1].precision is None:
         return np.empty(0), {}, {}
     reference, timing = cases[-1], timings[-1]

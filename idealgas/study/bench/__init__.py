@@ -1,1 +1,1 @@
-"""How fast the engine is, and what each effect costs."""
+"""Speed of the engine, and cost of each effect."""

@@ -1,4 +1,4 @@
-"""How fast the engine is on this machine, with the event log and without."""
+"""Speed of the engine on this machine, with the event log and without it."""
 
 import math
 import statistics
@@ -16,9 +16,11 @@ RADIUS = 0.5
 
 
 class Row(NamedTuple):
-    """One line of the table; the rate is the median over the repeats, slowest and fastest beside it.
+    """Speed of the engine for one number of discs and packing fraction.
 
-    ratio: of the rates with the log and without, the median over pairs of runs that followed each other; with a log.
+    N: number of discs. phi: packing fraction. log: whether events were logged. collisions_per_s: pair collisions per
+    second, median over the repeats. slowest, fastest: its extremes. ratio: rate with the log over rate without it,
+    median over pairs of consecutive runs; None without the log.
     """
 
     N: int
@@ -32,14 +34,17 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class Bench:
-    """compile_seconds: what the first run spends on machine code (little if it is cached). rows: the table."""
+    """Results of the benchmark.
+
+    compile_seconds: time for compiling or loading the machine code, seconds. rows: one for each kind of run.
+    """
 
     compile_seconds: float
     rows: list[Row]
 
 
 def bench_scene(n: int, phi: float, collisions: int, log: bool) -> Scene:
-    """n equal discs from a lattice at temperature 1 in a square box."""
+    """Scene of n equal discs on a lattice at temperature 1 in a square box."""
     side = math.sqrt(n * math.pi * RADIUS**2 / phi)
     return Scene(
         scene=Header(title=f"bench, N = {n}, packing fraction {phi:g}"),
@@ -57,7 +62,10 @@ def bench(
     repeats: int = 3,
     on_row: Callable[[Row], None] = lambda row: None,
 ) -> Bench:
-    """Time runs of at least `collisions` pair collisions, and two a disc, without the log and with it in turn."""
+    """Time runs of at least `collisions` pair collisions and two per disc, alternately without and with the log.
+
+    numbers: numbers of discs. fractions: packing fractions. repeats: runs of each kind. on_row: called with each row.
+    """
     with tempfile.TemporaryDirectory(prefix="idealgas-bench-") as folder:
         path = Path(folder) / "bench.h5"
         started = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What an effect costs: the time of an event with it, over that of the plain box, in turn in one process."""
+"""Cost of each effect: time per event with it over that in the plain box, measured alternately in one process."""
 
 import math
 import statistics
@@ -26,7 +26,7 @@ events = false
 
 
 def polygon(corners: int, height: float = SIDE / 2, radius: float = 4.0) -> str:
-    """`[[wall]]` tables of a regular polygon at a height in the box."""
+    """Tables `[[wall]]` of a regular polygon of `radius` (length) with its centre at `height` in the box."""
     turn = [2 * math.pi * k / corners for k in range(corners + 1)]
     points = [[SIDE / 2 + radius * math.cos(a), height + radius * math.sin(a)] for a in turn]
     return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))
@@ -40,7 +40,7 @@ PISTON = f'[piston]\nside = "top"\nposition = {0.95 * SIDE!r}\nmass = 100\npress
 
 
 def thermal(*sides: str) -> str:
-    """Keys of `[box]` for sides at the temperature of the gas."""
+    """Keys of `[box]` for thermal sides at the temperature of the gas."""
     return "".join(f"{side} = {{ thermal = 1 }}\n" for side in sides)
 
 
@@ -58,12 +58,14 @@ SCENES = {
         polygon(6, height=5.0) + GRAVITY + ROTATION + RESTITUTION + PISTON,
     ),
 }
-"""What each adds to the plain box: keys of `[box]`, and tables."""
+"""Keys of `[box]` and further tables that each effect adds to the scene of the plain box."""
 
 
 class Row(NamedTuple):
-    """ratio: time per event (pair collision or wall hit) over that of the plain box, the median over the repeats;
-    smallest and largest beside it. compile_seconds: to make or load the machine code.
+    """Cost of one effect.
+
+    effect: name. ratio: time per event (pair collision or wall hit) over that in the plain box, median over the
+    repeats. smallest, largest: its extremes. compile_seconds: time for compiling or loading the machine code, seconds.
     """
 
     effect: str
@@ -74,7 +76,7 @@ class Row(NamedTuple):
 
 
 def effect_scene(effect: str | None, events: int) -> Scene:
-    """The plain box with one of SCENES, or as it is."""
+    """Scene of the plain box with one effect of SCENES, or with none."""
     keys, tables = SCENES[effect] if effect is not None else ("", "")
     return parse_scene(f"run.events = {events}\n[box]\nsize = [{SIDE!r}, {SIDE!r}]\n{keys}{PLAIN}{tables}")
 
@@ -82,7 +84,10 @@ def effect_scene(effect: str | None, events: int) -> Scene:
 def bench_effects(
     events: int = 500_000, repeats: int = 5, on_row: Callable[[Row], None] = lambda row: None
 ) -> list[Row]:
-    """Time every effect alone, and all that go together at once, against the plain box, in turn."""
+    """Time every effect alone, and all compatible effects together, alternately with the plain box.
+
+    events: of each run. repeats: runs of each kind. on_row: called with each row.
+    """
     with tempfile.TemporaryDirectory(prefix="idealgas-bench-") as folder:
 
         def run(effect: str | None, most: int) -> Summary:

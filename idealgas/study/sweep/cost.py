@@ -1,4 +1,4 @@
-"""What a sweep will cost, before it is run."""
+"""Cost estimate of a sweep before it is run."""
 
 import math
 import tempfile
@@ -11,12 +11,15 @@ from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
 from idealgas.study.sweep.plan import Sweep
 
-TRIAL_EVENTS = 20_000  # of the runs that speeds are measured on
-ALONE = 0.05  # seconds that a point takes whatever its size: its log, its analyses, the scheduler
+TRIAL_EVENTS = 20_000  # events of the short runs that measure the speed
+ALONE = 0.05  # seconds that every point takes for its log, its analyses and the scheduler
 
 
 class Cost(NamedTuple):
-    """Of one point; bytes: of its log."""
+    """Cost estimate of one point of a sweep.
+
+    number: of discs. packing_fraction: no unit. events: number of events. bytes: size of the log. seconds: run time.
+    """
 
     number: int
     packing_fraction: float
@@ -26,7 +29,7 @@ class Cost(NamedTuple):
 
 
 class _Trial(NamedTuple):
-    """How a scene began to run: rows of the log per event; events per second, and per simulated time."""
+    """Short run of a scene: event rows in the log per event, events per second, and events per simulated time."""
 
     rows: float
     per_second: float
@@ -34,7 +37,7 @@ class _Trial(NamedTuple):
 
 
 def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
-    """What each point costs: by the beginning of a run of each combination of values, and by theory where it can."""
+    """Cost estimate of each point, from a short run of each combination of values and, where possible, from theory."""
     trials: dict[int, _Trial] = {}
     costs = []
     for point in sweep.points:

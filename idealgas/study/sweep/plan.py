@@ -1,4 +1,4 @@
-"""A sweep: a base scene, axes along which it changes, and the points that follow, each a scene of its own."""
+"""Plan of a sweep: a base scene, axes of values that change it, and the resulting points, each with its scene."""
 
 import copy
 import hashlib
@@ -26,7 +26,7 @@ from idealgas.scene import Scene, SceneError
 from idealgas.scene.loader import make_scene
 
 PHI, BASE = "phi", "base"
-"""Axis keys that no scene has: the packing fraction, reached by scaling the box; the path of the base scene."""
+"""Keys of axes beside those of a scene: packing fraction, by scaling the box, and path of the base scene."""
 
 
 def _known(name: str) -> str:
@@ -36,14 +36,14 @@ def _known(name: str) -> str:
 
 
 Analysis = Annotated[str, AfterValidator(_known)]
-"""The name of an analysis, as its command has it."""
+"""Name of an analysis, that of its command."""
 
 Value = bool | int | float | str | tuple[Any, ...]
 Count = Annotated[int, Field(ge=1, le=100_000)]
 
 
 class Settings(Table):
-    """`[sweep]`"""
+    """Table `[sweep]`: base scene, seed, replicates and analyses."""
 
     scene: str | None = Field(default=None, description="path of the base scene, from this file's folder")
     seed: int = Field(default=0, ge=0, lt=2**63, description="whole number from which the seeds of all points follow")
@@ -55,7 +55,7 @@ class Settings(Table):
 
 
 class Axis(Table):
-    """`[[axis]]`: one key and the values it takes. Axes are crossed; those with the same `zip` go along together."""
+    """Table `[[axis]]`: one key and its values; axes are combined with each other, those of the same `zip` in step."""
 
     key: str = Field(description='a key of the scene, as for --set, or "phi" or "base"')
     values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1)] | None = Field(
@@ -71,7 +71,7 @@ class Axis(Table):
 
     @property
     def steps(self) -> list[Value]:
-        """The values, one after another; whole numbers of a range as such, as keys like `count` want them."""
+        """Values of the axis in order; whole numbers of a range are integers, which keys such as `count` need."""
         if self.range:
             steps = np.linspace(*self.range).tolist()
         elif self.log_range:
@@ -82,7 +82,7 @@ class Axis(Table):
 
 
 class Tables(Table):
-    """A sweep's file."""
+    """Tables of the file of a sweep."""
 
     sweep: Settings = Field(
         default_factory=Settings, description="[sweep]: scene, seed, replicates, analyses, keep_logs"
@@ -93,7 +93,11 @@ class Tables(Table):
 
 @dataclass(frozen=True)
 class Point:
-    """One run. combination: number of its values; values: by the key of their axis."""
+    """One point of a sweep: one run.
+
+    index: number of the point. combination: number of its combination of values. replicate: number of its replicate.
+    values: value of each axis, by its key. scene: the scene to run.
+    """
 
     index: int
     combination: int
@@ -104,7 +108,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A whole sweep. text: what tells it from others, the file with a digest of its points."""
+    """A whole sweep.
+
+    analyses: names of the analyses of each point. keep_logs: whether logs are kept. axes: keys of the axes. points: all
+    runs. text: the file of the sweep with a digest of its points, which identifies the sweep.
+    """
 
     analyses: tuple[str, ...]
     keep_logs: bool
@@ -114,7 +122,11 @@ class Sweep:
 
 
 def load_sweep(path: str | PathLike[str]) -> Sweep:
-    """Read a sweep and make all of its points. SceneError with every fault of the file, its base scene and points."""
+    """Read the file of a sweep and make all of its points.
+
+    Raises:
+        SceneError: with all errors of the file, of its base scenes and of its points.
+    """
     text, name = read_text(path).replace("\r\n", "\n"), str(path)
     document = parse_document(text, name)
     origin = Origin(text, name)
@@ -122,7 +134,7 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
         tables = Tables.model_validate(document)
     except ValidationError as error:
         raise SceneError(origin.report(as_issues(error.errors(include_url=False), Tables))) from None
-    if found := list(_faults(tables)):
+    if found := list(_errors(tables)):
         raise SceneError(origin.report(found))
     points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
     digest = hashlib.sha256("".join(dump_document(point.scene) for point in points).encode()).hexdigest()
@@ -139,7 +151,7 @@ Base = tuple[dict[str, Any], Origin]
 
 
 def _bases(tables: Tables, path: Path, origin: Origin) -> dict[Value | None, Base]:
-    """Base scenes by their value of the axis "base", or the only one by None."""
+    """Base scenes by their value of the axis "base"; a single base scene has the key None."""
     if tables.base is not None:
         return {None: (tables.base, Origin(origin.text, origin.name, above=("base",)))}
     if tables.sweep.scene is not None:
@@ -153,8 +165,8 @@ def _read_base(path: Path) -> Base:
     return parse_document(text, str(path)), Origin(text, str(path))
 
 
-def _faults(tables: Tables) -> Iterator[Issue]:
-    """What no table can know alone."""
+def _errors(tables: Tables) -> Iterator[Issue]:
+    """Errors that concern several tables."""
     along = [i for i, axis in enumerate(tables.axis) if axis.key == BASE]
     given = ["sweep.scene"] * (tables.sweep.scene is not None) + ["[base]"] * (tables.base is not None)
     given += ["an axis base"] * bool(along)
@@ -185,7 +197,7 @@ def _faults(tables: Tables) -> Iterator[Issue]:
 
 
 def _points(tables: Tables, bases: dict[Value | None, Base], origin: Origin) -> Iterator[Point]:
-    """Points in order of their axes, the last axis fastest, replicates together."""
+    """Points in the order of the axes, the last axis changing fastest, with replicates of a point together."""
     settings = tables.sweep
     errors: dict[str, None] = {}  # each line once
     points: list[Point] = []
@@ -219,7 +231,7 @@ def _points(tables: Tables, bases: dict[Value | None, Base], origin: Origin) -> 
 
 
 def _groups(axes: Sequence[Axis]) -> list[list[tuple[tuple[int, Value], ...]]]:
-    """Axes that are crossed; each a list of steps, in which one or more axes (by number) take a value."""
+    """Groups of axes that are combined; each is a list of steps that give one or more axes (by number) a value."""
     together: dict[Any, list[int]] = {}
     for i, axis in enumerate(axes):
         together.setdefault(axis.zip or i, []).append(i)
@@ -241,13 +253,17 @@ def _apply(key: str, value: Value, document: dict[str, Any], place: str) -> Key:
 
 
 def _seed(seed: int, combination: int, replicate: int) -> int:
-    """A scene's seed; it depends neither on other points nor on who runs it."""
+    """Seed of the scene of one point; it depends neither on other points nor on the worker that runs it."""
     drawn = np.random.SeedSequence(seed, spawn_key=(combination, replicate)).generate_state(1, np.uint64)
     return int(drawn[0]) >> 1
 
 
 def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) -> None:
-    """Scale the document's box so that its discs cover a share phi of it. SceneError if that has no meaning."""
+    """Scale the box of a document so that its discs have the packing fraction phi.
+
+    Raises:
+        SceneError: if phi is no packing fraction, or if the scene has parts with positions in the box.
+    """
     fixed = ["disc"] if scene.disc else []
     fixed += [str(effect.keys[0][0]) for effect in scene.called if not effect.properties.scales]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []

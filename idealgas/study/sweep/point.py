@@ -1,4 +1,4 @@
-"""One point of a sweep, run by a worker: its log, its analyses, and a file that says that it is done."""
+"""One point of a sweep, run by a worker: its log, its analyses, and the file of its results."""
 
 import json
 import os
@@ -12,7 +12,11 @@ from idealgas.scene import parse_scene
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker is told of a point: plain values. folder: of the sweep; values: by the key of their axis."""
+    """Task of a worker for one point, as plain values.
+
+    folder: of the sweep. index, combination, replicate: numbers of the point, see `Point`. values: value of each axis,
+    by its key. scene: text of the scene. analyses: names of the analyses. keep_log: whether the log is kept.
+    """
 
     folder: str
     index: int
@@ -25,22 +29,22 @@ class Task:
 
 
 def points_folder(folder: str | os.PathLike[str]) -> Path:
-    """Where the files of a sweep's points are."""
+    """Folder of the files of all points of a sweep."""
     return Path(folder) / "points"
 
 
 def result_path(folder: str | os.PathLike[str], index: int) -> Path:
-    """The file that a point leaves when it is done."""
+    """Path of the result file of a point, which exists when the point is done."""
     return points_folder(folder) / f"{index:04d}.json"
 
 
 def log_path(folder: str | os.PathLike[str], index: int) -> Path:
-    """The point's log."""
+    """Path of the log of a point."""
     return points_folder(folder) / f"{index:04d}.h5"
 
 
 def run_point(task: Task) -> None:
-    """Simulate and analyse a point. Its files appear under their names when they are whole, the results last."""
+    """Simulate and analyse a point; its files get their names when they are complete, the result file last."""
     from idealgas.log import open_log
     from idealgas.run.simulate import simulate
 
@@ -48,7 +52,7 @@ def run_point(task: Task) -> None:
     if done.exists():
         return
     scene = parse_scene(task.scene)
-    if not task.keep_log:  # nobody will ask how large it was
+    if not task.keep_log:  # the log is removed, so compression would only cost time
         scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
     part = log.with_name(f"{log.name}.part")
     simulate(scene, part, force=True, command="idealgas sweep")

@@ -1,4 +1,4 @@
-"""What a sweep found, as one tidy table: a row for each number that an analysis of a point gave."""
+"""Results of a sweep as one table, with a row for each number from an analysis of a point."""
 
 import csv
 import json
@@ -15,7 +15,11 @@ ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_
 
 
 def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """The result files of a sweep in order of their points. UserError if there are none, or one cannot be read."""
+    """Read the result files of a sweep in the order of its points.
+
+    Raises:
+        UserError: if there are none, or if one cannot be read.
+    """
     paths = sorted(points_folder(folder).glob("*.json"), key=lambda path: int(path.stem))
     if not paths:
         raise UserError(f"{folder}: holds no results of a sweep")
@@ -26,7 +30,11 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
 
 
 def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """What an analysis found at each point of a sweep, by the values of its axes. UserError if it was not asked for."""
+    """Yield the label (the values of the axes) and the stored result of an analysis for each point of a sweep.
+
+    Raises:
+        UserError: if the sweep does not have this analysis.
+    """
     for point in read_points(folder):
         if analysis not in point["analyses"]:
             raise UserError(f'{folder}: a sweep without the analysis "{analysis}"')
@@ -35,10 +43,12 @@ def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str,
 
 
 def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
-    """Write `results.csv`, and `results.parquet` where pyarrow is installed, from the result files there are."""
+    """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files; return their paths."""
     rows = [row for point in read_points(folder) for row in _rows(point)]
     names = list(dict.fromkeys(name for row in rows for name in row))
-    names.sort(key=lambda name: name in ("analysis", "quantity", *ESTIMATE))  # what tells points apart comes first
+    names.sort(
+        key=lambda name: name in ("analysis", "quantity", *ESTIMATE)
+    )  # columns that identify the point come first
     tables = [Path(folder) / "results.csv"]
     part = tables[0].with_name("results.csv.part")
     with part.open("w", newline="") as file:
@@ -68,7 +78,10 @@ def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict[str, float | None]]]:
-    """Numbers in a result by their path; an entry of a list is named by its texts or its place, series are left out."""
+    """Numbers in a result by their path in it; series are left out.
+
+    An entry of a list is named by its texts or, without texts, by its index.
+    """
     if isinstance(found, dict):
         if "standard_error" in found:
             yield "/".join(path), {name: found[name] for name in ESTIMATE}

@@ -1,7 +1,7 @@
-"""Running a sweep: one task a point on dask.distributed, on this machine or on a cluster.
+"""Run of a sweep: one task for each point on dask.distributed, on this machine or on a cluster.
 
-A point is done when its result file is in place, and only then: whoever is killed, loses the points in hand at most,
-and the next start goes on from the files. Nothing that a point writes depends on the worker that ran it.
+A point is done when its result file exists. If a process is killed, at most the points that were running are lost, and
+the next start continues from the files. The files of a point do not depend on the worker that ran it.
 """
 
 import asyncio
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from distributed import Client
 
 RETRIES = 2
-"""How often a point is tried again that failed, or whose worker died."""
+"""Number of further attempts for a point that failed, or whose worker died."""
 
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""What a worker here does first: Ctrl-C is for the process that has it end in order."""
+"""First command of a local worker: ignore Ctrl-C, which the main process handles."""
 
 LOCAL = {
     "distributed.scheduler.allowed-failures": RETRIES,
@@ -34,14 +34,14 @@ LOCAL = {
     "distributed.admin.tick.interval": "1s",
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
 }
-"""Of the cluster made here: nothing but the points takes time, and memory that one needed is there for the next."""
+"""Settings of the local cluster: no time for anything but points, and workers reuse their memory."""
 
 PATIENCE = 10.0  # seconds in which a scheduler must answer
 
 
 @dataclass(frozen=True)
 class Progress:
-    """done: points whose results are there; failed: those given up; total: all."""
+    """Progress of a sweep: numbers of finished points, of points that failed for good, and of all points."""
 
     done: int
     failed: int
@@ -50,7 +50,10 @@ class Progress:
 
 @dataclass(frozen=True)
 class Outcome:
-    """ran: points done now; before: points that were done already. failures: what went wrong, by point."""
+    """Outcome of a sweep.
+
+    ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
+    """
 
     ran: int
     before: int
@@ -65,10 +68,17 @@ def run_sweep(
     scheduler: str | None = None,
     on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> Outcome:
-    """Run what is not done of a sweep; the folder is made, or has to be that of the same sweep.
+    """Run the points of a sweep that are not done yet.
 
-    workers: processes on this machine, by default one a core. scheduler: address of a dask scheduler whose workers see
-    the folder under the same path; it takes the place of workers. Raises UserError if the sweep cannot be run at all.
+    Args:
+        sweep: the sweep to run.
+        folder: folder of logs and results; it is made, or must belong to the same sweep.
+        workers: number of processes on this machine; None for one per core.
+        scheduler: address of a dask scheduler, instead of local workers; its workers see the folder at the same path.
+        on_progress: called when a point has finished or failed.
+
+    Raises:
+        UserError: if the sweep cannot be run at all.
     """
     folder = Path(folder).absolute()
     prepare(sweep, folder)
@@ -93,7 +103,11 @@ def run_sweep(
 
 
 def prepare(sweep: Sweep, folder: Path) -> None:
-    """Make the folder, with the sweep in it. UserError if it holds another sweep or cannot be written."""
+    """Make the folder of a sweep, with the file of the sweep in it.
+
+    Raises:
+        UserError: if the folder holds another sweep or other files; with exit code 1, if it cannot be written.
+    """
     plan = folder / "sweep.toml"
     try:
         if plan.exists():
@@ -110,7 +124,7 @@ def prepare(sweep: Sweep, folder: Path) -> None:
 
 
 def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]]:
-    """Each point's index as it ends, with what went wrong."""
+    """Yield the index of each point when it ends, with the reason of its failure or None."""
     from distributed import as_completed
 
     futures = client.map(run_point, tasks, pure=False, retries=RETRIES, key=[f"point-{task.index}" for task in tasks])
@@ -125,7 +139,7 @@ def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]
 
 
 def _reason(error: Any) -> str:
-    """One line on why a point failed."""
+    """Reason why a point failed, in one line."""
     from distributed.scheduler import KilledWorker
 
     if isinstance(error, KilledWorker):
@@ -136,7 +150,7 @@ def _reason(error: Any) -> str:
 
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
-    """A client of the scheduler at an address, or of one made here with so many workers of one thread."""
+    """Yield a client of the scheduler at an address, or of a local cluster with `workers` processes."""
     try:
         import dask
         from distributed import Client, LocalCluster
@@ -145,7 +159,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         raise UserError("a sweep needs dask.distributed: pip install 'idealgas[sweep]'") from None
     if scheduler is not None:
         try:
-            parse_host_port(parse_address(scheduler)[1])  # a client of no address at all can hardly be closed
+            parse_host_port(parse_address(scheduler)[1])  # a client of an invalid address cannot be closed cleanly
             client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
         except ValueError as error:
             raise UserError(f"{scheduler}: no address of a scheduler ({error})") from None
@@ -159,7 +173,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
-            dashboard_address=":0",  # no fixed port for the routes that come without a dashboard too
+            dashboard_address=":0",  # no fixed port for the HTTP server, which runs also without a dashboard
             scheduler_kwargs={"dashboard": False},
             memory_limit=0,
             silence_logs=logging.CRITICAL,

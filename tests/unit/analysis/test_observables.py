@@ -26,6 +26,7 @@ from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
+from idealgas.scene.properties import Effect, Properties
 
 SCENE = """
 [scene]
@@ -103,8 +104,8 @@ def test_log_without_events_is_refused(tmp_path):
 
 
 def test_effects_are_not_ignored(log, monkeypatch):
-    monkeypatch.setattr(Scene, "effects", ("gravity",))
-    with pytest.raises(UserError, match="no answer for a gas with gravity"):
+    monkeypatch.setattr(Scene, "called", (Effect("magnets", (), Properties(uniform=False)),))
+    with pytest.raises(UserError, match="no answer for a gas with magnets"):
         pressure(log)
 
 
@@ -124,7 +125,7 @@ def test_pressure_by_hand(log):
     blocks = list(log.chunks(columns, log.row_at(start)))
     time, disc, partner, position, velocity = (np.concatenate(column) for column in zip(*blocks, strict=True))
     before = np.empty_like(velocity)
-    last = {k: v for k, v in enumerate(log.state_at(start).velocity)}
+    last = dict(enumerate(log.state_at(start).velocity))
     for row, own in enumerate(disc):
         before[row] = last[own]
         last[own] = velocity[row]

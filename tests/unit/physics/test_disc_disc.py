@@ -84,7 +84,7 @@ def test_unequal_masses():
     assert discs.vx.tolist() == [0.5, 1.5]
 
 
-numbers = st.floats(-10, 10, allow_subnormal=False)
+numbers = st.floats(-10, 10).filter(lambda x: x == 0 or abs(x) > 1e-100)  # whose squares keep all their digits
 records = st.tuples(numbers, numbers, numbers, numbers, st.floats(0, 10), st.floats(0.1, 2), st.floats(0.1, 10))
 
 

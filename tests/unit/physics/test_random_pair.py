@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.theory.hard_discs import collision_rate, contact_value, mean_relative_speed
+from idealgas.analysis.theory.hard_discs import collision_rate, mean_relative_speed
 from idealgas.engine.records import DISC
 from idealgas.physics import random_pair
 from idealgas.physics.disc_disc import collide
@@ -26,11 +26,6 @@ def test_splitmix64_gives_its_published_numbers():
 def test_unit_interval_excludes_zero():
     assert unit_interval(np.uint64(0)) == 2.0**-53
     assert unit_interval(np.uint64(2**64 - 1)) == 1.0
-
-
-def test_contact_value_is_that_of_the_theory():
-    for phi in (0.0, 0.01, 0.3, 0.6):
-        assert random_pair.contact_value(phi) == pytest.approx(float(contact_value(phi)), rel=1e-15)
 
 
 @pytest.mark.parametrize(("n", "radius"), [(1000, 0.02), (50, 0.3)])

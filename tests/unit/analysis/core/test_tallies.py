@@ -129,7 +129,7 @@ def test_velocity_histogram(log, edges, quantity):
 def test_impacts(log, edges):
     tally = Impacts()
     stream(log, edges, [tally])
-    before = {disc: v for disc, v in enumerate(log.state_at(edges[0]).velocity)}
+    before = dict(enumerate(log.state_at(edges[0]).velocity))
     expected = {name: np.zeros_like(getattr(tally, name)) for name in ("pair_virial", "wall_virial", "impulse", "hits")}
     collisions = np.zeros_like(tally.collisions)
     rows = rows_of(log, edges)

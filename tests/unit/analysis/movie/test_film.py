@@ -103,7 +103,7 @@ def test_a_gate_is_there_until_it_opens():
 
 
 def test_the_piston_is_drawn():
-    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), 0.0, (0.0, 10.0))
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), 0.0, (0.0, 10.0), 1.0)
     red, green, blue = paint(piston=track)[1](6.5, 5)
     assert red > 150 > green > blue
     assert paint(piston=track)[1](6.2, 5).min() > WHITE

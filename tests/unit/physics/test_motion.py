@@ -1,0 +1,52 @@
+"""Free flight beside 50 digits, for discs and for arrays."""
+
+import mpmath
+import numpy as np
+import pytest
+from rounding import body, exact, gamma
+
+from idealgas.physics.gravity import Gravity, acceleration_along
+from idealgas.physics.motion import advance, position_after, velocity_after
+
+pytestmark = pytest.mark.interpreted
+
+
+def some(seed, n=300):
+    """Positions, velocities, accelerations and delays over six decades."""
+    draw = np.random.default_rng(seed)
+    return draw.normal(size=(4, n)) * 10.0 ** draw.uniform(-3, 3, (4, n))
+
+
+def test_position_and_velocity():
+    """Each term goes through at most three roundings: x two sums; v t a product and two sums; ½ a t² two and a sum."""
+    with mpmath.workdps(50):
+        for values in some(1).T:
+            x, v, a, t = map(exact, values)
+            terms = abs(x) + abs(v * t) + abs(a * t * t / 2)
+            assert abs(position_after(*values) - (x + v * t + a * t * t / 2)) <= gamma(3) * terms
+            assert abs(position_after(*values[:2], None, values[3]) - (x + v * t)) <= gamma(2) * (abs(x) + abs(v * t))
+            assert abs(velocity_after(*values[1:]) - (v + a * t)) <= gamma(2) * (abs(v) + abs(a * t))
+
+
+def test_arrays_and_numbers_give_the_same_bits():
+    x, v, a, t = some(2)
+    assert position_after(x, v, a, t).tolist() == [position_after(*values) for values in zip(x, v, a, t, strict=True)]
+    straight = [position_after(p, q, None, s) for p, q, s in zip(x, v, t, strict=True)]
+    assert position_after(x, v, None, t).tolist() == straight
+    assert velocity_after(v, a, t).tolist() == [velocity_after(*values) for values in zip(v, a, t, strict=True)]
+
+
+@pytest.mark.parametrize("gravity", [None, Gravity(0.3, -1.7)])
+def test_a_disc_flies_along_both_axes(gravity):
+    disc = body(x=1.5, y=2.5, vx=-0.7, vy=0.9, t=3.0)
+    advance(disc, 5.25, gravity)
+    pull = gravity or (None, None)
+    expected = [position_after(x, v, a, 2.25) for x, v, a in ((1.5, -0.7, pull[0]), (2.5, 0.9, pull[1]))]
+    assert (disc.x, disc.y, disc.t) == (*expected, 5.25)
+    speeds = (-0.7, 0.9) if gravity is None else (velocity_after(-0.7, 0.3, 2.25), velocity_after(0.9, -1.7, 2.25))
+    assert (disc.vx, disc.vy) == speeds
+
+
+def test_acceleration_along_an_axis():
+    assert [acceleration_along(Gravity(1.0, 2.0), along_y) for along_y in (False, True)] == [1.0, 2.0]
+    assert acceleration_along(None, True) == 0.0

@@ -1,0 +1,105 @@
+"""Images of discs across joined sides, beside fractions, which tell every rounding."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from rounding import body, gamma
+
+from idealgas.physics.periodic import (
+    NO_IMAGES,
+    Periodic,
+    boundary_crossings_along,
+    images_between,
+    images_to_wall,
+    is_periodic,
+    nearest_image,
+    nearest_images,
+    periodic_axes,
+    separation,
+    shift_by_images,
+    wrap,
+    wrapped,
+)
+
+pytestmark = pytest.mark.interpreted
+
+LX, LY = 7.3, 4.1
+
+
+def sides(x=True, y=True, discs=2):
+    return Periodic(x, y, LX, LY, np.zeros((discs, 2), np.int32), np.zeros((discs, 2), np.int32))
+
+
+def test_the_nearest_image():
+    """The image at half a length or less; a product and a difference round: two roundings of the distance."""
+    draw = np.random.default_rng(1)
+    for distance in draw.uniform(-20, 20, 300):
+        found = nearest_image(distance, LX, True)
+        images = [Fraction(distance) - k * Fraction(LX) for k in range(-4, 5)]
+        nearest = min(images, key=abs)
+        if abs(abs(nearest) - Fraction(LX) / 2) > 1e-12:
+            assert abs(Fraction(found) - nearest) <= gamma(2) * abs(distance)
+        assert nearest_image(distance, LX, False) == distance
+    assert nearest_image(LX / 2, LX, True) == LX / 2  # as near both ways: stays
+
+
+def test_a_separation_is_to_the_nearest_images():
+    draw = np.random.default_rng(2)
+    for ax, ay, bx, by in draw.uniform(0, 1, (100, 4)) * (LX, LY, LX, LY):
+        a, b = body(x=ax, y=ay), body(x=bx, y=by)
+        x, y = ax - bx, ay - by
+        assert separation(a, b, None) == (x, y)
+        assert separation(a, b, sides()) == (nearest_image(x, LX, True), nearest_image(y, LY, True))
+        assert separation(a, b, sides(y=False)) == (nearest_image(x, LX, True), y)
+        assert shift_by_images(x, y, sides(), nearest_images(x, y, sides())) == separation(a, b, sides())
+        assert nearest_images(x, y, sides(x=False))[0] == 0
+    assert nearest_images(3.0, 4.0, None) == NO_IMAGES
+    assert nearest_images(-0.6 * LX, 1.4 * LY, sides()) == (-1, 1)
+
+
+def test_wrapping():
+    """What is taken are whole lengths; a product and a difference round."""
+    draw = np.random.default_rng(3)
+    positions = draw.uniform(-30, 30, 300)
+    for position in positions:
+        place, boxes = wrapped(position, LX)
+        assert boxes == Fraction(position) // Fraction(LX)
+        assert abs(Fraction(place) - (Fraction(position) - int(boxes) * Fraction(LX))) <= gamma(2) * (
+            abs(position) + LX
+        )
+    assert [array.tolist() for array in wrapped(positions, LX)] == [
+        list(values) for values in zip(*(wrapped(position, LX) for position in positions), strict=True)
+    ]
+
+
+def test_a_disc_is_put_back_and_counted():
+    periodic, disc = sides(y=False), body(x=-0.5, y=-0.5)
+    periodic.boundary_crossings[1] = (-1, 0)  # it went through the left side since its record
+    wrap(disc, 1, periodic)
+    assert (disc.x, disc.y) == (LX - 0.5, -0.5)
+    assert periodic.image.tolist() == [[0, 0], [-1, 0]]
+    assert not periodic.boundary_crossings.any()
+    untouched = body(x=99.0, y=99.0)
+    wrap(untouched, 0, None)
+    assert (untouched.x, untouched.y) == (99.0, 99.0)
+
+
+def test_images_are_counted_from_the_records():
+    periodic = sides()
+    periodic.boundary_crossings[:] = [[2, -1], [0, 3]]
+    assert images_between(periodic, 0, 1, (1, 0)) == (3, -4)
+    assert images_between(periodic, 1, 0, (0, 0)) == (-2, 4)
+    assert images_to_wall(periodic, 1, (-1, 1)) == (-1, 4)
+    assert shift_by_images(1.0, 2.0, periodic, (1, -2)) == (1.0 - LX, 2.0 + 2 * LY)
+    assert [boundary_crossings_along(periodic, 0, along_y) for along_y in (False, True)] == [(2, True), (-1, True)]
+
+
+def test_without_joined_sides_there_are_none():
+    assert images_between(None, 0, 1, (1, 0)) == images_to_wall(None, 0, (1, 0)) == NO_IMAGES
+    assert shift_by_images(1.0, 2.0, None, (1, 1)) == (1.0, 2.0)
+    assert boundary_crossings_along(None, 0, True) == (0, False)
+    assert periodic_axes(None) == (False, False)
+    assert periodic_axes(sides(x=False)) == (False, True)
+    assert [is_periodic(sides(x=False), along_y) for along_y in (False, True)] == [False, True]
+    assert not is_periodic(None, True)

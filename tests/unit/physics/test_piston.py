@@ -1,0 +1,133 @@
+"""A piston's way, its meetings with discs and its end stop, and their collisions, beside 50 digits."""
+
+from types import SimpleNamespace
+
+import mpmath
+import numpy as np
+import pytest
+from rounding import body, exact, gamma
+
+from idealgas.physics.constants import NEVER
+from idealgas.physics.gravity import Gravity
+from idealgas.physics.piston import (
+    advance_piston,
+    collide_with_piston,
+    is_piston_side,
+    outward,
+    piston_contact,
+    piston_energy,
+    stop_contact,
+)
+from idealgas.physics.restitution import Restitution
+
+pytestmark = pytest.mark.interpreted
+
+
+def some_piston(side=1, **fields) -> SimpleNamespace:
+    record = body(**({"x": 8.0, "v": 0.0, "a": 0.0, "m": 3.0, "stop": 9.0} | fields))
+    record.side, record.count = side, np.uint32(0)
+    return record
+
+
+def motion(x, v, a, t):
+    """Exact place and velocity after a delay, and the sum of the terms of the place."""
+    x, v, a = map(exact, (x, v, a))
+    return x + v * t + a * t * t / 2, v + a * t, abs(x) + abs(v * t) + abs(a * t * t)
+
+
+@pytest.mark.parametrize("side", range(4))
+@pytest.mark.parametrize("falls", [True, False])
+def test_contact(side, falls):
+    """At the time found the exact distance is the radius, to 16 roundings of all terms: 4 for the places at the later
+    record, 2 for their difference less the radius, 8 as in a fall, 2 more for what the sum of the times moves.
+    """
+    draw = np.random.default_rng(side)
+    met = 0
+    with mpmath.workdps(50):
+        for _ in range(150):
+            sign = 1 if side % 2 else -1
+            piston = some_piston(side, x=5 + 2 * sign, v=draw.normal(), a=falls * draw.normal(), t=draw.uniform(0, 0.1))
+            x, y = 5 - 2 * sign * draw.uniform(0, 0.5, 2)
+            vx, vy = draw.normal(size=2)
+            disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.1, 0.5), m=1.0, t=draw.uniform(0, 0.1))
+            gravity = Gravity(*draw.normal(size=2)) if falls else None
+            found = piston_contact(disc, piston, gravity)
+            if found == NEVER:
+                continue
+            met += 1
+            pull = gravity[side // 2] if gravity else 0.0
+            own = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
+            place, speed, terms = motion(*own, pull, exact(found) - exact(disc.t))
+            piston_place, piston_speed, more = motion(piston.x, piston.v, piston.a, exact(found) - exact(piston.t))
+            error = gamma(16) * (terms + more + exact(disc.r))
+            error += gamma(1) * exact(found) * (abs(speed) + abs(piston_speed))
+            distance = sign * (piston_place - place)
+            assert found >= max(disc.t, piston.t)
+            assert abs(distance - exact(disc.r)) <= error
+    assert met > 40
+
+
+def test_a_disc_that_is_left_behind_never_meets_it():
+    assert piston_contact(body(x=5, y=5, vx=1, vy=0, r=0.5, m=1), some_piston(v=1.0), None) == NEVER
+    assert piston_contact(body(x=5, y=5, vx=1, vy=0, r=0.5, m=1), some_piston(v=0.5), None) == 5.0
+    assert piston_contact(body(x=7.5, y=5, vx=1, vy=0, r=0.5, m=1, t=2), some_piston(), None) == 2.0  # touches
+
+
+def test_end_stop():
+    assert stop_contact(some_piston(v=0.5, t=1.0)) == 3.0
+    assert stop_contact(some_piston(v=-0.5)) == NEVER
+    assert stop_contact(some_piston(x=8.5, a=1.0)) == 1.0
+    assert stop_contact(some_piston(side=0, x=2.0, v=-1.0, stop=0.5)) == 1.5
+    assert (outward(some_piston(3)), outward(some_piston(2))) == (1.0, -1.0)
+
+
+def test_motion_and_energy_between_hits():
+    """Place and velocity to four roundings a term; so the energy is kept to 16 of its terms: twice for squares, and its
+    own.
+    """
+    draw = np.random.default_rng(5)
+    with mpmath.workdps(50):
+        for x, v, a, dt, mass in draw.normal(size=(100, 5)) + np.array((5, 0, 0, 4, 3)):
+            piston = some_piston(x=x, v=v, a=a, t=1.0, m=abs(mass))
+            place, velocity, terms = motion(x, v, a, exact(1.0 + dt) - 1)
+            before = piston_energy(piston.m, piston.x, piston.v, piston.a)
+            advance_piston(piston, 1.0 + dt)
+            assert abs(piston.x - place) <= gamma(4) * terms
+            assert abs(piston.v - velocity) <= gamma(3) * (abs(v) + abs(a * dt))
+            scale = piston.m * ((abs(v) + abs(a * dt)) ** 2 + abs(a) * terms)
+            assert abs(piston_energy(piston.m, piston.x, piston.v, piston.a) - before) <= gamma(16) * scale
+            assert piston.t == 1.0 + dt
+
+
+@pytest.mark.parametrize("side", range(4))
+def test_collision_with_a_mass(side):
+    """Momentum and energy along the axis are kept, to 8 roundings of a change of at most twice the approach."""
+    draw = np.random.default_rng(side)
+    with mpmath.workdps(50):
+        for _ in range(60):
+            (vx, vy, v), (m, mass) = draw.normal(size=3), 10.0 ** draw.uniform(-3, 3, 2)
+            disc, piston = body(x=0, y=0, vx=vx, vy=vy, r=0.5, m=m), some_piston(side, v=v, m=mass)
+            collide_with_piston(disc, 0, piston, None)
+            (old, new), kept = ((vx, disc.vx), disc.vy == vy) if side < 2 else ((vy, disc.vy), disc.vx == vx)
+            scale, m, mass = abs(old) + abs(v), exact(m), exact(mass)
+            momentum = m * (exact(new) - exact(old)) + mass * (exact(piston.v) - exact(v))
+            assert kept
+            assert piston.count == 1
+            assert abs(momentum) <= 2 * gamma(8) * scale * (m + mass)
+            energy = m * (exact(new) ** 2 - exact(old) ** 2) + mass * (exact(piston.v) ** 2 - exact(v) ** 2)
+            assert abs(energy) <= 12 * gamma(8) * scale**2 * (m + mass)  # no speed beyond three times the scale
+            assert abs((exact(new) - exact(piston.v)) + (exact(old) - exact(v))) <= 4 * gamma(8) * scale
+
+
+def test_collision_at_a_given_velocity():
+    disc, piston = body(x=0, y=0, vx=1.0, vy=0.5, r=0.5, m=1.0), some_piston(v=-0.25, m=0.0)
+    collide_with_piston(disc, 0, piston, None)
+    assert (disc.vx, disc.vy, piston.v, piston.count) == (-1.5, 0.5, -0.25, 0)
+    collide_with_piston(disc, 0, piston, Restitution(1.0, 0.5, 0.0, np.array([-9.0])))
+    assert disc.vx == -1.5 - 1.5 * (-1.5 + 0.25)
+
+
+def test_sides():
+    assert is_piston_side(1, [some_piston()])
+    assert not is_piston_side(0, [some_piston()])
+    assert not is_piston_side(1, None)

@@ -1,0 +1,202 @@
+"""What effects change: which properties each takes away or brings, and how they come together."""
+
+import math
+from dataclasses import fields, replace
+from itertools import combinations
+
+import pytest
+
+from idealgas.physics.box_side import inward_normal
+from idealgas.scene import EFFECTS, parse_scene
+from idealgas.scene.properties import Properties
+from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
+
+PLAIN = """
+box.size = [20, 10]
+run.until = 4
+species = [{ name = "gas", count = 12, radius = 0.2, temperature = 1, region = [0, 0, 15, 8] }]
+"""
+TABLES = {
+    "gravity": ["gravity.acceleration=[0, -0.5]"],
+    "periodic sides": ["box.left=periodic", "box.right=periodic"],
+    "wall segments": ["wall=[{from=[16, 4], to=[18, 5]}]"],
+    "rotation": ["rotation.roughness=1"],
+    "restitution": ["restitution.normal=0.9"],
+    "thermal walls": ["box.bottom={thermal=2}"],
+    "piston": ["piston={side='top', position=9, velocity=0}"],
+}
+"""Each effect alone, in a form that goes with the others."""
+
+
+def scene(*overrides, text=PLAIN):
+    return parse_scene(text, overrides=overrides)
+
+
+def properties(*overrides):
+    return scene(*overrides).properties
+
+
+def together(*names):
+    return [override for name in names for override in TABLES[name]]
+
+
+def test_a_plain_box_has_all_defaults():
+    assert properties() == Properties()
+    assert scene().called == ()
+    assert scene().lacking("uniform", "isolated", "conserves_motion") == ()
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_an_effect_is_called_for_by_its_table(name):
+    assert scene(*TABLES[name]).effects == (name,)
+
+
+LACKING = {
+    "uniform": {"gravity", "wall segments", "restitution", "piston"},
+    "straight_flight": {"gravity"},
+    "elastic": {"restitution"},
+    "lossless": {"restitution"},
+    "fixed_walls": {"piston"},
+    "isolated": {"thermal walls"},
+    "conserves_energy": {"gravity", "restitution", "piston"},
+    "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston"},
+    "without_places": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston"},
+    "in_steps": {"wall segments", "piston"},
+    "scales": {"wall segments", "piston"},
+    "empty": {"wall segments"},
+}
+BRINGING = {
+    "sets_in_motion": {"gravity", "piston"},
+    "grip": {"thermal walls"},
+    "spins": {"rotation"},
+    "driven": set(),
+}
+
+
+@pytest.mark.parametrize("name", LACKING)
+def test_what_effects_take_away(name):
+    """From a scene with all of them, each alone, and in the order of EFFECTS."""
+    everything = scene(*together(*EFFECTS))
+    assert everything.effects == EFFECTS
+    assert everything.lacking(name) == tuple(effect for effect in EFFECTS if effect in LACKING[name])
+    assert not getattr(everything.properties, name)
+    for effect in EFFECTS:
+        assert getattr(properties(*TABLES[effect]), name) == (effect not in LACKING[name])
+
+
+@pytest.mark.parametrize("name", BRINGING)
+def test_what_effects_bring(name):
+    for effect in EFFECTS:
+        assert getattr(properties(*TABLES[effect]), name) == (effect in BRINGING[name])
+
+
+def test_several_properties_at_once():
+    everything = scene(*together(*EFFECTS))
+    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in EFFECTS if e != "periodic sides")
+    assert everything.lacking() == ()
+
+
+@pytest.mark.parametrize(
+    ("overrides", "changed"),
+    [
+        (["rotation.roughness=0.5"], {"lossless": False, "inertia": 0.5}),
+        (["rotation.wall_roughness=0.5"], {"lossless": False, "inertia": 0.5, "grip": True}),
+        (["rotation.wall_roughness=1", "rotation.inertia=0.25"], {"inertia": 0.25, "grip": True}),
+        (["restitution.normal=1"], {}),
+        (["restitution.wall=0.5"], {"uniform": False, "elastic": False, "lossless": False}),
+        (["box.top=periodic", "box.bottom=periodic"], {"without_places": False, "periodic": (False, True)}),
+    ],
+)
+def test_what_keys_decide(overrides, changed):
+    assert properties(*overrides) == replace(Properties(), **changed)
+
+
+def test_a_piston_is_driven_if_it_moves_whatever_hits_it():
+    assert properties("piston.velocity=-0.5").driven
+    assert not properties("piston.velocity=0").driven
+
+
+def test_temperatures_by_the_numbers_of_walls():
+    walls = "wall=[{from=[16, 4], to=[18, 5]}, {from=[16, 2], to=[18, 3], temperature=4}]"
+    found = properties("box.right={thermal=2}", walls)
+    assert found.emits == (None, 2.0, None, None, None, 4.0)
+    assert found.temperatures == {2.0, 4.0}
+    assert Properties().emits == (None,) * FIRST_SEGMENT
+
+
+def wall(gate):
+    return f"wall=[{{from=[16, 4], to=[18, 5], {gate}}}]"
+
+
+@pytest.mark.parametrize(
+    ("walls", "clear_from"),
+    [
+        (wall("name='w'"), math.inf),
+        (wall("opens_at=2"), 2.0),
+        (wall("opens_at=2, closes_at=3"), math.inf),
+        (wall("closes_at=3"), math.inf),
+        ("wall=[{from=[16, 4], to=[18, 5], opens_at=2}, {from=[16, 2], to=[18, 3], opens_at=3}]", 3.0),
+    ],
+)
+def test_when_the_box_is_clear_of_walls(walls, clear_from):
+    assert properties(walls).clear_from == clear_from
+    assert not properties(walls).empty
+
+
+X, Y = together("periodic sides"), ["box.top=periodic", "box.bottom=periodic"]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "kept"),
+    [
+        ([], (False, False)),
+        (X, (True, False)),
+        (Y, (False, True)),
+        (X + Y, (True, True)),
+        (X + TABLES["wall segments"], (False, False)),
+        (X + TABLES["thermal walls"], (False, False)),
+        ([*X, "rotation.wall_roughness=0.5"], (False, False)),
+        ([*X, "rotation.roughness=0.5"], (True, False)),
+        ([*X, *Y, "rotation.wall_roughness=0.5"], (True, True)),
+    ],
+)
+def test_along_which_axes_momentum_is_kept(overrides, kept):
+    assert properties(*overrides).conserves_momentum == kept
+
+
+@pytest.mark.parametrize("names", list(combinations(EFFECTS, 2)))
+def test_effects_come_together(names):
+    """Whichever comes first; the plain box adds nothing."""
+    one, other = (properties(*TABLES[name]) for name in names)
+    both = properties(*together(*names))
+    assert replace(both, emits=both.emits[:FIRST_SEGMENT]) == one & other == other & one
+    assert one & Properties() == Properties() & one == one
+
+
+def test_accelerations_add_up():
+    one, other = (replace(Properties(), acceleration=a) for a in ((1.0, 0.0), (0.5, -2.0)))
+    assert (one & other).acceleration == (1.5, -2.0)
+
+
+def test_every_property_says_how_it_comes_together():
+    assert all("both" in entry.metadata for entry in fields(Properties))
+
+
+# ── walls by their numbers ──
+
+
+@pytest.mark.parametrize("side", range(len(SIDES)))
+def test_sides_by_their_numbers(side):
+    """Against the law that the engines take: a side's normal points out along its axis, up or down."""
+    assert tuple(-n for n in inward_normal(side)) == OUTWARD[side]
+    axis, sign = axis_of(side), 1.0 if is_upper(side) else -1.0
+    assert OUTWARD[side][axis] == sign
+    assert opposite(opposite(side)) == side
+    assert {side, opposite(side)} == set(sides_across(axis))
+    start, end = side_ends((20.0, 10.0))[side]
+    assert start[axis] == end[axis] == ((20.0, 10.0)[axis] if is_upper(side) else 0.0)
+    assert (start[1 - axis], end[1 - axis]) == (0.0, (20.0, 10.0)[1 - axis])
+
+
+def test_segments_follow_the_sides():
+    assert len(SIDES) == FIRST_SEGMENT == len(OUTWARD)
