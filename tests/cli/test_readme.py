@@ -96,6 +96,7 @@ def test_continuous_integration_runs_the_test_command():
     assert "run: .ci/run" in (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_first_command_as_a_user_runs_it(folder):
     *_, run, check = commands(blocks_of_quick_start()[0])
     (folder / ".venv" / "bin").mkdir(parents=True)
@@ -140,6 +141,7 @@ def test_the_version_to_cite_is_this_one():
 # ── scenes ──
 
 
+@pytest.mark.slow
 def test_code_of_scenes_runs(folder):
     printed = run_blocks(SCENES, blocks(SCENES))
     assert len(printed) == 4
@@ -181,6 +183,7 @@ def test_every_shipped_scene_is_named():
 # ── the log ──
 
 
+@pytest.mark.slow
 def test_code_of_the_log_runs(folder):
     plain, package, frame = (block.text for block in blocks(LOG, "python"))
     assert max(plain.count("\n"), package.count("\n")) <= 10
@@ -199,6 +202,7 @@ def test_code_of_the_log_runs(folder):
     assert "disc" in run_python(frame, LOG)
 
 
+@pytest.mark.slow
 def test_every_dataset_of_a_log_is_named(folder):
     run_command("idealgas run configs/quickstart.toml -o log.h5 --set run.events=100")
     described = re.findall(r"`([\w/]+)`", section(LOG, "Format"))

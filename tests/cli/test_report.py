@@ -22,6 +22,8 @@ from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
+pytestmark = pytest.mark.slow
+
 PLAIN = """
 scene.title = "Some <discs> & no more"
 scene.seed = 2

@@ -14,6 +14,8 @@ from support import ROOT
 from idealgas.events import BLOCK
 from idealgas.log import LogError, LogWriter, open_log, recover
 
+pytestmark = pytest.mark.slow
+
 SAMPLES = ROOT / "tests" / "log_samples.py"
 IN_CI, BY_HAND = 6, 100
 

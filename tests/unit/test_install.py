@@ -116,6 +116,7 @@ def output(folder, *command, code=0):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_install(fresh, tmp_path):
     """The interface, the licence and the marker of types are there, and a user's script runs."""
     (packages,) = fresh.glob("lib/python*/site-packages")
@@ -131,6 +132,7 @@ def test_install(fresh, tmp_path):
         assert output(tmp_path, *command, "--version") == f"idealgas, version {idealgas.__version__}\n"
 
 
+@pytest.mark.slow
 def test_types_for_users(fresh, tmp_path):
     """mypy in strict mode takes a user's script, and finds what is wrong in others."""
     names = ["script.py", *(f"wrong{k}.py" for k in range(len(WRONG)))]
@@ -157,6 +159,7 @@ def test_wheel(source, tmp_path):
     assert found_in(tmp_path) == [str(tmp_path / name / "__init__.py") for name in ("idealgas", "idealgas_cli")]
 
 
+@pytest.mark.slow
 def test_editable(source, tmp_path):
     _, entry_points = build(source, "build_editable", tmp_path)
     assert "idealgas = idealgas_cli.main:main" in entry_points

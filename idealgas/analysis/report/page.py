@@ -19,6 +19,9 @@ from idealgas.analysis.report.sections import Section, make_sections
 from idealgas.errors import UserError
 from idealgas.log import Log
 
+SCRIPTS = ("gas.js", "views.js", "player.js")
+"""The program of the page, in order."""
+
 PLAYER = """
 <section id="s0">
 <h2>$heading</h2>
@@ -116,7 +119,7 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
         title=escape(title),
         subtitle=escape(subtitle),
         style=_text("report.css"),
-        script=_text("player.js"),
+        script="\n".join(map(_text, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
         sections="\n".join(

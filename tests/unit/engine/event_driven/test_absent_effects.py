@@ -10,6 +10,8 @@ import pytest
 from idealgas.physics.effects import Effects
 from idealgas.scene import EFFECTS
 
+pytestmark = pytest.mark.slow
+
 MARKERS = {
     "gravity": {"crossings.accelerated_crossing", "fall.time_to_plane", "wall.accelerated_body_delay"},
     "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},

@@ -1,0 +1,102 @@
+"use strict";
+
+// ── the gas: which event each disc had last, and its free flight since ──
+
+function unpack(name, Type) {
+  const element = document.getElementById("data-" + name);
+  if (!element) return new Type(0);
+  const text = atob(element.textContent.trim());
+  const bytes = new Uint8Array(text.length);
+  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
+  return new Type(bytes.buffer);
+}
+
+class Gas {
+  constructor(head) {
+    this.head = head;
+    this.radius = unpack("radius", Float32Array);
+    this.mass = unpack("mass", Float32Array);
+    this.start = { position: unpack("position", Float32Array), velocity: unpack("velocity", Float32Array) };
+    this.tick = unpack("event_tick", Uint32Array);
+    this.disc = unpack("event_disc", Uint32Array);
+    this.event = { position: unpack("event_position", Float32Array), velocity: unpack("event_velocity", Float32Array) };
+    this.hits = unpack("event_hit", Uint32Array); // rows in which a disc met the piston
+    this.number = this.radius.length;
+    this.last = new Int32Array(this.number).fill(-1);
+    this.row = 0; // events that have happened
+    this.x = new Float64Array(this.number);
+    this.y = new Float64Array(this.number);
+    this.vx = new Float64Array(this.number);
+    this.vy = new Float64Array(this.number);
+    this.step = Math.max(this.number, 4096);
+    this.marks = [this.last.slice()]; // `last` at every step-th row, to go back to
+    while (this.row < this.tick.length) {
+      this.follow(Math.min(this.row + this.step, this.tick.length));
+      if (this.row % this.step === 0) this.marks.push(this.last.slice());
+    }
+    this.seek(head.start);
+  }
+
+  follow(row) {
+    for (; this.row < row; this.row++) this.last[this.disc[this.row]] = this.row;
+  }
+
+  timeOf(tick) {
+    return this.head.start + tick / this.head.ticks * (this.head.end - this.head.start);
+  }
+
+  rowAfter(time) {
+    const tick = (time - this.head.start) / (this.head.end - this.head.start) * this.head.ticks;
+    return firstAfter(this.tick.length, row => this.tick[row], tick);
+  }
+
+  seek(time) {
+    this.time = Math.min(Math.max(time, this.head.start), this.head.end);
+    const row = this.rowAfter(this.time);
+    const mark = Math.min(Math.floor(row / this.step), this.marks.length - 1);
+    if (row < this.row || row - this.row > this.step) {
+      this.last.set(this.marks[mark]);
+      this.row = mark * this.step;
+    }
+    this.follow(row);
+    const [gx, gy] = this.head.gravity, [width, height] = this.head.box, [periodicX, periodicY] = this.head.periodic;
+    for (let i = 0; i < this.number; i++) {
+      const event = this.last[i], from = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
+      const dt = this.time - (event < 0 ? this.head.start : this.timeOf(this.tick[event]));
+      const vx = from.velocity[k], vy = from.velocity[k + 1];
+      this.vx[i] = vx + gx * dt;
+      this.vy[i] = vy + gy * dt;
+      this.x[i] = from.position[k] + vx * dt + gx * dt * dt / 2;
+      this.y[i] = from.position[k + 1] + vy * dt + gy * dt * dt / 2;
+      if (periodicX) this.x[i] -= Math.floor(this.x[i] / width) * width;
+      if (periodicY) this.y[i] -= Math.floor(this.y[i] / height) * height;
+    }
+  }
+
+  // Where the piston is: touched by the discs that hit it, on a parabola from hit to hit.
+  pistonPlace() {
+    const { axis, outward, pull, limits, ends } = this.head.piston;
+    const knot = k => {
+      if (k < 0) return { time: this.head.start, place: ends[0] };
+      if (k >= this.hits.length) return { time: this.head.end, place: ends[1] };
+      const row = this.hits[k];
+      const place = this.event.position[2 * row + axis] + outward * this.radius[this.disc[row]];
+      return { time: this.timeOf(this.tick[row]), place };
+    };
+    const next = firstAfter(this.hits.length, k => knot(k).time, this.time), a = knot(next - 1), b = knot(next);
+    const before = this.time - a.time, after = this.time - b.time, step = b.time - a.time;
+    if (!(step > 0)) return a.place;
+    const place = (b.place * before - a.place * after) / step + pull * before * after / 2;
+    return Math.min(Math.max(place, limits[0]), limits[1]);
+  }
+}
+
+// The first of `number` places with a key, which do not fall from place to place, above a value.
+function firstAfter(number, key, value) {
+  let low = 0, high = number;
+  while (low < high) {
+    const middle = (low + high) >>> 1;
+    if (key(middle) <= value) low = middle + 1; else high = middle;
+  }
+  return low;
+}

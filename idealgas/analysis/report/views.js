@@ -1,0 +1,186 @@
+// ── the pictures ──
+
+function themed() {
+  const style = getComputedStyle(document.documentElement);
+  const dark = !printing && matchMedia("(prefers-color-scheme: dark)").matches;
+  const onPaper = { "--ink": "#1a1a1a", "--panel": "#ffffff" };
+  const colour = name => printing ? onPaper[name] : style.getPropertyValue(name).trim();
+  return { dark, ink: colour("--ink"), panel: colour("--panel") };
+}
+
+// A canvas as wide as the page and `ratio` as high, within limits; inset: what is left free on both sides.
+function prepare(canvas, ratio, lowest, tallest) {
+  const width = canvas.clientWidth || 600;
+  const scale = window.devicePixelRatio || 1;
+  const height = Math.min(Math.max(width * ratio, lowest), tallest);
+  const inset = Math.max(width - height / ratio, 0) / 2;
+  const pixels = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) {
+    [canvas.width, canvas.height] = pixels;
+    canvas.style.height = height + "px";
+  }
+  const pen = canvas.getContext("2d");
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height, inset };
+}
+
+const SMALLEST = 1.25; // radius in pixels that any disc is drawn with
+
+class DiscView {
+  constructor(canvas, gas) {
+    this.canvas = canvas;
+    this.gas = gas;
+    this.shade = new Uint8Array(gas.number);
+  }
+
+  draw() {
+    const { gas } = this, { head } = gas, [boxX, boxY] = head.box;
+    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 0, 640);
+    const theme = themed(), shades = theme.dark ? head.dark : head.light;
+    const scale = (width - 2 * inset) / boxX;
+    for (let i = 0; i < gas.number; i++) {
+      const speed = Math.hypot(gas.vx[i], gas.vy[i]) / head.brightest;
+      this.shade[i] = Math.min(Math.floor(speed * shades.length), shades.length - 1);
+    }
+    pen.fillStyle = theme.panel;
+    pen.fillRect(inset, 0, width - 2 * inset, height);
+    pen.save();
+    pen.beginPath();
+    pen.rect(inset, 0, width - 2 * inset, height);
+    pen.clip();
+    for (let s = 0; s < shades.length; s++) {
+      pen.beginPath();
+      for (let i = 0; i < gas.number; i++) {
+        if (this.shade[i] === s) this.outline(pen, i, inset, height, scale, boxX, boxY);
+      }
+      pen.fillStyle = shades[s];
+      pen.fill();
+    }
+    pen.restore();
+    pen.strokeStyle = theme.ink;
+    pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
+    pen.lineWidth = 2;
+    for (const wall of head.walls) {
+      const [opens, closes] = wall.absent;
+      if (opens !== null && gas.time >= opens && (closes === null || gas.time < closes)) continue;
+      this.line(pen, wall.from.map(x => x * scale), wall.to.map(x => x * scale), inset, height);
+    }
+    if (head.piston) {
+      pen.lineWidth = 3;
+      pen.strokeStyle = head.pistonColour;
+      const place = gas.pistonPlace() * scale, along = head.piston.axis === 0;
+      this.line(pen, along ? [place, 0] : [0, place], along ? [place, height] : [boxX * scale, place], inset, height);
+    }
+    pen.lineWidth = 1;
+  }
+
+  line(pen, [x0, y0], [x1, y1], inset, height) {
+    pen.beginPath();
+    pen.moveTo(inset + x0, height - y0);
+    pen.lineTo(inset + x1, height - y1);
+    pen.stroke();
+  }
+
+  outline(pen, i, inset, height, scale, boxX, boxY) {
+    const { gas } = this, [periodicX, periodicY] = gas.head.periodic;
+    const x = gas.x[i], y = gas.y[i], r = Math.max(gas.radius[i], SMALLEST / scale);
+    this.disc(pen, inset + x * scale, height - y * scale, r * scale);
+    const imageX = periodicX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
+    const imageY = periodicY ? (y < r ? boxY : y > boxY - r ? -boxY : 0) : 0;
+    if (imageX) this.disc(pen, inset + (x + imageX) * scale, height - y * scale, r * scale);
+    if (imageY) this.disc(pen, inset + x * scale, height - (y + imageY) * scale, r * scale);
+    if (imageX && imageY) this.disc(pen, inset + (x + imageX) * scale, height - (y + imageY) * scale, r * scale);
+  }
+
+  disc(pen, x, y, r) {
+    if (r < 1.5) { // a square looks the same and is drawn faster
+      pen.rect(x - r, y - r, 2 * r, 2 * r);
+    } else {
+      pen.moveTo(x + r, y);
+      pen.arc(x, y, r, 0, 2 * Math.PI);
+    }
+  }
+}
+
+class SpeedView {
+  constructor(canvas, gas) {
+    this.canvas = canvas;
+    this.gas = gas;
+    this.counts = new Float64Array(40);
+    this.top = 1.8 * Math.max(...this.law(this.temperature())) || 1;
+  }
+
+  temperature() {
+    const { gas } = this;
+    let energy = 0;
+    for (let i = 0; i < gas.number; i++) energy += gas.mass[i] * (gas.vx[i] ** 2 + gas.vy[i] ** 2) / 2;
+    return energy / gas.number;
+  }
+
+  law(temperature) {
+    const { head } = this.gas;
+    return Array.from({ length: 201 }, (_, k) => {
+      if (!(temperature > 0)) return 0;
+      const v = head.fastest * k / 200;
+      return head.kinds.reduce((sum, kind) => {
+        const share = kind.mass / temperature;
+        return sum + kind.share * share * v * Math.exp(-share * v * v / 2);
+      }, 0);
+    });
+  }
+
+  draw() {
+    const { gas, counts } = this, { head } = gas;
+    const { pen, width, height } = prepare(this.canvas, 0.32, 180, 260);
+    const theme = themed(), left = 52, bottom = 48, right = 12, above = 24, strip = 8;
+    const shades = theme.dark ? head.dark : head.light;
+    const w = width - left - right, h = height - bottom - above;
+    const toX = v => left + v / head.fastest * w, toY = f => above + h * (1 - Math.min(f / this.top, 1));
+    counts.fill(0);
+    for (let i = 0; i < gas.number; i++) {
+      const bin = Math.floor(Math.hypot(gas.vx[i], gas.vy[i]) / head.fastest * counts.length);
+      if (bin < counts.length) counts[bin]++;
+    }
+    pen.fillStyle = theme.panel;
+    pen.fillRect(left, above, w, h);
+    const wide = head.fastest / counts.length;
+    pen.fillStyle = head.bars;
+    counts.forEach((count, k) => {
+      const y = toY(count / gas.number / wide);
+      pen.fillRect(toX(k * wide), y, w / counts.length + 0.5, above + h - y);
+    });
+    const temperature = this.temperature();
+    pen.strokeStyle = theme.dark ? theme.ink : head.curve;
+    pen.lineWidth = 2;
+    pen.beginPath();
+    this.law(temperature).forEach((f, k) => pen.lineTo(toX(head.fastest * k / 200), toY(f)));
+    pen.stroke();
+    shades.forEach((shade, k) => {
+      const from = toX(head.brightest * k / shades.length), last = k + 1 === shades.length;
+      pen.fillStyle = shade;
+      pen.fillRect(from, above + h, (last ? left + w : toX(head.brightest * (k + 1) / shades.length)) - from, strip);
+    });
+    pen.lineWidth = 1;
+    pen.strokeStyle = theme.ink;
+    pen.fillStyle = theme.ink;
+    pen.font = "12px system-ui, sans-serif";
+    pen.strokeRect(left + 0.5, above + 0.5, w, h);
+    pen.textAlign = "center";
+    const step = roundStep(head.fastest * 60 / w);
+    for (let v = 0; v <= head.fastest; v += step) pen.fillText(+v.toPrecision(6), toX(v), above + h + strip + 14);
+    pen.fillText("speed (length/time)", left + w / 2, above + h + strip + 32);
+    pen.textAlign = "right";
+    const rise = roundStep(this.top / 4);
+    for (let f = 0; f <= this.top; f += rise) pen.fillText(+f.toPrecision(3), left - 6, toY(f) + 4);
+    const key = "bars: discs, line: Maxwell-Boltzmann at ";
+    pen.fillText((w > 480 ? key : "") + "T = " + temperature.toPrecision(5), left + w, 15);
+    pen.textAlign = "left";
+    pen.fillText("density (time/length)", 4, 15);
+  }
+}
+
+function roundStep(size) {
+  const power = 10 ** Math.floor(Math.log10(size));
+  return power * [1, 2, 5, 10].find(step => power * step >= size * (1 - 1e-9));
+}
