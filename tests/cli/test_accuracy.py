@@ -38,6 +38,7 @@ def test_it_prints_tables_and_sentences_and_nothing_else(small):
     assert done.stdout.splitlines()[-1] == "out/accuracy.csv, out/accuracy.json, out/accuracy.png"
 
 
+@pytest.mark.slow
 def test_its_files_hold_all_numbers(small):
     folder, _ = small
     with (folder / "out/accuracy.csv").open(newline="") as file:

@@ -13,6 +13,8 @@ import sys
 import pytest
 from support import ROOT
 
+pytestmark = pytest.mark.slow
+
 FOLDER = {
     "__init__.py": '''
         """The fastest disc."""

@@ -124,12 +124,13 @@ NO_THEORY = {
     "effusion",
     "free-expansion",
     "mixing",
+    "novak-bortz",
     "piston",
     "sinai",
     "three-discs",
     "wedge",
 }
-"""Shipped scenes of gases that are not uniform, not at a known temperature or of too few discs."""
+"""Shipped scenes of gases that are not uniform, not at a known temperature, without positions or of too few discs."""
 
 
 @pytest.mark.slow

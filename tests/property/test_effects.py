@@ -38,5 +38,6 @@ def test_same_log_as_the_oracle(names):
 
 @pytest.mark.parametrize("names", [ALL, ALL_PERIODIC], ids=["all but periodic sides", "all but the piston"])
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.slow
 def test_same_log_as_the_oracle_with_everything(names, seed):
     assert_same_log(names, seed, 5_000)

@@ -120,6 +120,7 @@ quick = settings(max_examples=300, deadline=None, derandomize=True, suppress_hea
 
 @quick
 @scenes
+@pytest.mark.slow
 def test_scenes_with_any_effects(text):
     with watchdog(text):
         run_scene(text, MaxErrors())

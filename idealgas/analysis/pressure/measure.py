@@ -29,7 +29,7 @@ from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
 from idealgas.sides import OUTWARD, SIDES, axis_of
@@ -117,6 +117,8 @@ def pressure(
     Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects for which the
     virial theorem needs further terms: gravity, wall segments, a piston, collisions that lose energy.
     """
+    if not log.has_positions:
+        raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
