@@ -8,7 +8,7 @@ discs one radius inside the box.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
+from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
@@ -133,7 +133,7 @@ def pressure(
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, impacts),
+        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, moments, impacts),
         theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
@@ -168,23 +168,50 @@ def _routes(
     periodic: tuple[bool, bool],
     theory: BoxTheory,
     window: Window,
+    moments: Moments,
     impacts: Impacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
+    bulk = _bulk_flux(gas, sides, window, moments, impacts)
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall = {k: theory.sides[axis_of(k)] for k in sides}
-    series: dict[str, tuple[np.ndarray, Theory | None]] = {
-        f"{SIDES[k]} wall": (push[k] / length[k], at_wall[k]) for k in sides
-    }
+    routes = [
+        _route(f"{SIDES[k]} wall", push[k] / length[k] / ideal, bulk[k] / length[k] / ideal, ideal, at_wall[k])
+        for k in sides
+    ]
     if sides:
         perimeter = sum(length[k] for k in sides)
         at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
-        series["all walls"] = (push[sides].sum(axis=0) / perimeter, at_walls)
-        series[WALLS] = (window.of(impacts.wall_virial) / (len(sides) / 2 * gas.area), theory.walls)
-    series[PAIRS] = (ideal + window.of(impacts.pair_virial) / (2 * gas.area), theory.pairs)
-    return tuple(Route(name, mean(p), mean(p / ideal, theory=expected)) for name, (p, expected) in series.items())
+        together = [sum(series[k] for k in sides) / perimeter / ideal for series in (push, bulk)]
+        routes.append(_route("all walls", *together, ideal, at_walls))
+        unit = len(sides) / 2 * gas.area * ideal
+        kinetic = sum(window.of(moments.flights)[:, :, 1 + axis].sum(axis=1) for axis in {axis_of(k) for k in sides})
+        inner = (kinetic + window.of(impacts.inner_virial)) / unit
+        routes.append(_route(WALLS, window.of(impacts.wall_virial) / unit, inner, ideal, theory.walls))
+    z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
+    return (*routes, Route(PAIRS, z.times(ideal), z))
+
+
+def _route(name: str, flux: np.ndarray, bulk: np.ndarray, ideal: float, theory: Theory | None) -> Route:
+    """Pressure by the momentum flux to walls in units of the `ideal` pressure, beside that of the bulk of the gas."""
+    z = mean_of_flux(flux, bulk, theory)
+    return Route(name, replace(z, theory=None, theory_error=0.0).times(ideal), z)
+
+
+def _bulk_flux(
+    gas: Gas, sides: Sequence[int], window: Window, moments: Moments, impacts: Impacts
+) -> dict[int, np.ndarray]:
+    """Force (B,) on each side of the box by the mean momentum flux in the gas: it flies, and collisions pass it on."""
+    _, first = np.unique(gas.species, return_index=True)
+    flights, passed_on = window.of(moments.flights), window.of(impacts.passed_on)
+
+    def of(k: int) -> np.ndarray:
+        reach = gas.box[axis_of(k)] - 2 * gas.radius[first]
+        return np.asarray((flights[:, :, 1 + axis_of(k)] / reach).sum(axis=1) + passed_on[:, k])
+
+    return {k: of(k) for k in sides}
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:

@@ -1,0 +1,137 @@
+"""Error of the mean of a correlated series, from autoregressive models of it.
+
+A model of order p predicts a sample from the p samples before it, x_t = Σ a_k x_{t-k} + noise of variance s. Its
+spectrum at frequency 0, s/(1 - Σ a_k)², is the variance of the mean times the number of samples. Unlike a sum of
+autocorrelations that is cut off, or batches of a fixed length, it does justice to correlation and anticorrelation of
+any length that the series can show.
+
+Coefficients: Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral Analysis for Physical
+Applications, 1993, chapter 9). Orders are not chosen but averaged with the weights of Akaike's corrected criterion
+(Burnham & Anderson, Model Selection and Multimodel Inference, 2002), so that the error knows how little a short series
+tells of its order.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy import signal
+
+LEAST_WEIGHT = 1e-3
+"""Orders of a smaller weight, relative to the largest one, are left out."""
+
+NOISE = 1e-12
+"""Share of the variance below which what a model leaves unexplained is rounding."""
+
+
+class Model(NamedTuple):
+    """Autoregressive model of order p of a series of n samples.
+
+    coefficients: (p,), the a_k. noise: mean square of the noise that the model leaves of the series. covariance:
+    (p + 1,), autocovariances of the process at lags 0 to p, with the variance of the noise by n - p degrees of freedom.
+    variance_of_log: variance of the estimate of the logarithm of the spectrum at frequency 0.
+    """
+
+    coefficients: np.ndarray
+    noise: float
+    covariance: np.ndarray
+    variance_of_log: float
+
+    def covariances(self, length: int) -> np.ndarray:
+        """Autocovariances (length,) of the process from lag 0 on."""
+        order = len(self.coefficients)
+        if length <= order + 1 or not order:
+            return np.append(self.covariance[:length], np.zeros(max(length - order - 1, 0)))
+        predictor = np.append(1.0, -self.coefficients)
+        state = signal.lfiltic([1.0], predictor, self.covariance[:0:-1])
+        rest = signal.lfilter([1.0], predictor, np.zeros(length - order - 1), zi=state)[0]
+        return np.append(self.covariance, rest)
+
+
+class Spread(NamedTuple):
+    """Standard error of the mean of a series, and number of independent samples that know an error as well as this."""
+
+    error: float
+    samples: float
+
+
+@dataclass(frozen=True)
+class Process:
+    """Stationary process behind a series: models with their weights. length: of the series."""
+
+    models: tuple[Model, ...]
+    weights: np.ndarray
+    length: int
+
+    def covariances(self, length: int) -> np.ndarray:
+        """Autocovariances (length,) from lag 0 on, averaged over the models."""
+        return np.asarray(sum(w * m.covariances(length) for m, w in zip(self.models, self.weights, strict=True)))
+
+    def spread(self) -> Spread:
+        """Standard error of the mean of the series.
+
+        If the spectrum at frequency 0 is known as well as from ν independent samples, the mean, which was subtracted,
+        has taken one of them: Bessel's correction has ν in place of n.
+        """
+        found = [variance_of_mean(model.covariances(self.length))[-1] for model in self.models]
+        logs = np.log(found)
+        middle = float(self.weights @ logs)
+        doubt = np.array([model.variance_of_log for model in self.models]) + (logs - middle) ** 2
+        samples = max(2 / float(self.weights @ doubt), 2.0)
+        return Spread(math.sqrt(math.exp(middle) * samples / (samples - 1)), samples)
+
+
+def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
+    """Variance (n,) of the mean of 1 to n successive samples from autocovariances (n,) at lags 0 to n - 1."""
+    n = np.arange(1, len(covariance) + 1)
+    return np.asarray((2 * np.cumsum(np.cumsum(covariance)) - n * covariance[0]) / n**2)
+
+
+def error_of_mean(series: np.ndarray) -> Spread:
+    """Standard error of the mean of a stationary series (n,); not a number for fewer than two samples."""
+    n = len(series)
+    if n < 2:
+        return Spread(math.nan, float(n))
+    if is_constant(series):
+        return Spread(0.0, float(n))
+    return process_of(series - series.mean()).spread()
+
+
+def is_constant(series: np.ndarray) -> bool:
+    """Whether a series changes by rounding only."""
+    return not np.ptp(series) > NOISE * np.abs(series).max()
+
+
+def process_of(series: np.ndarray) -> Process:
+    """Process behind a series (n,) of mean 0 that is not constant, n ≥ 2."""
+    models, n = tuple(_models(series)), len(series)
+    orders, noise = np.arange(len(models)), np.array([model.noise for model in models])
+    criterion = n * np.log(noise) + 2 * (orders + 1) * n / np.maximum(n - orders - 2, 0.5)
+    weight = np.exp((criterion.min() - criterion) / 2)
+    kept = np.flatnonzero(weight >= LEAST_WEIGHT)
+    return Process(tuple(models[p] for p in kept), weight[kept] / weight[kept].sum(), n)
+
+
+def _models(series: np.ndarray) -> list[Model]:
+    """Models of a series (n,) of mean 0, of orders 0 to n/8 or, in a long series, 20 log₁₀ n."""
+    n = len(series)
+    forward, backward = series[1:].astype(float), series[:-1].astype(float)
+    noise = float(series @ series) / n
+    coefficients, covariance = np.zeros(0), [noise]
+    certainty, found = 0.0, []  # certainty: of Σ a_k, the sum over lower orders of (1 - Σ a_k)²/s
+    least = NOISE * noise
+    for order in range(min(n // 8, int(20 * math.log10(n))) + 1):
+        if order:
+            power = float(forward @ forward + backward @ backward)
+            reflection = 2 * float(forward @ backward) / power if power > 0 else 0.0
+            certainty += (1 - coefficients.sum()) ** 2 / noise
+            covariance.append(reflection * noise + float(coefficients @ covariance[:0:-1]))
+            coefficients = np.append(coefficients - reflection * coefficients[::-1], reflection)
+            noise *= 1 - reflection**2
+            forward, backward = (forward - reflection * backward)[1:], (backward - reflection * forward)[:-1]
+        if noise <= least:
+            break
+        off = 2 / n + 4 * noise * certainty / (n * (1 - coefficients.sum()) ** 2)
+        found.append(Model(coefficients, noise, np.array(covariance) * n / (n - order), off))
+    return found
