@@ -21,6 +21,9 @@ from scipy import signal
 LEAST_WEIGHT = 1e-3
 """Orders of a smaller weight, relative to the largest one, are left out."""
 
+BLOCKS = 128
+"""Number of blocks that a long series is divided into, or up to twice as many."""
+
 NOISE = 1e-12
 """Share of the variance below which what a model leaves unexplained is rounding."""
 
@@ -43,8 +46,8 @@ class Model(NamedTuple):
         order = len(self.coefficients)
         if length <= order + 1 or not order:
             return np.append(self.covariance[:length], np.zeros(max(length - order - 1, 0)))
-        predictor = np.append(1.0, -self.coefficients)
-        state = signal.lfiltic([1.0], predictor, self.covariance[:0:-1])
+        predictor, latest = np.append(1.0, -self.coefficients), self.covariance[:0:-1]
+        state = [self.coefficients[k:] @ latest[: order - k] for k in range(order)]
         rest = signal.lfilter([1.0], predictor, np.zeros(length - order - 1), zi=state)[0]
         return np.append(self.covariance, rest)
 
@@ -89,13 +92,19 @@ def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
 
 
 def error_of_mean(series: np.ndarray) -> Spread:
-    """Standard error of the mean of a stationary series (n,); not a number for fewer than two samples."""
+    """Standard error of the mean of a stationary series (n,); not a number for fewer than two samples.
+
+    A long series is averaged in blocks first: what matters are the slow fluctuations, which may be too small to be seen
+    beside the fast ones.
+    """
     n = len(series)
     if n < 2:
         return Spread(math.nan, float(n))
     if is_constant(series):
         return Spread(0.0, float(n))
-    return process_of(series - series.mean()).spread()
+    block = max(n // BLOCKS, 1)
+    coarse = series[n % block :].reshape(-1, block).mean(axis=1)
+    return process_of(coarse - coarse.mean()).spread()
 
 
 def is_constant(series: np.ndarray) -> bool:

@@ -25,6 +25,12 @@ STRIPS = 4
 REFERENCES = (2, 4)
 """Parts of a log whose last one is tried as reference: its last half, or its last quarter."""
 
+BEYOND = 16
+"""Part of a log by which the steady part is longer than the last quarter; else a slow drift would pass for steady."""
+
+STARTS = 33
+"""Number of evenly spaced starts that are tried, beside those each 1.4 times the one before."""
+
 FEWEST = 8
 """Least number of blocks of a reference; a shorter log is used as a whole."""
 
@@ -99,8 +105,8 @@ def steady_from(series: Iterable[np.ndarray]) -> int | None:
             break
         references = [_reference(values[first:], TREND / len(some)) for values in some]
         if None not in references:
-            known = [r for r in references if r is not None]
-            return _first_steady(some, known, first)
+            start = _first_steady(some, [r for r in references if r is not None], first)
+            return start if part == REFERENCES[0] or first - start >= n // BEYOND else None
     return None
 
 
@@ -141,5 +147,5 @@ def _first_steady(series: list[np.ndarray], references: list[Reference], last: i
                 return False
         return True
 
-    starts = np.unique(np.append(0, 2 ** (np.arange(2 * np.log2(last)) / 2)).astype(int))
+    starts = np.unique([0, *2 ** (np.arange(2 * np.log2(last)) / 2), *np.linspace(0, last, STARTS)]).astype(int)
     return next((int(start) for start in starts if start < last and is_steady(int(start))), last)

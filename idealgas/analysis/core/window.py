@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from idealgas.log import Log
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
 DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
+
+_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float], int]] = WeakKeyDictionary()
+"""Block from which on the gas of a log is steady, by the number of event rows and the end of the window."""
 
 
 @dataclass(frozen=True)
@@ -89,9 +93,15 @@ def measure(
         if tallies:
             stream(log, edges, tallies, progress)
         return Window(edges, 0, detected=False)
-    course = Course(log, tallies)
-    stream(log, edges, course.tallies, progress)
-    return Window(edges, first_steady(log, course.series()), detected=True)
+    known = _KNOWN.setdefault(log, {})
+    key = (len(log), edges[-1])
+    if key not in known:
+        course = Course(log, tallies)
+        stream(log, edges, course.tallies, progress)
+        known[key] = first_steady(log, course.series())
+    elif tallies:
+        stream(log, edges, tallies, progress)
+    return Window(edges, known[key], detected=True)
 
 
 def first_steady(log: Log, series: Iterable[np.ndarray]) -> int:

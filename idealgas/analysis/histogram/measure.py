@@ -17,7 +17,7 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
-from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
+from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, mean_of_flux, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.theory import distributions
@@ -158,6 +158,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members))
     window = measure(log, [tally], start, end, progress, ("conserves_energy",))
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
+    confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = velocity_laws(quantity, equilibrium.of_species[s], discs.mass[s], equilibrium.dof)
@@ -168,7 +169,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
                 name,
                 np.linspace(low[s], high[s], BINS + 1),
                 window.of(tally.counts)[:, s],
-                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], last_law.mean),
+                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], last_law.mean, confined),
                 snapshots[::spacing].ravel(),
                 spacing * window.width,
                 possible,
@@ -177,10 +178,15 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     return window, found
 
 
-def _mean(series: np.ndarray, scale: float, expected: float) -> Estimate:
-    """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error."""
+def _mean(series: np.ndarray, scale: float, expected: float, confined: bool) -> Estimate:
+    """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error.
+
+    confined: whether the quantity is a velocity between walls, whose integral over time is a place in the box.
+    """
     if np.ptp(series) < 1e-12 * scale:
         return Estimate(float(series.mean()), 0.0, 1.0, expected)
+    if confined:
+        return mean_of_flux(series, np.zeros(len(series)), expected)
     return mean(series, theory=expected)
 
 
