@@ -6,6 +6,7 @@ autocovariances of the reference (`autoregression`), so that a steady series pas
 hundred fails for a stretch of given length.
 """
 
+import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -25,23 +26,27 @@ STRIPS = 4
 REFERENCES = (2, 4)
 """Parts of a log whose last one is tried as reference: its last half, or its last quarter."""
 
+FEWEST, LONG = 16, 64
+"""Least number of blocks of a log that is tested, and of a part of it that is found to change."""
+
+ENOUGH = 2.0
+"""Least degrees of freedom of the last half; with fewer, slow change cannot be told from fluctuations."""
+
 BEYOND = 16
-"""Part of a log by which the steady part is longer than the last quarter; else a slow drift would pass for steady."""
+"""Part of a log by which the steady part is longer than the last quarter if the last half has a trend; else a slow
+drift would pass for steady."""
 
-STARTS = 33
-"""Number of evenly spaced starts that are tried, beside those each 1.4 times the one before."""
-
-FEWEST = 8
-"""Least number of blocks of a reference; a shorter log is used as a whole."""
-
-SHORTEST = 4
-"""Number of blocks of the shortest stretch that is tested; each longer one is twice as long."""
+TREND = 0.001
+"""Probability that a steady gas is found to have a trend in the reference."""
 
 LEVEL = 0.01
 """Probability that a steady gas is found not to be steady, for stretches of one length."""
 
-TREND = 0.001
-"""Probability that a steady gas is found to have a trend in the reference."""
+STARTS = 33
+"""Number of evenly spaced starts that are tried, beside those each 1.4 times the one before."""
+
+SHORTEST = 4
+"""Number of blocks of the shortest stretch that is tested; each longer one is twice as long."""
 
 ROUNDING = 1e-9
 """Relative change below which a series is constant."""
@@ -82,11 +87,16 @@ class Course:
 
 
 class Reference(NamedTuple):
-    """Steady part of a series: its mean, variances (n,) of means of 1 to n samples, and their degrees of freedom."""
+    """Later part of a series, of n samples.
+
+    mean: of the samples. variance: (n,), variances of means of 1 to n samples. dof: degrees of freedom of these. trend:
+    slope of the samples against time, in its standard errors.
+    """
 
     mean: float
     variance: np.ndarray
     dof: float
+    trend: float
 
     def quantile(self, level: float) -> float:
         """Deviation in standard errors that chance exceeds with the probability `level`, on either side."""
@@ -96,40 +106,40 @@ class Reference(NamedTuple):
 def steady_from(series: Iterable[np.ndarray]) -> int | None:
     """Index from which on all series (n,) are steady; None if they still change at the end."""
     some = [values for values in series if np.ptp(values) > ROUNDING * np.abs(values).max()]
-    if not some or len(some[0]) < 2 * FEWEST:
+    if not some or len(some[0]) < FEWEST:
         return 0
-    n = len(some[0])
-    for part in REFERENCES:
+    n, drifts = len(some[0]), False
+    parts = [part for part in REFERENCES if n // part >= LONG or part == REFERENCES[0]]
+    for part in parts:
         first = n - n // part
-        if n - first < FEWEST:
-            break
-        references = [_reference(values[first:], TREND / len(some)) for values in some]
-        if None not in references:
-            start = _first_steady(some, [r for r in references if r is not None], first)
-            return start if part == REFERENCES[0] or first - start >= n // BEYOND else None
-    return None
+        references = [_reference(values[first:]) for values in some]
+        if any(r.trend > r.quantile(TREND / len(some)) for r in references):
+            drifts = True
+        elif part == parts[-1] or min(r.dof for r in references) >= ENOUGH:
+            start = _first_steady(some, references, first)
+            return None if drifts and first - start < n // BEYOND else start
+    return None if n // 2 >= LONG else n - n // 2
 
 
-def _reference(values: np.ndarray, level: float) -> Reference | None:
-    """Reference of the last n samples of a series; None if they have a trend, by a test of that level."""
+def _reference(values: np.ndarray) -> Reference:
+    """Reference of the last n samples of a series."""
     n = len(values)
     if is_constant(values):
-        return Reference(float(values.mean()), np.zeros(n), np.inf)
+        return Reference(float(values.mean()), np.zeros(n), math.inf, 0.0)
     time = np.arange(n) - (n - 1) / 2
     weight = time / (time @ time)
     slope = float(weight @ values)
     rest = values - values.mean() - slope * time
     if is_constant(rest):
-        return None
+        return Reference(float(values.mean()), np.zeros(n), math.inf, math.inf)
     process = process_of(rest)
     samples = process.spread().samples
     dof = max(samples - 2, 1.0)
     covariance = process.covariances(n) * samples / dof  # mean and slope have taken two of the samples
-    spectrum = np.abs(np.fft.rfft(weight, 2 * n)) ** 2
-    overlaps = np.fft.irfft(spectrum, 2 * n)[:n]
+    overlaps = np.fft.irfft(np.abs(np.fft.rfft(weight, 2 * n)) ** 2, 2 * n)[:n]
     variance = covariance[0] * overlaps[0] + 2 * float(covariance[1:] @ overlaps[1:])
-    found = Reference(float(values.mean()), np.maximum(variance_of_mean(covariance), 0.0), dof)
-    return None if slope**2 > found.quantile(level) ** 2 * variance else found
+    scatter = np.maximum(variance_of_mean(covariance), 0.0)
+    return Reference(float(values.mean()), scatter, dof, abs(slope) / math.sqrt(variance))
 
 
 def _first_steady(series: list[np.ndarray], references: list[Reference], last: int) -> int:
