@@ -21,6 +21,7 @@ import numpy as np
 from scipy import stats
 
 from idealgas import Log, open_log, parse_scene, simulate
+from idealgas.analysis.core import window
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.effusion.measure import effusion
 from idealgas.analysis.heat_capacity.measure import heat_capacity
@@ -34,15 +35,24 @@ from idealgas.analysis.transport.measure import transport
 PART = 50
 """Number of seeds that are stored together."""
 
+KEPT = "share kept"
+"""Name of the share of a log that is used from detected equilibrium on."""
+
 Named = Iterator[tuple[str, Estimate]]
+Found = dict[str, np.ndarray]
 
 
 class Case(NamedTuple):
-    """Gas of a calibration: text of its scene, two run lengths as text for [run], and what is measured of a log."""
+    """Gas of a calibration: text of its scene, run lengths as text for [run], and what is measured of a log.
+
+    more: text for [log]. steady: whether the gas is in equilibrium from early on.
+    """
 
     scene: str
     runs: tuple[str, ...]
     measured: Callable[[Log], Named]
+    more: str = ""
+    steady: bool = True
 
 
 class Row(NamedTuple):
@@ -66,7 +76,7 @@ def box(log: Log) -> Named:
     yield from (("free path", free.path), ("free time", free.time), ("mean speed", free.speed))
     yield "temperature along x", temperature(log).species[0].x
     yield "heat capacity E/T", heat_capacity(log).routes["E/T"]
-    for quantity in ("vx", "free-path", "free-time", "wait"):
+    for quantity in ("vx", "free-path", "wait"):
         yield f"mean {quantity} (histogram)", histogram(log, quantity).distributions[0].mean
 
 
@@ -127,6 +137,7 @@ GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "te
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 THERMAL = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
 SHORT_AND_LONG = ("collisions_per_disc = 400", "collisions_per_disc = 4000")
+SNAPSHOTS = "snapshot_every = 0.1\n"
 SLOW = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
 """Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 20 times it."""
 
@@ -134,11 +145,9 @@ CASES = {
     "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),
     "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
     "periodic box": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, periodic),
-    "heat bath": Case(GAS.format(sides=THERMAL) + "[log]\nsnapshot_every = 0.1\n", SLOW, bath),
+    "heat bath": Case(GAS.format(sides=THERMAL), SLOW, bath, SNAPSHOTS),
     "rough discs": Case(
-        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n[log]\nsnapshot_every = 0.1\n",
-        SHORT_AND_LONG,
-        rough,
+        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, SNAPSHOTS
     ),
     "mixture": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'light'\ncount = 30\nradius = 0.03\ntemperature = 1.3\n"
@@ -152,25 +161,31 @@ CASES = {
         "count = 100\nradius = 0.002\ntemperature = 1\nregion = [0, 0, 1, 1]\n",
         ("until = 11", "until = 41"),
         slit,
+        steady=False,
     ),
     "equal speeds": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'gas'\ncount = 200\nradius = 0.0178\nspeed = 1\n",
         ("collisions_per_disc = 45",),
         equal_speeds,
+        steady=False,
     ),
 }
 
 
-def measure(case: Case, run: str, seeds: range, path: Path) -> dict[str, np.ndarray]:
-    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4)."""
+def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
+    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4); of KEPT only the value is known."""
     found: dict[str, list[tuple[float, ...]]] = {}
     for seed in seeds:
-        simulate(parse_scene(f"[scene]\nseed = {seed}\n{case.scene}\n[run]\n{run}\n"), path, force=True)
+        text = f"[scene]\nseed = {seed}\n{case.scene}\n[log]\ncompression = 'none'\n{case.more}[run]\n{run}\n"
+        simulate(parse_scene(text), path, force=True)
         with open_log(path) as log:
             for name, one in case.measured(log):
                 exact = one.theory if one.theory is not None and one.theory_error == 0 else math.nan
                 row = (one.value, one.standard_error, one.independent_samples, exact)
                 found.setdefault(name, []).append(row)
+            if case.steady:
+                share = window.measure(log, []).duration / (log.end_time - log.start_time)
+                found.setdefault(KEPT, []).append((share, math.nan, math.nan, math.nan))
     return {name: np.array(rows) for name, rows in found.items()}
 
 
@@ -195,32 +210,55 @@ def row_of(case: str, run: str, name: str, found: np.ndarray) -> Row:
     return Row(case, run, name, n, float(np.sqrt((deviation**2).mean())), float(held.mean()))
 
 
-def collect(folder: Path, seeds: int, seconds: float = math.inf, only: str = "") -> list[Row]:
-    """Rows of the table for the first seeds; what is not stored in the folder is simulated, for a limited time."""
-    rows, end = [], time.monotonic() + seconds
-    for title, case in CASES.items():
-        for run in case.runs:
-            if only not in f"{title}, {run}":
-                continue
-            parts = []
-            for first in range(0, seeds, PART):
-                stored = folder / f"{title}-{run.replace(' ', '')}-{first}.npz"
-                if not stored.exists():
-                    if time.monotonic() > end:
-                        break
-                    with tempfile.TemporaryDirectory(dir="/dev/shm" if Path("/dev/shm").is_dir() else None) as place:
-                        np.savez(stored, **measure(case, run, range(first, first + PART), Path(place) / "run.h5"))
+def collect(folder: Path, seeds: int, seconds: float = math.inf, only: str = "") -> dict[tuple[str, str], Found]:
+    """What was measured of the first seeds, by gas and run; what the folder lacks is simulated, for a limited time."""
+    collected, end = {}, time.monotonic() + seconds
+    memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
+    for title, run in ((title, run) for title, case in CASES.items() for run in case.runs):
+        if only not in f"{title}, {run}":
+            continue
+        parts = []
+        for first in range(0, seeds, PART):
+            stored = folder / f"{title}-{run.replace(' ', '')}-{first}.npz"
+            if not stored.exists() and time.monotonic() < end:
+                with tempfile.TemporaryDirectory(dir=memory) as place:
+                    found = measure(CASES[title], run, range(first, first + PART), Path(place) / "run.h5")
+                np.savez(stored, **found)
+            if stored.exists():
                 with np.load(stored) as file:
                     parts.append(dict(file))
-            if parts:
-                rows += [row_of(title, run, n, np.concatenate([part[n] for part in parts])) for n in parts[0]]
-    return rows
+        if parts:
+            collected[title, run] = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return collected
+
+
+def rows_of(collected: dict[tuple[str, str], Found]) -> list[Row]:
+    """Rows of the table."""
+    return [
+        row_of(title, run, name, rows)
+        for (title, run), found in collected.items()
+        for name, rows in found.items()
+        if name != KEPT
+    ]
+
+
+def kept(collected: dict[tuple[str, str], Found]) -> np.ndarray:
+    """Shares of all logs of steady gases that are used."""
+    return np.concatenate([found[KEPT][:, 0] for found in collected.values() if KEPT in found])
 
 
 def table(rows: list[Row]) -> str:
-    """Table for the README: for each estimate rms and coverage in every run length."""
-    lines = (f"| {r.case} | {r.run} | {r.name} | {r.runs} | {r.rms:.2f} | {100 * r.coverage:.1f} |" for r in rows)
-    return "\n".join(("| gas | run | estimate | runs | rms | 95 % |", "|---|---|---|---|---|---|", *lines))
+    """Table for the README: for each estimate the rms deviation and the coverage in runs of every length."""
+    found: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        found.setdefault((row.case, row.name), []).append(row)
+    lines = ["| gas | estimate | runs | rms deviation/error | 95 % intervals that hold, % |", "|---|---|---|---|---|"]
+    for (case, name), entries in found.items():
+        number = min(entry.runs for entry in entries)
+        rms = ", ".join(f"{entry.rms:.2f}" for entry in entries)
+        coverage = ", ".join(f"{100 * entry.coverage:.1f}" for entry in entries)
+        lines.append(f"| {case} | {name} | {number} | {rms} | {coverage} |")
+    return "\n".join(lines)
 
 
 def main() -> None:
@@ -232,7 +270,11 @@ def main() -> None:
     parser.add_argument("--only", default="", help="part of the name of a gas and run")
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
-    print(table(collect(given.folder, given.seeds, given.seconds, given.only)))
+    collected = collect(given.folder, given.seeds, given.seconds, given.only)
+    print(table(rows_of(collected)))
+    shares = kept(collected)
+    print(f"share of {len(shares)} steady logs that is used: median {np.median(shares):.3f},", end=" ")
+    print(f"{100 * (shares < 0.9).mean():.1f} % keep less than 0.9, {100 * (shares < 0.5).mean():.1f} % less than 0.5")
 
 
 if __name__ == "__main__":
