@@ -83,7 +83,7 @@ def test_gas_that_still_changes_at_the_end(log_of):
 
 def test_temperature_between_walls_of_two_temperatures(log_of):
     log = log_of("[box]\nsize = [1, 1]\nleft = { thermal = 2 }\nright = { thermal = 1 }\n" + GAS + RUN)
-    with pytest.raises(NotApplicableError, match="walls have 2 temperatures.*profile"):
+    with pytest.raises(NotApplicableError, match=r"walls have 2 temperatures.*profile"):
         analyse(log, "temperature")
     assert analyse(log, "temperature", start=0.5).as_dict()["species"]
     assert analyse(log, "profile").as_dict()["window"]["equilibration_detected"]
