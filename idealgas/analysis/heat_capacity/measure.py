@@ -16,7 +16,6 @@ from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -140,7 +139,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     across = gas.box[1 - scene.piston.axis]
     room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))
     phi = gas.packing_fraction * gas.area / (room * across)
-    if phi > HIGHEST:
+    if phi > hard_discs.HIGHEST:
         return None, None
     z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
     slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
