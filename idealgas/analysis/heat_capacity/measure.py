@@ -154,7 +154,7 @@ def _closed_box(
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility for route in measured.routes if route.name == WALLS), None)
     if walls is None or walls.theory is None or not walls.value > 0:
-        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory of their pressure")
+        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, energy = measured.number, log.discs.kinetic_energy / measured.number
