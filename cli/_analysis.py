@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 from ._options import json_option
 from ._tables import print_tables
@@ -111,7 +111,7 @@ def _common_options(analysis: "Analysis") -> Iterator[Callable]:
     words = "Print the rows of the tables as CSV with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.checked:
-        words = "Exit with code 1 unless measurement and theory agree within 4 standard errors."
+        words = "Exit with code 1 if measurement and theory differ by more than 4 standard errors, 0 without a theory."
         yield click.option("--check", is_flag=True, help=words)
 
 
@@ -129,29 +129,44 @@ def _analyse(
     """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
         raise UserError("--csv: not together with --json")
-    with reading(analysis.reads) as progress:
-        results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
-    result = analysis.combine(results)
-    agrees = result.check() if check else None
+    try:
+        with reading(analysis.reads) as progress:
+            results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
+        result = analysis.combine(results)
+    except NotApplicableError as error:
+        if not check or plot or as_csv:
+            raise
+        _print_no_theory(error, as_json)
+        return
+    verdict = result.check() if check else None
     if plot:
         from idealgas.analysis.core.style import save
 
         save(analysis.figure(result), plot)
     if as_json:
-        print_json(result.as_dict() | ({"agrees": agrees} if analysis.checked else {}))
+        unasked = {"agrees": None} if analysis.checked else {}
+        print_json(result.as_dict() | (verdict.as_dict() if verdict else unasked))
     elif as_csv:
         from idealgas.analysis.core import tables
 
         click.echo(tables.as_csv(analysis.tables(result)), nl=False)
     else:
         print_tables(analysis.tables(result))
-        if agrees is not None:
-            from idealgas.analysis.core.statistics import TOLERANCE
-
-            verdict = "agree" if agrees else "do not agree"
-            click.echo(f"Measurement and theory {verdict} within {TOLERANCE:g} standard errors.")
-    if agrees is False:
+        if verdict:
+            click.echo(f"{verdict}")
+    if verdict and verdict.agrees is False:
         raise SystemExit(1)
+
+
+def _print_no_theory(error: NotApplicableError, as_json: bool) -> None:
+    """Print the result of a check of a gas to which the analysis does not apply."""
+    from idealgas.analysis.core.statistics import Verdict
+
+    verdict = Verdict(None, why_not=str(error))
+    if as_json:
+        print_json(verdict.as_dict())
+    else:
+        click.echo(f"{verdict}")
 
 
 def _results(

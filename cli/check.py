@@ -38,7 +38,9 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         return
     click.echo(dump_document(scene))
     console = Console()
-    console.print(_species_table(expected), _walls_table(scene), _gas_table(expected))
+    console.print(_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until))
+    if expected.rough:
+        click.echo(f"about: {expected.rough}")
     if expected.beyond:
         click.echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     click.echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
@@ -51,8 +53,8 @@ def _absent(scene: "Scene") -> tuple[str, ...]:
     return tuple(name for name in EFFECTS if name not in scene.effects)
 
 
-def _number(value: float | None, digits: str = ".5g") -> str:
-    return "not known" if value is None else f"{value:{digits}}"
+def _number(value: float | None, digits: str = ".5g", rough: str = "") -> str:
+    return "not known" if value is None else f"{'about ' * bool(rough)}{value:{digits}}"
 
 
 def _species_table(expected: "Forecast") -> "Table":
@@ -62,8 +64,9 @@ def _species_table(expected: "Forecast") -> "Table":
     for head in ("N", "radius", "mass", "φ", "temperature", "collisions per disc and time"):
         table.add_column(head, justify="right")
     for s in expected.species:
-        values = (s.radius, s.mass, s.packing_fraction, s.temperature, s.collision_rate)
-        table.add_row(s.name, str(s.number), *map(_number, values))
+        values = (s.radius, s.mass, s.packing_fraction, s.temperature)
+        rate = _number(s.collision_rate, rough=expected.rough)
+        table.add_row(s.name, str(s.number), *map(_number, values), rate)
     return table
 
 
@@ -78,7 +81,7 @@ def _walls_table(scene: "Scene") -> "Table":
     return table
 
 
-def _gas_table(expected: "Forecast") -> "Table":
+def _gas_table(expected: "Forecast", until: float | None) -> "Table":
     from rich.filesize import decimal
     from rich.table import Table
 
@@ -87,11 +90,13 @@ def _gas_table(expected: "Forecast") -> "Table":
     table.add_row("discs N", f"{expected.number}")
     table.add_row("packing fraction φ", f"{expected.packing_fraction:.5g}")
     table.add_row("temperature T", _number(expected.temperature))
-    table.add_row("collisions per disc and time Γ", _number(expected.collision_rate))
-    table.add_row("pair collisions per time", _number(expected.pair_collision_rate))
-    table.add_row("wall hits per time", _number(expected.wall_hit_rate))
-    table.add_row("end of the run, time", _number(expected.duration))
-    table.add_row("events", _number(expected.events, ",.0f"))
-    table.add_row("rows in the log", _number(expected.rows, ",.0f"))
-    table.add_row("size of the log", "not known" if expected.bytes is None else decimal(int(expected.bytes)))
+    rough, ends = expected.rough, "" if expected.duration == until else expected.rough
+    table.add_row("collisions per disc and time Γ", _number(expected.collision_rate, rough=rough))
+    table.add_row("pair collisions per time", _number(expected.pair_collision_rate, rough=rough))
+    table.add_row("wall hits per time", _number(expected.wall_hit_rate, rough=rough))
+    table.add_row("end of the run, time", _number(expected.duration, rough=ends))
+    table.add_row("events", _number(expected.events, ",.0f", rough))
+    table.add_row("rows in the log", _number(expected.rows, ",.0f", rough))
+    size = "not known" if expected.bytes is None else f"{'about ' * bool(rough)}{decimal(int(expected.bytes))}"
+    table.add_row("size of the log", size)
     return table

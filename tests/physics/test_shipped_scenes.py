@@ -74,7 +74,7 @@ def test_periodic(run):
     found = pressure(log)
     (route,) = found.routes
     agrees(route.compressibility, 2e-3)
-    assert found.check()
+    assert found.check().agrees
     (rate,) = found.collision_rates
     agrees(rate.rate, 0.01)
 

@@ -1,17 +1,19 @@
 """Collision rates and mean free paths of each species of discs, measured and by kinetic theory."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble
+from idealgas.analysis.core.equilibrium import Ensemble, drift
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.core.window import Window
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
+from idealgas.log import Log
 
 
 @dataclass(frozen=True)
@@ -46,60 +48,95 @@ class FreePath:
         return {"species": self.species, **values}
 
 
+class ExpectedRates(NamedTuple):
+    """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, with their errors.
+
+    rate: (S, S), 1/time; nan if theory has no value. relative_error: (S, S), relative standard deviation of its error.
+    """
+
+    rate: np.ndarray
+    relative_error: np.ndarray
+
+    def between(self, i: int, j: int) -> Theory | None:
+        """Rate Γ_ij in 1/time; None if theory has no value."""
+        return self._theory(self.rate[i, j], self.relative_error[i, j] * self.rate[i, j])
+
+    def of(self, i: int) -> Theory | None:
+        """Rate of the collisions of one disc of species i with all other discs, in 1/time; None without a value."""
+        return self._theory(self.rate[i].sum(), (self.relative_error[i] * self.rate[i]).sum())
+
+    @staticmethod
+    def _theory(rate: float, error: float) -> Theory | None:
+        return Theory(float(rate), float(error), "kinetic theory") if np.isfinite(rate) else None
+
+
+def theory_of(log: Log, discs: Composition) -> BoxTheory:
+    """Theory of the pressure and of the contacts of a uniform gas, the one of a log."""
+    return box_theory(discs.radius, discs.number, log.box, log.periodic, ergodic=_is_ergodic(log))
+
+
+def _is_ergodic(log: Log) -> bool:
+    """Whether the gas reaches all states of its energy. False only for two equal discs that start without momentum.
+
+    Between walls their velocities then remain equal in every component except for signs. As long as they meet with
+    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
+    """
+    gas = log.discs
+    if len(gas) != 2 or all(log.periodic) or not log.scene.properties.isolated or np.ptp(gas.mass) > 0:
+        return True
+    speeds = np.abs(gas.velocity - drift(log))[:, ~np.array(log.periodic)]
+    return bool(np.abs(speeds[0] - speeds[1]).max() > 1e-9 * speeds.max())
+
+
 def expected_rates(
-    discs: Composition,
-    box: tuple[float, float],
-    equilibrium: Ensemble,
-    periodic: tuple[bool, bool] = (False, False),
-    has_positions: bool = True,
-) -> np.ndarray:
+    discs: Composition, box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None
+) -> ExpectedRates:
     """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, in 1/time.
 
-    The product of the contacts per relative speed, from which the pressure follows as well
-    (`hard_discs.box_compressibility`), and of the mean relative speed, which is a little larger at fixed total energy
-    than by Maxwell-Boltzmann's law.
+    The product of the contacts per relative speed, from which the pressure follows as well, and of the mean relative
+    speed, which is a little larger at fixed total energy than by Maxwell-Boltzmann's law.
 
     Args:
         discs: the S species of the gas.
         box: width and height of the box, length.
         equilibrium: the ensemble that the gas belongs to.
-        periodic: whether the box is periodic along x and along y.
-        has_positions: False for a method whose discs have no positions.
-
-    Returns:
-        Rates of shape (S, S); not a number above the freezing density, where the theory of the fluid ends.
+        theory: contacts of the gas from `theory_of`; None for a method whose discs have no positions.
     """
-    if has_positions:
-        contacts = hard_discs.box_contacts(discs.radius, discs.number, box, periodic)
-    else:
-        contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, box)
-    return contacts * hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
+    speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
+    if theory is None:
+        return ExpectedRates(hard_discs.contacts_without_positions(discs.radius, discs.number, box) * speed, 0 * speed)
+    return ExpectedRates(theory.contacts * speed, theory.rate_error)
 
 
 def collision_rates(
-    discs: Composition, expected: np.ndarray, window: Window, impacts: Impacts
+    discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts
 ) -> tuple[CollisionRate, ...]:
     """Measured collision rates of all ordered pairs of species, in 1/time.
 
-    expected: (S, S) rates by theory, from `expected_rates`.
+    expected: rates by theory, from `expected_rates`.
     """
     counts = window.of(impacts.collisions)
 
     def rate(i: int, j: int) -> Estimate:
         discs_per_event = 2 if i == j else 1
         series = discs_per_event * counts[:, min(i, j), max(i, j)] / discs.number[i]
-        return mean(series, theory=_known(expected[i, j]))
+        return mean(series, theory=expected.between(i, j))
 
     species = range(len(discs.name))
     return tuple(CollisionRate(discs.name[i], discs.name[j], rate(i, j)) for i in species for j in species)
 
 
 def free_paths(
-    discs: Composition, expected: np.ndarray, equilibrium: Ensemble, window: Window, moments: Moments, impacts: Impacts
+    discs: Composition,
+    expected: ExpectedRates,
+    equilibrium: Ensemble,
+    window: Window,
+    moments: Moments,
+    impacts: Impacts,
 ) -> tuple[FreePath, ...]:
     """Mean free path λ = ⟨v⟩/Γ, mean free time 1/Γ and mean speed ⟨v⟩ of each species.
 
-    expected: (S, S) collision rates by theory in 1/time, from `expected_rates`.
+    expected: collision rates by theory, from `expected_rates`.
     """
     counts = window.of(impacts.collisions)
     paths = []
@@ -107,17 +144,19 @@ def free_paths(
         own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
         speeds = window.of(moments.flights)[:, i, 0] / number
         speed = hard_discs.mean_speed(equilibrium.of_species[i], mass, equilibrium.dof)
-        free_time = np.inf if expected[i].sum() == 0 else 1 / expected[i].sum()
+        free_time = _inverse(expected.of(i))
         paths.append(
             FreePath(
                 name,
-                path=ratio(speeds, own, theory=_known(speed * free_time)),
-                time=estimate(lambda rate: 1 / rate, own, theory=_known(free_time)),
+                path=ratio(speeds, own, theory=free_time and free_time.times(speed)),
+                time=estimate(lambda rate: 1 / rate, own, theory=free_time),
                 speed=mean(speeds, theory=speed),
             )
         )
     return tuple(paths)
 
 
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def _inverse(rate: Theory | None) -> Theory | None:
+    if rate is None or rate.value == 0:
+        return None
+    return Theory(1 / rate.value, rate.error / rate.value**2, rate.source)

@@ -1,12 +1,13 @@
 """Conserved quantities of a gas, and the ensemble of its equilibrium: how the energy is shared among the discs."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
 
@@ -52,7 +53,7 @@ def ensemble(log: Log) -> Ensemble:
     found = known_ensemble(log)
     if found is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
-        raise UserError(f"{log.path}: no temperature is known beforehand under {', '.join(causes)}")
+        raise NotApplicableError(f"{log.path}: no temperature is known beforehand under {', '.join(causes)}")
     return found
 
 
@@ -68,8 +69,11 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
-    temperature = min(properties.temperatures, default=energy / dof)
     share = 1 - kept.mean() * mass / gas.mass.sum()
+    if properties.temperatures:  # the walls' heat bath has no limit to its energy
+        (temperature,) = properties.temperatures
+        return Ensemble(frame, math.inf, temperature, temperature * share)
+    temperature = energy / dof
     return Ensemble(frame, dof, temperature, temperature * share)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
 logging.getLogger("pymbar").setLevel(logging.ERROR)  # pymbar logs at import that JAX would be faster
@@ -26,7 +27,7 @@ LONG_BLOCKS = 32
 """Number of long blocks from which the errors of anticorrelated series are computed."""
 
 TOLERANCE = 4.0
-"""Largest allowed deviation between measurement and theory in a check, in standard errors."""
+"""Largest allowed deviation between measurement and theory in a check, in errors of both together."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +37,30 @@ class Estimate:
     value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
     there are too few samples. independent_samples: number of independent samples behind the error; inf for a quantity
     that is known exactly. theory: value expected by theory, in the same unit; None where no theory applies.
+    theory_error: standard deviation of the error of that value, in the same unit.
     """
 
     value: float
     standard_error: float
     independent_samples: float
     theory: float | None = None
+    theory_error: float = 0.0
 
     @property
     def deviation(self) -> float | None:
-        """Deviation value - theory in standard errors; None without theory or without an error bar."""
+        """Deviation value - theory in units of √(standard_error² + theory_error²).
+
+        None without theory or without an error bar.
+        """
         if self.theory is None or not self.standard_error > 0:
             return None
-        return (self.value - self.theory) / self.standard_error
+        return (self.value - self.theory) / math.hypot(self.standard_error, self.theory_error)
+
+    def times(self, factor: float) -> "Estimate":
+        """Estimate of the quantity multiplied by a factor."""
+        theory, size = None if self.theory is None else self.theory * factor, abs(factor)
+        errors = self.standard_error * size, self.theory_error * size
+        return Estimate(self.value * factor, errors[0], self.independent_samples, theory, errors[1])
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval at a level (0 to 1), by Student's t with independent_samples - 1 degrees of freedom."""
@@ -64,6 +76,7 @@ class Estimate:
             math.nan if error is None else error,
             math.inf if samples is None else samples,
             found["theory"],
+            found.get("theory_error") or 0.0,  # results of before have none
         )
 
     def as_dict(self) -> dict[str, float | None]:
@@ -72,16 +85,46 @@ class Estimate:
         return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
 
 
-def agree(found: Iterable[Estimate]) -> bool:
-    """Whether every value agrees with its theory within TOLERANCE standard errors.
+@dataclass(frozen=True)
+class Verdict:
+    """Result of a check of measurement against theory.
+
+    agrees: whether they agree; None if theory has no value. judged: names of the quantities that were compared.
+    why_not: why theory has no value, as part of a sentence.
+    """
+
+    agrees: bool | None
+    judged: tuple[str, ...] = ()
+    why_not: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        return {"agrees": self.agrees, "judged": self.judged, "no_theory": self.why_not or None}
+
+    def __str__(self) -> str:
+        """One sentence for people."""
+        if self.agrees is None:
+            return f"No theory here: {self.why_not}."
+        verdict = "agree" if self.agrees else "do not agree"
+        return f"Measurement and theory {verdict} within {TOLERANCE:g} standard errors in {'; '.join(self.judged)}."
+
+
+def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
+    """Check that every estimate with a theory agrees with it within TOLERANCE.
+
+    Args:
+        found: estimates by name.
+        why_not: why theory has no value, for the case that no estimate has one.
 
     Raises:
-        UserError: if no value has both a theory and an error bar.
+        UserError: if an estimate with a theory has no error bar.
     """
-    deviations = [one.deviation for one in found]
-    if any(deviation is None or not math.isfinite(deviation) for deviation in deviations):
-        raise UserError("nothing to check: too few events for an error bar, or no theory at this packing fraction")
-    return all(abs(deviation) <= TOLERANCE for deviation in deviations if deviation is not None)
+    known = {name: one.deviation for name, one in found if one.theory is not None}
+    if not known:
+        return Verdict(None, why_not=why_not)
+    if any(deviation is None or not math.isfinite(deviation) for deviation in known.values()):
+        raise UserError("nothing to check: too few events for an error bar")
+    return Verdict(all(abs(deviation or 0.0) <= TOLERANCE for deviation in known.values()), tuple(known))
 
 
 def inefficiency(series: np.ndarray) -> float:
@@ -113,7 +156,7 @@ def equilibration(*series: np.ndarray) -> int:
     return start
 
 
-def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | None = None) -> Estimate:
+def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Estimate of function(means of the series), with its error by linear propagation of their joint fluctuations.
 
     The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. Examples: a mean is
@@ -131,7 +174,12 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: float | 
                 influence += slope * (column - means[k])
         value = float(function(*means))
     error, samples = _error_of_mean(influence)
-    return Estimate(value, error, samples, theory)
+    return Estimate(value, error, samples, *_said(theory))
+
+
+def _said(theory: Theory | float | None) -> tuple[float | None, float]:
+    """Value and error of a theory; the error of a plain number is 0."""
+    return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
 def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
@@ -152,12 +200,12 @@ def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
     return error, samples
 
 
-def mean(series: np.ndarray, theory: float | None = None) -> Estimate:
+def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Estimate of the mean of one correlated series."""
     return estimate(lambda a: a, series, theory=theory)
 
 
-def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: float | None = None) -> Estimate:
+def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Estimate of the ratio of the means of two correlated series."""
     return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
 
@@ -183,7 +231,7 @@ def bootstrap(
     *,
     seed: int = 0,
     resamples: int = 2000,
-    theory: float | None = None,
+    theory: Theory | float | None = None,
 ) -> Estimate:
     """Estimate of function(replicates), with its error by bootstrap over the independent replicates on the first axis.
 
@@ -194,16 +242,19 @@ def bootstrap(
     n = len(replicates)
     picks = np.random.default_rng(seed).integers(n, size=(resamples, n))
     spread = np.std([function(replicates[pick]) for pick in picks], ddof=1)
-    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), theory)
+    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), *_said(theory))
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
     """Mean of one quantity over independent runs; error by bootstrap with enough runs, else from their own errors."""
-    values, theory = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
+    values, expected = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
+    shared = sum(r.theory_error for r in replicates) / len(replicates)  # the error of theory is common to all runs
+    theory = None if expected is None else Theory(expected, shared, "mean of runs")
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory=theory)
     error = math.sqrt(sum(r.standard_error**2 for r in replicates)) / len(values)
-    return Estimate(float(values.mean()), error, float(sum(r.independent_samples for r in replicates)), theory)
+    samples = float(sum(r.independent_samples for r in replicates))
+    return Estimate(float(values.mean()), error, samples, *_said(theory))
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:

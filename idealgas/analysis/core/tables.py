@@ -56,19 +56,32 @@ class Table:
 
 ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "dev./s.e.")
 
-CSV_HEADS = {"": "name", "± s.e.": "standard_error", "samples": "independent_samples", "dev./s.e.": "deviation"}
+THEORY_ERROR = "± theory"
+"""Heading of the error of theory, a column of those tables in which a theory has one."""
+
+CSV_HEADS = {
+    "": "name",
+    "± s.e.": "standard_error",
+    "samples": "independent_samples",
+    THEORY_ERROR: "theory_error",
+    "dev./s.e.": "deviation",
+}
 """Column names in CSV that differ from the shown headings; they are those of the results of a sweep."""
 
 
 def estimates(title: str, rows: Iterable[tuple[str, Estimate]], notes: Sequence[str] = ()) -> Table:
-    """Table of named estimates with value, standard error, independent samples, theory and deviation."""
+    """Table of named estimates with value, standard error, independent samples, theory, its error and deviation."""
+    rows = list(rows)
+    rough = any(found.theory_error > 0 for _, found in rows)
 
     def cells(name: str, found: Estimate) -> tuple[Cell, ...]:
         samples = Number(found.independent_samples, ".0f")
-        theory, deviation = Number(found.theory), Number(found.deviation, "+.2f")
-        return name, Number(found.value), Number(found.standard_error, ".2g"), samples, theory, deviation
+        error = [Number(None if found.theory is None else found.theory_error, ".2g")] if rough else []
+        theory = Number(found.theory), *error, Number(found.deviation, "+.2f")
+        return name, Number(found.value), Number(found.standard_error, ".2g"), samples, *theory
 
-    return Table(title, ESTIMATE_HEADS, [cells(*row) for row in rows], notes)
+    heads = (*ESTIMATE_HEADS[:-1], *[THEORY_ERROR] * rough, ESTIMATE_HEADS[-1])
+    return Table(title, heads, [cells(*row) for row in rows], notes)
 
 
 def collision_tables(rates: Iterable[CollisionRate], paths: Iterable[FreePath]) -> list[Table]:

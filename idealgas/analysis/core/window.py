@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import equilibration
 from idealgas.analysis.core.stream import Tally, stream
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
@@ -82,7 +82,7 @@ def measure(
             scene takes one of the needed properties away.
     """
     if strange := log.scene.lacking(*needs):
-        raise UserError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
     edges = block_edges(log, start, end)
     if start is not None:
         stream(log, edges, tallies, progress)

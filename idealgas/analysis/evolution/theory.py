@@ -32,7 +32,7 @@ def expected_course(log: Log, time: np.ndarray) -> Law | None:
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
-    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction < hard_discs.FREEZING
+    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= hard_discs.HIGHEST
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
     if single and alone and not properties.fixed_walls:

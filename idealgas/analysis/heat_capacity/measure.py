@@ -6,7 +6,7 @@ as the temperature of the thermal walls in a heat bath, and by the kinetic energ
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -139,6 +139,8 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     across = gas.box[1 - scene.piston.axis]
     room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))
     phi = gas.packing_fraction * gas.area / (room * across)
+    if phi > hard_discs.HIGHEST:
+        return None, None
     z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
     slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
     excess = z * z / (z + phi * slope)
@@ -152,11 +154,12 @@ def _closed_box(
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility for route in measured.routes if route.name == WALLS), None)
     if walls is None or walls.theory is None or not walls.value > 0:
-        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or of a gas too dense")
-    unit = measured.temperature / walls.theory  # Z was computed with E/N as temperature, which is undone here
-    t = Estimate(walls.value * unit, walls.standard_error * unit, walls.independent_samples, measured.temperature)
+        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
+    temperature, relative = measured.temperature, walls.theory_error / walls.theory
+    t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, energy = measured.number, log.discs.kinetic_energy / measured.number
-    per_disc = Estimate(energy / t.value, energy * t.standard_error / t.value**2, t.independent_samples, theory=1.0)
+    error = energy * t.standard_error / t.value**2
+    per_disc = Estimate(energy / t.value, error, t.independent_samples, 1.0, relative)
     exact = Estimate(energy, 0.0, math.inf)
     return Measured(str(log.path), CLOSED, n, exact, t, "pressure on the walls", {"E/T": per_disc}, 1.0, None)
 

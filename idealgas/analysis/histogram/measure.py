@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from idealgas.analysis.core.collisions import expected_rates
+from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
@@ -136,7 +136,10 @@ Found = tuple[Window, list[Distribution]]
 
 
 def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
-    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom."""
+    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom.
+
+    dof: D; infinite in a heat bath, where both are one.
+    """
 
     def law(dof: float) -> distributions.Law:
         if quantity == "energy":
@@ -145,7 +148,7 @@ def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) ->
             return distributions.SpeedLaw(temperature, mass, dof)
         return distributions.ComponentLaw(temperature, mass, dof)
 
-    finite = {f"fixed energy, D = {dof}": law(dof)} if dof > 3 else {}
+    finite = {f"fixed energy, D = {dof}": law(dof)} if 3 < dof < np.inf else {}
     return {"Maxwell-Boltzmann": law(np.inf), **finite}
 
 
@@ -196,7 +199,7 @@ def _some_discs(gas: Gas, species: int) -> np.ndarray:
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
     gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
     temperature = equilibrium.temperature
-    rates = expected_rates(discs, gas.box, equilibrium, log.periodic, log.has_positions)
+    rates = expected_rates(discs, gas.box, equilibrium, theory_of(log, discs) if log.has_positions else None).rate
     rate = rates.sum(axis=1)
     if not (rate > 0).all():
         raise UserError(f"{log.path}: no law of free flights for this gas")

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.statistics import Estimate, agree, mean_of_replicates
+from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""
@@ -69,13 +69,13 @@ class EquationOfState:
     b2: Estimate | None
     b3: Estimate | None
 
-    def check(self) -> bool:
-        """Whether Z agrees with the resummed virial series at every packing fraction, within TOLERANCE standard errors.
+    def check(self) -> Verdict:
+        """Check that Z agrees with the resummed virial series at every packing fraction.
 
         Raises:
-            UserError: if no state has both a theory and an error bar.
+            UserError: if a state has no error bar.
         """
-        return agree(state.infinite for state in self.states)
+        return judge((f"φ = {s.packing_fraction:.5g}, N = {s.number}", s.infinite) for s in self.states)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -96,14 +96,15 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     """Equation of state of many runs; runs of the same number of discs and packing fraction are averaged.
 
     Raises:
-        UserError: if theory does not know Z for one of the runs.
+        NotApplicableError: if theory knows Z for none of the runs.
+        UserError: if theory does not know Z for some of the runs.
     """
+    phis = [(s.packing_fraction, s.compressibility.theory) for s in samples]
+    if unknown := [phi for phi, theory in phis if theory is None or phi > hard_discs.HIGHEST]:
+        kind = NotApplicableError if len(unknown) == len(samples) else UserError
+        raise kind(f"no equation of state: no theory for a gas of packing fraction {min(unknown):g}")
     together: dict[tuple[float, int], list[Sample]] = {}
     for sample in samples:
-        if sample.compressibility.theory is None:
-            raise UserError(
-                f"no equation of state: no theory for a gas of packing fraction {sample.packing_fraction:g}"
-            )
         together.setdefault((round(sample.packing_fraction, 9), sample.number), []).append(sample)
     states = tuple(_state(runs) for _, runs in sorted(together.items()))
     b2, b3 = _virial_coefficients(states)
@@ -113,15 +114,13 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
 def _state(runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
     together = mean_of_replicates([run.compressibility for run in runs])
-    expected = together.theory or math.nan
-    endless = float(hard_discs.compressibility(phi))
-    part = endless / expected
+    part = float(hard_discs.compressibility(phi)) / (together.theory or math.nan)
     return State(
         phi,
         runs[0].number,
         n,
         together,
-        infinite=Estimate(together.value * part, together.standard_error * part, together.independent_samples, endless),
+        infinite=together.times(part),
         virial=float(hard_discs.virial_series(phi)),
         henderson=float(hard_discs.henderson_compressibility(phi)),
     )

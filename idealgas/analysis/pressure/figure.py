@@ -22,10 +22,10 @@ def _of_log(result: Pressure) -> Figure:
     errors = [route.compressibility.standard_error for route in routes]
     ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3)
     ax.set_yticks(range(len(routes)), [route.name for route in routes])
-    for (name, value), colour, style in zip(
+    for (name, theory), colour, style in zip(
         result.theories.items(), (GREY, *COLOURS[1:]), _repeated(("-", "--", ":")), strict=False
     ):
-        ax.axvline(value, color=colour, linestyle=style, label=f"{name}: {value:.5g}")
+        ax.axvline(theory.value, color=colour, linestyle=style, label=f"{name}: {theory.value:.5g}")
     ax.set_xlabel(f"Z = PA/NT (no unit) at packing fraction {result.packing_fraction:.4g}")
     ax.set_ylabel("route")
     ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(0, -0.2))

@@ -6,21 +6,30 @@ the start and the end. The force per length of wall is larger than the pressure,
 discs one radius inside the box.
 """
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths
+from idealgas.analysis.core.collisions import (
+    CollisionRate,
+    FreePath,
+    collision_rates,
+    expected_rates,
+    free_paths,
+    theory_of,
+)
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.statistics import Estimate, agree, mean
+from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
-from idealgas.errors import UserError
+from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
 from idealgas.sides import OUTWARD, SIDES, axis_of
@@ -49,7 +58,8 @@ class Pressure:
 
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
     packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
-    that applies. collision_rates: of each pair of species. free_paths: of each species.
+    that applies. collision_rates: of each pair of species. free_paths: of each species. no_theory: why there is no
+    theory of this gas in its box, as part of a sentence; empty if there is.
     """
 
     window: Window
@@ -58,17 +68,19 @@ class Pressure:
     temperature: float
     packing_fraction: float
     routes: tuple[Route, ...]
-    theories: dict[str, float]
+    theories: dict[str, Theory]
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
+    no_theory: str = ""
 
-    def check(self) -> bool:
-        """Whether Z by the virial of the walls and of the pairs agrees with theory within TOLERANCE standard errors.
+    def check(self) -> Verdict:
+        """Check that Z by the virial of the walls and of the pairs agrees with theory.
 
         Raises:
-            UserError: if neither has both a theory and an error bar.
+            UserError: if a route with a theory has no error bar.
         """
-        return agree(route.compressibility for route in self.routes if route.name in (WALLS, PAIRS))
+        judged = ((route.name, route.compressibility) for route in self.routes if route.name in (WALLS, PAIRS))
+        return judge(judged, self.no_theory)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -79,7 +91,9 @@ class Pressure:
             "temperature": self.temperature,
             "packing_fraction": self.packing_fraction,
             "routes": [route.as_dict() for route in self.routes],
-            "theories": self.theories,
+            "theories": {name: theory.value for name, theory in self.theories.items()},
+            "theory_errors": {name: theory.error for name, theory in self.theories.items()},
+            "no_theory": self.no_theory or None,
             "collision_rates": [rate.as_dict() for rate in self.collision_rates],
             "free_paths": [path.as_dict() for path in self.free_paths],
         }
@@ -103,54 +117,56 @@ def pressure(
     Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects for which the
     virial theorem needs further terms: gravity, wall segments, a piston, collisions that lose energy.
     """
+    if not log.has_positions:
+        raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
     window = measure(log, [moments, impacts], start, end, progress, ("uniform",))
     gas, discs = log.discs, composition(log.discs)
-    expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
-    theories = hard_disc_theories(discs, gas, log.periodic)
+    theory = theory_of(log, discs)
+    expected = expected_rates(discs, gas.box, equilibrium, theory)
     return Pressure(
         window=window,
         number=len(gas),
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(discs, gas, equilibrium.temperature, log.periodic, theories.get(IN_BOX), window, impacts),
-        theories=theories,
+        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, impacts),
+        theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
+        no_theory=theory.why_not,
     )
 
 
-IN_BOX = "hard discs, this box and N"
-
-
-def hard_disc_theories(discs: Composition, gas: Gas, periodic: tuple[bool, bool] = (False, False)) -> dict[str, float]:
+def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:
     """Compressibility factor Z at the packing fraction of a gas, by the name of each theory that applies to it."""
     phi = gas.packing_fraction
-    if phi > hard_discs.FREEZING:
-        return {"ideal gas": 1.0}
-    in_box = hard_discs.box_compressibility(discs.radius, discs.number, gas.box, periodic)
-    if len(discs.name) > 1:
-        mixture = hard_discs.mixture_compressibility(discs.radius, discs.number, gas.area)
-        return {"ideal gas": 1.0, IN_BOX: in_box, "hard discs, Jenkins & Mancini 1987": mixture}
-    return {
-        "ideal gas": 1.0,
-        IN_BOX: in_box,
-        "hard discs, virial series resummed": float(hard_discs.compressibility(phi)),
-        "hard discs, virial series to B10": float(hard_discs.virial_series(phi)),
-        "hard discs, Henderson 1975": float(hard_discs.henderson_compressibility(phi)),
+    theories = {"ideal gas": Theory(1.0, 0.0, "ideal gas")}
+    if in_box.pairs:
+        theories[in_box.pairs.source] = in_box.pairs
+    try:
+        series = fluid(phi)
+    except NoTheoryError:
+        return theories
+    if np.ptp(discs.radius) > 0:
+        z = hard_discs.mixture_compressibility(discs.radius, discs.number, gas.area)
+        return theories | {"Jenkins & Mancini 1987": Theory(z, mixture_error(phi) * (z - 1), "Jenkins & Mancini 1987")}
+    others = {
+        "virial series to B10": float(hard_discs.virial_series(phi)),
+        "Henderson 1975": float(hard_discs.henderson_compressibility(phi)),
     }
+    endless = {name: Theory(z, math.hypot(z - series.value, series.error), name) for name, z in others.items()}
+    return theories | {series.source: series} | endless
 
 
 def _routes(
-    discs: Composition,
     gas: Gas,
     temperature: float,
     periodic: tuple[bool, bool],
-    in_box: float | None,
+    theory: BoxTheory,
     window: Window,
     impacts: Impacts,
 ) -> tuple[Route, ...]:
@@ -158,16 +174,23 @@ def _routes(
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
-    at_wall: dict[int, float] = {}
-    if in_box is not None and np.ptp(discs.radius) == 0:  # walls act on the centres, one radius inside
-        at_wall = {k: in_box * gas.box[axis_of(k)] / (gas.box[axis_of(k)] - 2 * discs.radius[0]) for k in sides}
-    series: dict[str, tuple[np.ndarray, float | None]] = {
-        f"{SIDES[k]} wall": (push[k] / length[k], at_wall.get(k)) for k in sides
+    at_wall = {k: theory.sides[axis_of(k)] for k in sides}
+    series: dict[str, tuple[np.ndarray, Theory | None]] = {
+        f"{SIDES[k]} wall": (push[k] / length[k], at_wall[k]) for k in sides
     }
     if sides:
         perimeter = sum(length[k] for k in sides)
-        at_walls = sum(at_wall[k] * length[k] for k in sides) / perimeter if at_wall else None
+        at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
         series["all walls"] = (push[sides].sum(axis=0) / perimeter, at_walls)
-        series[WALLS] = (window.of(impacts.wall_virial) / (len(sides) / 2 * gas.area), in_box)
-    series[PAIRS] = (ideal + window.of(impacts.pair_virial) / (2 * gas.area), in_box)
+        series[WALLS] = (window.of(impacts.wall_virial) / (len(sides) / 2 * gas.area), theory.walls)
+    series[PAIRS] = (ideal + window.of(impacts.pair_virial) / (2 * gas.area), theory.pairs)
     return tuple(Route(name, mean(p), mean(p / ideal, theory=expected)) for name, (p, expected) in series.items())
+
+
+def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
+    """Weighted mean of theories with a common error; None if one of them has no value."""
+    known = [(theory, weight) for theory, weight in parts if theory]
+    if not known or len(known) < len(parts):
+        return None
+    value, error = (sum(getattr(theory, name) * weight for theory, weight in known) for name in ("value", "error"))
+    return Theory(value, error, known[0][0].source)

@@ -14,14 +14,15 @@ def _of_log(result: Pressure) -> list[Table]:
     gas = (
         f"N = {result.number}, A = {result.area:g}, φ = {result.packing_fraction:.5g}, T = {result.temperature:.6g}",
     )
-    theories = [(name, Number(value, ".6f")) for name, value in result.theories.items()]
+    theories = [(name, Number(one.value, ".6f"), Number(one.error, ".1g")) for name, one in result.theories.items()]
+    missing = (f"No theory here: {result.no_theory}.",) if result.no_theory else ()
     return [
         estimates(
             "Z = PA/NT (no unit)",
             [(route.name, route.compressibility) for route in result.routes],
             (describe(result.window), *gas),
         ),
-        Table("Z by theory (no unit)", ("", "value"), theories),
+        Table("Z by theory (no unit)", ("", "value", "± error"), theories, missing),
         estimates("P (energy/length²)", [(route.name, route.pressure) for route in result.routes]),
         *collision_tables(result.collision_rates, result.free_paths),
     ]

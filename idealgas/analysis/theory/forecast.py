@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
@@ -49,7 +50,8 @@ class Forecast:
     the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
     discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
     duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
-    bytes: size of the log. species: forecast of each species.
+    bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
+    approximate; empty if their error is below 2 %.
     """
 
     number: int
@@ -64,17 +66,22 @@ class Forecast:
     rows: float | None
     bytes: float | None
     species: tuple[SpeciesForecast, ...]
+    rough: str = ""
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
 """Properties that a scene needs for the theory to apply."""
 
 
+ROUGH = 0.02
+"""Relative error of rates above which a forecast is marked as approximate."""
+
+
 class _Rates(NamedTuple):
     """Rates of a gas in equilibrium, in 1/time.
 
     temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials: pair collisions,
-    wall hits and Monte Carlo trials of the whole gas.
+    wall hits and Monte Carlo trials of the whole gas. rough: why the rates are approximate; empty if they are not.
     """
 
     temperature: float
@@ -82,6 +89,7 @@ class _Rates(NamedTuple):
     pairs: float
     hits: float
     trials: float = 0.0
+    rough: str = ""
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
@@ -110,6 +118,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         rows=rows,
         bytes=None if rows is None else rows * _bytes_a_row(scene),
         species=tuple(_species(gas, k, area, rates) for k in range(len(gas.species_names))),
+        rough=rates.rough if rates else "",
     )
 
 
@@ -142,7 +151,28 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits)
+    rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, rough=rough)
+
+
+def _why_rough(
+    gas: Gas,
+    radius: np.ndarray,
+    mass: np.ndarray,
+    number: np.ndarray,
+    temperature: float,
+    periodic: tuple[bool, bool],
+    per_disc: np.ndarray,
+) -> str:
+    """Why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
+    theory = box_theory(radius, number, gas.box, periodic)
+    if theory.why_not:
+        return theory.why_not
+    expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, mass)
+    known = expected.sum(axis=1)
+    off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # terms of 1/N too
+    relative = float((off[known > 0] / known[known > 0]).max(initial=0.0))
+    return f"Enskog's theory is off by up to {relative:.0%} for this gas and box" if relative > ROUGH else ""
 
 
 def _rates_without_positions(

@@ -11,7 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths
+from idealgas.analysis.core.collisions import (
+    CollisionRate,
+    FreePath,
+    collision_rates,
+    expected_rates,
+    free_paths,
+    theory_of,
+)
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import Ensemble, drift, ensemble
 from idealgas.analysis.core.flights import Moments
@@ -19,6 +26,7 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import Theory, diffusion_error
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import UserError
@@ -123,21 +131,21 @@ def transport(
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
     window = measure(log, [moments, impacts], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
-    expected = expected_rates(discs, gas.box, equilibrium, log.periodic)
+    expected = expected_rates(discs, gas.box, equilibrium, theory_of(log, discs))
     rates = collision_rates(discs, expected, window, impacts)
     return Transport(
         window=window,
         walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
-        contacts=_contacts(discs, gas.area, expected, equilibrium, rates),
+        contacts=_contacts(discs, gas.area, equilibrium, rates),
         diffusion=_diffusion(log, discs, window, equilibrium, rates),
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
     )
 
 
 def _contacts(
-    discs: Composition, area: float, expected: np.ndarray, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
+    discs: Composition, area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
 ) -> tuple[Contact, ...]:
     """Contact values χ_ij: measured collision rates Γ_ij over those of discs at random positions."""
     contacts = []
@@ -147,14 +155,7 @@ def _contacts(
         alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed[i, j]
         if j < i or alone == 0:
             continue
-        rate, known = found.rate, np.isfinite(expected[i, j])
-        chi = Estimate(
-            rate.value / alone,
-            rate.standard_error / alone,
-            rate.independent_samples,
-            float(expected[i, j] / alone) if known else None,
-        )
-        contacts.append(Contact(found.species, found.other, chi))
+        contacts.append(Contact(found.species, found.other, found.rate.times(1 / alone)))
     return tuple(contacts)
 
 
@@ -177,17 +178,17 @@ def _diffusion(
     places, velocities = places.reshape(shape), velocities.reshape(shape) - drift(log)
     places = places - lag[:, None, None] * drift(log)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
+    enskog = _enskog(log, discs, equilibrium) if len(discs.name) == 1 else None
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), strict=True)
     return tuple(
-        _of_species(name, lag, r, v, _enskog(log, discs, equilibrium) if len(discs.name) == 1 else None)
-        for name, r, v in parts
+        _of_species(name, lag, r, v, enskog, diffusion_error(log.discs.packing_fraction)) for name, r, v in parts
     )
 
 
 def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float, float, float] | None:
-    """Number density, Enskog's diffusion coefficient and kinematic viscosity of equal discs; None above freezing."""
+    """Number density, Enskog's diffusion coefficient and kinematic viscosity of equal discs; None above φ = 0.62."""
     gas = log.discs
-    if gas.packing_fraction > hard_discs.FREEZING:
+    if gas.packing_fraction > hard_discs.HIGHEST:
         return None
     density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)
@@ -197,9 +198,17 @@ def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float,
 
 
 def _of_species(
-    name: str, lag: np.ndarray, places: np.ndarray, velocities: np.ndarray, enskog: tuple[float, float, float] | None
+    name: str,
+    lag: np.ndarray,
+    places: np.ndarray,
+    velocities: np.ndarray,
+    enskog: tuple[float, float, float] | None,
+    off: float,
 ) -> Diffusion:
-    """Diffusion of one species from positions and velocities (segments, L, discs, 2)."""
+    """Diffusion of one species from positions and velocities (segments, L, discs, 2).
+
+    off: relative error of Enskog's diffusion coefficient.
+    """
     correlation = autocorrelation(velocities)
     square = correlation[:, 0].mean()
     displacement = mean_square_displacement(places)
@@ -215,7 +224,7 @@ def _of_species(
         displacement.mean(axis=0),
         displacement.std(axis=0, ddof=1) / count,
         tail=None if enskog is None else hard_discs.long_time_tail(np.maximum(lag, 1e-300), *enskog),
-        coefficient=mean(slope, theory=enskog[1] if enskog else None),
+        coefficient=mean(slope, theory=Theory(enskog[1], off * enskog[1], "Enskog") if enskog else None),
         velocity_correlation_time=mean(correlation_time),
     )
 

@@ -169,10 +169,11 @@ def relative(value: Estimate, reference: Estimate) -> Estimate:
 
 
 def from_theory(value: Estimate | None) -> Estimate | None:
-    """Relative deviation value/theory - 1 of an estimate; None without theory."""
+    """Relative deviation value/theory - 1 of an estimate, with the errors of both; None without theory."""
     if value is None or value.theory is None or not math.isfinite(value.theory):
         return None
-    return Estimate(value.value / value.theory - 1, value.standard_error / value.theory, math.inf)
+    error = math.hypot(value.standard_error, value.theory_error) / value.theory
+    return Estimate(value.value / value.theory - 1, error, math.inf)
 
 
 def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:

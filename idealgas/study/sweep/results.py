@@ -11,7 +11,7 @@ from typing import Any
 from idealgas.errors import UserError
 from idealgas.study.sweep.point import points_folder
 
-ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "deviation")
+ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
 
 
 def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:

@@ -1,14 +1,16 @@
 """The analyses of a log from end to end: windows, results, pictures and refusals."""
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, judge
 from idealgas.analysis.core.style import save
 from idealgas.analysis.core.window import measure
 from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
@@ -145,16 +147,43 @@ def test_pressure_by_hand(log):
 
 def test_check_fails_when_theory_is_off(log):
     result = pressure(log)
-    assert result.check()
+    assert result.check().agrees is True
 
     def moved(route):
         z = route.compressibility
         return replace(route, compressibility=replace(z, theory=z.value + 4.5 * z.standard_error))
 
-    assert not replace(result, routes=tuple(moved(route) for route in result.routes)).check()
+    assert replace(result, routes=tuple(moved(route) for route in result.routes)).check().agrees is False
     unknown = tuple(replace(r, compressibility=replace(r.compressibility, theory=None)) for r in result.routes)
+    assert str(replace(result, routes=unknown, no_theory="why").check()) == "No theory here: why."
+    pairs = replace(result.routes[-1].compressibility, standard_error=math.nan)
     with pytest.raises(UserError, match="nothing to check"):
-        replace(result, routes=unknown).check()
+        replace(result, routes=(replace(result.routes[-1], compressibility=pairs),)).check()
+
+
+def test_a_heat_bath_has_no_fixed_energy(tmp_path):
+    """Its laws are Maxwell and Boltzmann's at the walls' temperature, whatever the energy at the start."""
+    with run(tmp_path, "bath.h5", SCENE, "box.left={ thermal = 2 }", "run.collisions_per_disc=20") as bath:
+        found = ensemble(bath)
+        assert math.isinf(found.dof)
+        assert found.temperature == 2.0
+        assert found.of_species == pytest.approx([2.0])
+        (speeds,) = histogram(bath, "speed").distributions
+        assert [test.law_name for test in speeds.tests] == ["Maxwell-Boltzmann"]
+        (flight,) = pressure(bath).free_paths
+        assert flight.speed.theory == pytest.approx(math.sqrt(math.pi * 2 / 2), rel=1e-15)
+
+
+def test_an_error_of_theory_counts_like_one_of_measurement():
+    found = Estimate(1.5, 0.03, 100.0, 1.4, 0.04)
+    assert found.deviation == pytest.approx(2.0)
+    assert found.times(-2.0).deviation == pytest.approx(-2.0)
+    assert Estimate.from_dict(found.as_dict()) == found
+    assert Estimate.from_dict({k: v for k, v in found.as_dict().items() if k != "theory_error"}).theory_error == 0
+    verdict = judge([("a", found), ("b", Estimate(1.0, 0.1, 10.0))])
+    assert verdict.agrees is True
+    assert verdict.judged == ("a",)  # the other has no theory
+    assert str(verdict) == "Measurement and theory agree within 4 standard errors in a."
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

@@ -1,0 +1,138 @@
+"""Exact pressure of two discs in a box: every side reflecting or periodic, radii equal or not.
+
+The configurations that the two discs have without overlap fill Q = ∬ g_x(x) g_y(y) dx dy over all separations (x, y)
+longer than σ = R₁ + R₂, where g is the length along an axis over which the pair may be shifted: between reflecting
+walls ½(a₁ + a₂) - |x|, at most the smaller of a₁ and a₂, where a_i = L - 2R_i is what the centre of disc i reaches;
+along a periodic axis L, for |x| ≤ L/2. At fixed energy, which D degrees of freedom share, T = 2E/D and a force is
+T ∂lnQ/∂(length), exactly; at the temperature of thermal walls too. Equal radii between reflecting walls, σ ≤ min(a, b):
+Q = a²b² - πσ²ab + (4/3)σ³(a + b) - σ⁴/2. Periodic, σ ≤ min(Lx, Ly)/2: Q = A(A - πσ²).
+
+Z = PA/NT is that of the measurement, with N = 2 and T = 2E/D whatever D is: 4 between reflecting walls, 3 where one
+axis is periodic and 2 where both are, as total momentum along it is conserved and the motion with it does not count.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+class TwoDiscs(NamedTuple):
+    """Z = PA/2T by each way of measuring; None where there is no such wall.
+
+    pairs: by the virial of the pair. walls: by the virial of all walls; it differs from `pairs` where one axis is
+    periodic, as walls then tell of the pressure along the other axis only. sides: (x, y), by the force on the left or
+    right and on the bottom or top wall over the whole length of the box's side.
+    """
+
+    pairs: float
+    walls: float | None
+    sides: tuple[float | None, float | None]
+
+
+class _Axis(NamedTuple):
+    """g of one axis: `most` for |x| up to `kink`, falling from there with slope -1 to 0 at `reach`, or at once."""
+
+    length: float
+    periodic: bool
+    most: float
+    kink: float
+    reach: float
+
+    def shifts(self, separation: np.ndarray) -> np.ndarray:
+        """g, the length over which a pair of this separation can be shifted."""
+        inside = np.abs(separation) < self.reach
+        room = self.most if self.periodic else np.clip(self.reach - np.abs(separation), 0.0, self.most)
+        return np.where(inside, room, 0.0)
+
+    def allowed(self, separation: np.ndarray) -> np.ndarray:
+        """∂g/∂L of reflecting walls: 1 where the pair has room."""
+        return np.where(np.abs(separation) < self.reach, 1.0, 0.0)
+
+    @property
+    def kinks(self) -> tuple[float, float]:
+        """Separations at which g is not smooth."""
+        return self.kink, self.reach
+
+
+def two_discs(
+    radius: Sequence[float], box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
+) -> TwoDiscs | None:
+    """Exact Z of two discs of radii R₁, R₂ in a box, by every way of measuring it.
+
+    None where no configuration without overlap is left, or where the discs are larger than a periodic box allows.
+    """
+    x, y = (_axis(radius, length, around) for length, around in zip(box, periodic, strict=True))
+    sigma = radius[0] + radius[1]
+    if min(x.most, y.most) <= 0 or any(axis.periodic and sigma > axis.length for axis in (x, y)):
+        return None
+    if math.hypot(x.reach, y.reach) <= sigma:
+        return None
+    states = _outside(sigma, x, y, x.shifts, y.shifts)
+    contact = sigma**2 / states
+    along_x = contact * _around(sigma, x, y, lambda c, s: c**2)  # virial of the pair over T, by axis
+    along_y = contact * _around(sigma, x, y, lambda c, s: s**2)
+    sides = (
+        None if x.periodic else x.length * _outside(sigma, x, y, x.allowed, y.shifts) / states / 2,
+        None if y.periodic else y.length * _outside(sigma, x, y, x.shifts, y.allowed) / states / 2,
+    )
+    felt = [virial for axis, virial in ((x, along_x), (y, along_y)) if not axis.periodic]
+    walls = 1 + sum(felt) / (2 * len(felt)) if felt else None
+    return TwoDiscs(1 + (along_x + along_y) / 4, walls, sides)
+
+
+def _axis(radius: Sequence[float], length: float, periodic: bool) -> _Axis:
+    if periodic:
+        return _Axis(length, True, length, length / 2, length / 2)
+    a, b = (length - 2 * r for r in radius)
+    return _Axis(length, False, min(a, b), abs(a - b) / 2, (a + b) / 2)
+
+
+def _outside(
+    sigma: float, x: _Axis, y: _Axis, along: Callable[[np.ndarray], np.ndarray], up: Callable[[np.ndarray], np.ndarray]
+) -> float:
+    """∬ along(x) up(y) dx dy over the separations longer than σ, by Gauss and Legendre between all kinks.
+
+    In columns x = σ sin t, whose heights √(σ² - x²) = σ cos t are smooth in t; beyond σ columns are whole.
+    """
+    top = max(y.reach, sigma)
+
+    def column(height: np.ndarray) -> np.ndarray:  # from each height up
+        start = np.minimum(height, y.reach)
+        inner = np.clip(y.kink, start, y.reach)
+        total = np.zeros_like(height)
+        for low, high in ((start, inner), (inner, np.full_like(height, y.reach))):  # a polynomial of degree 1 in each
+            total += (high - low) * up((low + high) / 2)
+        return total
+
+    turns = [_angle(k, sigma) for k in x.kinks] + [math.pi / 2 - _angle(k, sigma) for k in (*y.kinks, top)]
+    t, weight = _nodes([0.0, math.pi / 2, *turns])
+    inside = (weight * sigma * np.cos(t) * along(sigma * np.sin(t)) * column(sigma * np.cos(t))).sum()
+    beyond = 0.0
+    if x.reach > sigma:
+        far, weight = _nodes([sigma, x.reach, *(k for k in x.kinks if sigma < k < x.reach)])
+        beyond = float((weight * along(far)).sum() * column(np.zeros(1))[0])
+    return 4 * (float(inside) + beyond)
+
+
+def _around(sigma: float, x: _Axis, y: _Axis, part: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> float:
+    """∮ g_x(σ cos θ) g_y(σ sin θ) part(cos θ, sin θ) dθ: the pair in contact."""
+    turns = [math.pi / 2 - _angle(k, sigma) for k in x.kinks] + [_angle(k, sigma) for k in y.kinks]
+    angle, weight = _nodes([0.0, math.pi / 2, *turns])
+    c, s = np.cos(angle), np.sin(angle)
+    return 4 * float((weight * x.shifts(sigma * c) * y.shifts(sigma * s) * part(c, s)).sum())
+
+
+def _angle(separation: float, sigma: float) -> float:
+    """arcsin, of separations up to σ."""
+    return math.asin(min(separation / sigma, 1.0))
+
+
+def _nodes(edges: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights that integrate exactly what is smooth between the edges."""
+    ends = np.unique(edges)
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (1 + _NODES)).ravel(), (half * _WEIGHTS).ravel()
