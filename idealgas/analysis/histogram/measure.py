@@ -17,6 +17,7 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
@@ -83,7 +84,7 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Histogram:
+class Histogram(Result):
     """Distributions of one quantity (with its unit) in a window of time, one for each species."""
 
     quantity: str
@@ -93,7 +94,7 @@ class Histogram:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "quantity": self.quantity,
             "unit": self.unit,
             "window": self.window.as_dict(),

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
@@ -21,7 +22,7 @@ FREE_TERMS = 3
 
 
 @dataclass(frozen=True)
-class Sample:
+class Sample(Result):
     """Compressibility factor of one run; its theory is that of the same number of discs in the same box."""
 
     packing_fraction: float
@@ -60,7 +61,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class EquationOfState:
+class EquationOfState(Result):
     """Equation of state: states in order of φ, and fitted virial coefficients (no unit).
 
     b2: B2 over the area of a disc; theory gives 2. b3: B3/B2². Both are None if there are too few states for the fit.
@@ -80,7 +81,7 @@ class EquationOfState:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "states": [state.as_dict() for state in self.states],
             "B2": self.b2.as_dict() if self.b2 else None,
             "B3": self.b3.as_dict() if self.b3 else None,

@@ -8,6 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, equilibration, mean, ratio
 from idealgas.analysis.core.window import Window, block_edges
 from idealgas.analysis.profile import BINS
@@ -40,7 +41,7 @@ class SpeciesProfile:
 
 
 @dataclass(frozen=True)
-class Profile:
+class Profile(Result):
     """Profiles of all species in K strips along one axis.
 
     window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. frames: number
@@ -63,7 +64,7 @@ class Profile:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "window": self.window.as_dict(),
             "axis": "xy"[self.axis],
             "edges": self.edges.tolist(),

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import optimize
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
@@ -48,7 +49,7 @@ equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
 
 
 @dataclass(frozen=True)
-class Relaxation:
+class Relaxation(Result):
     """Relaxation of the gas of one log at K instants.
 
     path: of the log. number: of discs. time: (K,), times. collisions: (K,), collisions per disc since the first
@@ -79,7 +80,7 @@ class Relaxation:
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         k = self.first_indistinguishable
-        return {
+        return super().as_dict() | {
             "path": self.path,
             "number": self.number,
             "relaxation_time": self.in_time and self.in_time.as_dict(),

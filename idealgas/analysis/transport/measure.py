@@ -23,6 +23,7 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import Ensemble, drift, ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
@@ -86,7 +87,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Transport:
+class Transport(Result):
     """Transport in the gas of one log.
 
     window: the time that was used. walled: whether walls reflect diffusing discs. collision_rates, contacts,
@@ -107,7 +108,7 @@ class Transport:
             name: [entry.as_dict() for entry in getattr(self, name)]
             for name in ("collision_rates", "free_paths", "contacts", "diffusion", "pair_distributions")
         }
-        return {"window": self.window.as_dict(), "walled": self.walled, **values}
+        return super().as_dict() | {"window": self.window.as_dict(), "walled": self.walled, **values}
 
 
 def transport(
