@@ -83,17 +83,19 @@ def evolution(
     inside = (samples >= first) & (samples <= last)
     time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
     parts, given, balance = _account(log, observed)
+    law = expected_course(log, time)
     return Evolution(
         time,
         temperature,
         spin,
         beyond,
-        expected_course(log, time),
+        law,
         samples[inside],
         {name: values[inside] for name, values in parts.items()},
         {name: values[inside] for name, values in given.items()},
         observed["piston_position"][inside] if "piston_position" in observed else None,
         balance[inside],
+        premises=law.premises if law else (),
     )
 
 

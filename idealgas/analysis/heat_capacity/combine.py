@@ -95,7 +95,9 @@ def _apart(groups: Groups) -> Iterator[str]:
     """Sentence for each kind of gas of which there is more than one gas."""
     for kind in dict.fromkeys(kind for kind, _ in groups):
         if len(gases := [gas for other, gas in groups if other == kind]) > 1:
-            yield f"Different gases ({kind}) are kept apart, each with its own slope dE/dT and means: {'; '.join(gases)}."
+            yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: " + (
+                f"{'; '.join(gases)}."
+            )
 
 
 def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:

@@ -30,6 +30,7 @@ from idealgas.log import Log
 BINS = 120
 SAMPLED = 256  # largest number of discs of a species whose velocities are tested
 INTERVALS = 10_000  # approximate number of intervals that are tested
+FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
 TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
 
@@ -127,7 +128,13 @@ def histogram(
         window, found = _waits(log, start, end, progress)
     else:
         window, found = _flights(log, quantity, start, end, progress)
-    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found))
+    few = [
+        f"The tests of {each.name} have {each.samples} decorrelated samples; with fewer than {FEWEST_SAMPLES} they can "
+        "hardly fail."
+        for each in found
+        if each.samples < FEWEST_SAMPLES
+    ]
+    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), premises=tuple(few))
 
 
 Found = tuple[Window, list[Distribution]]

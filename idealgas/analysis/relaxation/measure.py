@@ -6,7 +6,7 @@ conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value, which is the 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -133,6 +133,7 @@ def relaxation(
     target = 2 * equilibrium.dof / (equilibrium.dof + 2)
     critical = critical_distance(number)
     indistinguishable = np.flatnonzero(distance < critical)
+    in_collisions = _fit(collisions, sums, members, target)
     return Relaxation(
         path=str(log.path),
         number=number,
@@ -144,11 +145,25 @@ def relaxation(
         equilibrium_kurtosis=target,
         critical_distance=critical,
         in_time=_fit(time - first, sums, members, target),
-        in_collisions=_fit(collisions, sums, members, target),
+        in_collisions=in_collisions,
         first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
+        premises=tuple(_doubts(in_collisions, float(collisions[-1]), number)),
     )
+
+
+def _doubts(fit: Estimate | None, seen: float, number: int) -> Iterator[str]:
+    """Sentences on a fitted relaxation time, in collisions per disc, of `number` discs that were followed for `seen`."""
+    if fit is None:
+        return
+    if seen < fit.value:
+        yield (
+            f"The log is followed for {seen:.2g} collisions per disc, less than the relaxation time that was fitted, "
+            f"{fit.value:.2g}: that is an extrapolation."
+        )
+    if number < GROUPS:
+        yield f"{number} discs are too few for the error of the relaxation time, which takes {GROUPS} groups of discs."
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

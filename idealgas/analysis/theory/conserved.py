@@ -8,6 +8,12 @@ import numpy as np
 from idealgas.gas.state import Gas
 from idealgas.scene import Scene
 
+CHANCE = 12.0
+"""Largest share of the kinetic energy, times the number of discs, that the centre of mass of a gas has by chance.
+
+Its energy along one axis is T/2 on average, so that a share s occurs with a probability of about exp(-s N).
+"""
+
 SAID_FROM = 0.01
 """Least share of the kinetic energy from which on a conserved motion of the whole gas is mentioned."""
 
@@ -25,6 +31,27 @@ def kept_momentum(scene: Scene) -> np.ndarray:
 def common_motion(scene: Scene, gas: Gas) -> np.ndarray:
     """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
     return np.where(kept_momentum(scene), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
+
+
+def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
+    """Velocity (2,) of the whole gas at its start that is no heat, length/time.
+
+    That is its conserved motion and, along the other axes, a motion of the centre of mass that is too large for chance.
+    """
+    velocity = gas.mass @ gas.velocity / gas.mass.sum()
+    chance = [share_of_motion(gas, velocity * axis) * len(gas) <= CHANCE for axis in np.eye(2)]
+    return np.where(chance, common_motion(scene, gas), velocity)
+
+
+def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
+    """Sentence on the part of `motion_at_start` that walls take away; empty if there is none."""
+    lost = motion_at_start(scene, gas) - common_motion(scene, gas)
+    if not lost.any():
+        return ()
+    return (
+        f"The gas starts with a common motion ({lost[0]:.4g}, {lost[1]:.4g}), {share_of_motion(gas, lost):.1%} of its "
+        "kinetic energy; it is not in the temperatures at the start, and becomes heat at the walls.",
+    )
 
 
 def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
