@@ -20,8 +20,8 @@ def effusion_figure(found: Effusions) -> Figure:
         if speed.theory is None:
             flux.axhline(n * speed.value, color=colour, label=f"{name}: no theory")
         else:
-            points = {"fmt": "o", "color": colour, "capsize": 3}
-            flux.errorbar(n * speed.theory, n * speed.value, n * speed.standard_error, **points)
+            expected, value, error = n * speed.theory, n * speed.value, n * speed.standard_error
+            flux.errorbar(expected, value, error, fmt="o", color=colour, capsize=3)
     line = np.array([0.0, 1.1 * max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())])
     flux.plot(line, line, "--", color=GREY, label="n⟨v⟩/π")
     course.set_xlabel("t (time)")

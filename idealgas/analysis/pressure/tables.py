@@ -1,6 +1,6 @@
 """Tables of the pressure and of the equation of state."""
 
-from idealgas.analysis.core.tables import Number, Table, collision_tables, describe, estimates
+from idealgas.analysis.core.tables import Cell, Number, Table, collision_tables, describe, estimates
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
 
@@ -31,9 +31,9 @@ def _of_log(result: Pressure) -> list[Table]:
 def _of_states(result: EquationOfState) -> list[Table]:
     several = len(result.kinds) > 1
     heads = (*["gas"] * several, "φ", "N", "runs", "Z", "± s.e.", "dev./s.e.", "resummed", "to B10", "Henderson")
-    rows = [
+    rows: list[tuple[Cell, ...]] = [
         (
-            *[state.kind] * several,
+            *((state.kind,) if several else ()),
             Number(state.packing_fraction, ".5g"),
             Number(state.number, "d"),
             Number(state.runs, "d"),

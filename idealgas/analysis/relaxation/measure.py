@@ -154,7 +154,7 @@ def relaxation(
 
 
 def _doubts(fit: Estimate | None, seen: float, number: int) -> Iterator[str]:
-    """Sentences on a fitted relaxation time, in collisions per disc, of `number` discs that were followed for `seen`."""
+    """Sentences on a relaxation time, in collisions per disc, fitted to `number` discs followed for `seen` of these."""
     if fit is None:
         return
     if seen < fit.value:
@@ -163,7 +163,7 @@ def _doubts(fit: Estimate | None, seen: float, number: int) -> Iterator[str]:
             f"{fit.value:.2g}: that is an extrapolation."
         )
     if number < GROUPS:
-        yield f"{number} discs are too few for the error of the relaxation time, which takes {GROUPS} groups of discs."
+        yield f"The error of the relaxation time comes from {number} discs only; it takes {GROUPS} or more."
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

@@ -155,7 +155,7 @@ def _short_lags(rates: Sequence[CollisionRate], diffusion: Sequence[Diffusion]) 
         free_times = float(entry.lag[-1]) * sum(found.rate.value for found in rates if found.species == entry.species)
         if free_times < LEAST_LAG:
             yield (
-                f"The window is short: {entry.species} is followed for {free_times:.2g} mean free times at most, and its "
+                f"The window is short: {entry.species} is followed for {free_times:.2g} mean free times at most; its "
                 f"diffusion coefficient and velocity correlation time take {LEAST_LAG:g}."
             )
 
@@ -167,8 +167,8 @@ def _reflected(log: Log, diffusion: Sequence[Diffusion]) -> Iterator[str]:
         far = math.sqrt(entry.displacement[-1])
         if widths and far > FREE_SHARE * min(widths):
             yield (
-                f"Walls reflect discs of {entry.species}, which move {far:.3g} in a box of {min(widths):.3g} while they "
-                "are followed; in an infinite gas D is larger."
+                f"Walls reflect discs of {entry.species}, which move {far:.3g} in a box of {min(widths):.3g} while "
+                "followed; in an infinite gas D is larger."
             )
 
 
