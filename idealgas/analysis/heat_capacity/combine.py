@@ -66,7 +66,7 @@ def combine_heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
     """Combine the logs of each gas: slopes dE/dT, means of the routes of single logs, and γ."""
     groups = _groups(logs)
     routes = [route for (kind, gas), members in groups.items() for route in _of_gas(kind, gas, members)]
-    routes += _gammas(routes, groups)
+    routes += _gammas(tuple(routes), groups)
     used = {route.name for route in routes}
     refused = {name: why for name, why in ROUTES.items() if name not in used}
     return HeatCapacity(tuple(routes), refused, tuple(logs), premises=tuple(_apart(groups)))
