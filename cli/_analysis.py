@@ -132,12 +132,12 @@ def _analyse(
     try:
         with reading(analysis.reads) as progress:
             results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
+        result = analysis.combine(results)
     except NotApplicableError as error:
         if not check or plot or as_csv:
             raise
         _print_no_theory(error, as_json)
         return
-    result = analysis.combine(results)
     verdict = result.check() if check else None
     if plot:
         from idealgas.analysis.core.style import save

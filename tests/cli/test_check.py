@@ -65,6 +65,28 @@ def test_what_theory_does_not_know_is_said():
     assert found["compiled_out"] == [name for name in EFFECTS if name != "gravity"]
 
 
+ROUGH = (
+    ("dense", "the packing fraction is above 0.62", ("species.radius=0.147", "species.placement=lattice")),
+    ("quickstart", "Enskog's theory is off by up to", ("species.count=6", "species.placement=random")),
+)
+
+
+@pytest.mark.parametrize(("scene", "why", "overrides"), ROUGH)
+def test_numbers_of_a_rough_theory_are_about(scene, why, overrides):
+    settings = [word for override in overrides for word in ("--set", override)]
+    shown = check(CONFIGS / f"{scene}.toml", *settings).stdout
+    assert f"about: {why}" in shown.replace("\n", " ")
+    for name in ("collisions per disc and time Γ", "pair collisions per time", "events", "rows in", "size of"):
+        assert any(line.startswith(f"│ {name}") and " about " in line for line in shown.splitlines()), name
+    assert "about" not in next(line for line in shown.splitlines() if line.startswith("│ temperature T"))
+    assert why in json.loads(check(CONFIGS / f"{scene}.toml", *settings, "--json").stdout)["rough"]
+
+
+def test_numbers_of_a_good_theory_are_not_about():
+    assert "about" not in check(CONFIGS / "dilute.toml").stdout
+    assert json.loads(check(CONFIGS / "dilute.toml", "--json").stdout)["rough"] == ""
+
+
 def test_json():
     result = idealgas("check", CONFIGS / "mixture.toml", "--json", "--set", "species.heavy.count=100")
     assert result.returncode == 0

@@ -1,5 +1,6 @@
 """Conserved quantities of a gas, and the ensemble of its equilibrium: how the energy is shared among the discs."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,8 +65,11 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
-    temperature = min(properties.temperatures, default=energy / dof)
     share = 1 - kept.mean() * mass / gas.mass.sum()
+    if properties.temperatures:  # the walls' heat bath has no limit to its energy
+        (temperature,) = properties.temperatures
+        return Ensemble(frame, math.inf, temperature, temperature * share)
+    temperature = energy / dof
     return Ensemble(frame, dof, temperature, temperature * share)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_momentum, known_ensemble
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST
 from idealgas.log import Log
 
 SLOW = 0.05
@@ -37,7 +36,7 @@ def expected_course(log: Log, time: np.ndarray) -> Law | None:
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
-    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= HIGHEST
+    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= hard_discs.HIGHEST
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
     if single and alone and not properties.fixed_walls:

@@ -17,7 +17,6 @@ from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -161,7 +160,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     across = gas.box[1 - scene.piston.axis]
     room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))
     phi = gas.packing_fraction * gas.area / (room * across)
-    if phi > HIGHEST:
+    if phi > hard_discs.HIGHEST:
         return None, None
     z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
     slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
@@ -176,7 +175,7 @@ def _closed_box(
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility for route in measured.routes if route.name == WALLS), None)
     if walls is None or walls.theory is None or not walls.value > 0:
-        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or of a gas too dense")
+        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, energy = measured.number, log.discs.kinetic_energy / measured.number

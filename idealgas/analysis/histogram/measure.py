@@ -144,7 +144,10 @@ Found = tuple[Window, list[Distribution]]
 
 
 def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
-    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom."""
+    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom.
+
+    dof: D; infinite in a heat bath, where both are one.
+    """
 
     def law(dof: float) -> distributions.Law:
         if quantity == "energy":
@@ -153,7 +156,7 @@ def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) ->
             return distributions.SpeedLaw(temperature, mass, dof)
         return distributions.ComponentLaw(temperature, mass, dof)
 
-    finite = {f"fixed energy, D = {dof}": law(dof)} if dof > 3 else {}
+    finite = {f"fixed energy, D = {dof}": law(dof)} if 3 < dof < np.inf else {}
     return {"Maxwell-Boltzmann": law(np.inf), **finite}
 
 

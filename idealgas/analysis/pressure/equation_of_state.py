@@ -11,8 +11,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import NoTheoryError, fluid
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""
@@ -111,19 +110,20 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     """Equation of state of many runs; runs of one kind of gas, number of discs and packing fraction are averaged.
 
     Raises:
-        UserError: if theory does not know Z for one of the runs, or if one is of a mixture.
+        NotApplicableError: if theory knows Z for none of the runs.
+        UserError: if theory does not know Z for some of the runs, or if one is of a mixture.
     """
+    if mixed := next((s.origin for s in samples if s.origin and s.origin.mixture), None):
+        raise UserError(
+            f"{mixed.path}: no equation of state of a {mixed.kind}: its Z does not follow from φ alone; `idealgas "
+            "pressure` of the single log has its theory"
+        )
+    phis = [(s.packing_fraction, s.compressibility.theory) for s in samples]
+    if unknown := [phi for phi, theory in phis if theory is None or phi > hard_discs.HIGHEST]:
+        error = NotApplicableError if len(unknown) == len(samples) else UserError
+        raise error(f"no equation of state: no theory for a gas of packing fraction {min(unknown):g}")
     together: dict[tuple[float, int, str], list[Sample]] = {}
     for sample in samples:
-        if sample.origin and sample.origin.mixture:
-            raise UserError(
-                f"{sample.origin.path}: no equation of state of a {sample.origin.kind}: its Z does not follow from φ "
-                "alone; `idealgas pressure` of the single log has its theory"
-            )
-        if sample.compressibility.theory is None:
-            raise UserError(
-                f"no equation of state: no theory for a gas of packing fraction {sample.packing_fraction:g}"
-            )
         kind = sample.origin.kind if sample.origin else ""
         together.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
     states = tuple(_state(kind, runs) for (_, _, kind), runs in sorted(together.items()))
@@ -138,11 +138,7 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
 def _state(kind: str, runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
     together = mean_of_replicates([run.compressibility for run in runs])
-    try:
-        endless = fluid(phi)
-    except NoTheoryError as reason:
-        raise UserError(f"no equation of state: {reason} (got {phi:g})") from None
-    part = endless.value / (together.theory or math.nan)
+    part = float(hard_discs.compressibility(phi)) / (together.theory or math.nan)
     return State(
         phi,
         runs[0].number,

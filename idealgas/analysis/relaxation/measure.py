@@ -130,7 +130,7 @@ def relaxation(
             progress(k + 1, len(time))
     members = np.bincount(groups)
     collisions = collisions_per_disc(log, time)
-    target = 2 * equilibrium.dof / (equilibrium.dof + 2)
+    target = 2 / (1 + 2 / equilibrium.dof)
     critical = critical_distance(number)
     indistinguishable = np.flatnonzero(distance < critical)
     in_collisions = _fit(collisions, sums, members, target)

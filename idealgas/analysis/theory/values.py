@@ -22,9 +22,6 @@ import numpy as np
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.two_discs import two_discs
 
-HIGHEST = 0.62
-"""Packing fraction up to which the resummed series is used."""
-
 LARGEST_ERROR = 0.1
 """Largest relative error of Z - 1 with which a formula counts as a theory."""
 
@@ -115,8 +112,10 @@ def fluid(packing_fraction: float) -> Theory:
     Raises:
         NoTheoryError: above φ = 0.62.
     """
-    if packing_fraction > HIGHEST:
-        raise NoTheoryError(f"the packing fraction is above {HIGHEST:g}, where the virial series ends to hold")
+    if packing_fraction > hard_discs.HIGHEST:
+        raise NoTheoryError(
+            f"the packing fraction is above {hard_discs.HIGHEST:g}, where the virial series no longer holds"
+        )
     z = float(hard_discs.compressibility(packing_fraction))
     return Theory(z, _series_error(packing_fraction) * (z - 1), "virial series to B10, resummed")
 

@@ -27,7 +27,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST, Theory, diffusion_error
+from idealgas.analysis.theory.values import Theory, diffusion_error
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import UserError
@@ -216,7 +216,7 @@ def _diffusion(
 def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float, float, float] | None:
     """Number density, Enskog's diffusion coefficient and kinematic viscosity of equal discs; None above φ = 0.62."""
     gas = log.discs
-    if gas.packing_fraction > HIGHEST:
+    if gas.packing_fraction > hard_discs.HIGHEST:
         return None
     density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)

@@ -9,7 +9,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
 from idealgas.analysis.pressure.tables import pressure_tables
 from idealgas.analysis.theory import hard_discs
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 
 def samples(phis, error, number=1000, runs=4, seed=0):
@@ -52,12 +52,20 @@ def test_a_wrong_pressure_is_found():
     assert equation_of_state(wrong).check().agrees is False
 
 
-def test_few_states_give_no_coefficients_and_frozen_ones_nothing():
+def test_few_states_give_no_coefficients():
     few = equation_of_state(list(samples([0.1, 0.2], 1e-3)))
     assert few.b2 is None
     assert few.b3 is None
-    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75"):
-        equation_of_state([Sample(0.75, 100, Estimate(9.0, 0.1, 10.0))])
+
+
+@pytest.mark.parametrize("theory", [None, 9.36])
+def test_no_equation_of_state_where_there_is_no_theory(theory):
+    dense, published = Sample(0.75, 100, Estimate(9.0, 0.1, 10.0)), Sample(0.67, 870, Estimate(9.36, 0.1, 10.0, theory))
+    with pytest.raises(NotApplicableError, match=r"no theory for a gas of packing fraction 0\.67"):
+        equation_of_state([dense, published])
+    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75") as refused:
+        equation_of_state([*samples([0.1, 0.2], 1e-3), dense])
+    assert not isinstance(refused.value, NotApplicableError)  # others of these gases have a theory
 
 
 @pytest.mark.parametrize(("phis", "numbers"), [((0.05, 0.1), (100, 400)), ((0.05, 0.1, 0.2), (100, 200, 400))])

@@ -122,3 +122,21 @@ def test_what_is_beyond_theory_is_not_known(override, beyond):
 def test_the_packing_fraction_is_that_of_the_space_before_a_piston():
     expected = forecast_of("piston={ position = 8, mass = 1, pressure = 10 }")
     assert expected.packing_fraction == pytest.approx(math.pi * 0.1**2 * 1000 / 160, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "why"),
+    [
+        ((), ""),
+        (("species.count=10",), "off by up to"),
+        (
+            ("species.count=4000", "species.radius=0.1001", "box.size=[10, 19]", "species.placement=lattice"),
+            "above 0.62",
+        ),
+        (("species.count=1",), "holds less than 3"),
+    ],
+)
+def test_rates_of_a_rough_theory_are_marked(overrides, why):
+    rough = forecast_of(*overrides).rough
+    assert why in rough
+    assert bool(why) == bool(rough)
