@@ -95,9 +95,8 @@ def _apart(groups: Groups) -> Iterator[str]:
     """Sentence for each kind of gas of which there is more than one gas."""
     for kind in dict.fromkeys(kind for kind, _ in groups):
         if len(gases := [gas for other, gas in groups if other == kind]) > 1:
-            yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: " + (
-                f"{'; '.join(gases)}."
-            )
+            words = "; ".join(gases)
+            yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: {words}."
 
 
 def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:

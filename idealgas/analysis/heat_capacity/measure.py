@@ -113,26 +113,15 @@ def heat_capacity(
     if BATH in kinds:
         (bath,) = properties.temperatures
         temperature, thermometer = Estimate(bath, 0.0, math.inf), "the walls' own"
-        route, found = "Var(E)/T²", _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)
+        route = "Var(E)/T²"
+        found = _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)
     else:
         temperature, thermometer = mean(2 * series.kinetic / dof), "kinetic energy"
-        route, found = (
-            "fluctuations of the kinetic energy",
-            _kinetic_fluctuations(series, n, dof, capacity, PISTON in kinds),
-        )
+        route = "fluctuations of the kinetic energy"
+        found = _kinetic_fluctuations(series, n, dof, capacity, PISTON in kinds)
     lacking = too_few(route, found)
-    return Measured(
-        str(log.path),
-        ", ".join(kinds),
-        n,
-        mean(series.energy / n),
-        temperature,
-        thermometer,
-        {} if lacking else {route: found},
-        capacity,
-        excess,
-        premises=lacking,
-    )
+    routes, measured = {} if lacking else {route: found}, (mean(series.energy / n), temperature, thermometer)
+    return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, capacity, excess, premises=lacking)
 
 
 def too_few(route: str, found: Estimate) -> tuple[str, ...]:

@@ -113,21 +113,20 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
         NotApplicableError: if theory knows Z for none of the runs.
         UserError: if theory does not know Z for some of the runs, or if one is of a mixture.
     """
-    for sample in samples:
-        if sample.origin and sample.origin.mixture:
-            raise UserError(
-                f"{sample.origin.path}: no equation of state of a {sample.origin.kind}: its Z does not follow from φ "
-                "alone; `idealgas pressure` of the single log has its theory"
-            )
+    if mixed := next((s.origin for s in samples if s.origin and s.origin.mixture), None):
+        raise UserError(
+            f"{mixed.path}: no equation of state of a {mixed.kind}: its Z does not follow from φ alone; `idealgas "
+            "pressure` of the single log has its theory"
+        )
     phis = [(s.packing_fraction, s.compressibility.theory) for s in samples]
     if unknown := [phi for phi, theory in phis if theory is None or phi > hard_discs.HIGHEST]:
-        kind = NotApplicableError if len(unknown) == len(samples) else UserError
-        raise kind(f"no equation of state: no theory for a gas of packing fraction {min(unknown):g}")
+        error = NotApplicableError if len(unknown) == len(samples) else UserError
+        raise error(f"no equation of state: no theory for a gas of packing fraction {min(unknown):g}")
     together: dict[tuple[float, int, str], list[Sample]] = {}
     for sample in samples:
-        of = sample.origin.kind if sample.origin else ""
-        together.setdefault((round(sample.packing_fraction, 9), sample.number, of), []).append(sample)
-    states = tuple(_state(of, runs) for (_, _, of), runs in sorted(together.items()))
+        kind = sample.origin.kind if sample.origin else ""
+        together.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
+    states = tuple(_state(kind, runs) for (_, _, kind), runs in sorted(together.items()))
     b2, b3 = _virial_coefficients(states)
     found = EquationOfState(states, b2, b3)
     if len(found.kinds) == 1:
