@@ -41,6 +41,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     console.print(_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until))
     if expected.rough:
         click.echo(f"about: {expected.rough}")
+    for sentence in expected.premises:
+        click.echo(f"premise: {sentence}")
     if expected.beyond:
         click.echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     click.echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")

@@ -3,13 +3,17 @@
 import os
 from typing import Any
 
+import numpy as np
+
 from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import drift
 from idealgas.log import Log
 
 
 def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
-    gas, discs = log.discs, composition(log.discs)
+    gas, discs, frame = log.discs, composition(log.discs), drift(log)
+    frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # without what is only rounding
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
     return {
         "file": {
@@ -25,7 +29,8 @@ def info(log: Log) -> dict[str, Any]:
             "number": len(gas),
             "packing_fraction": gas.packing_fraction,
             "kinetic_energy": gas.kinetic_energy,
-            "temperature": gas.temperature,
+            "common_motion": frame.tolist(),
+            "temperature": gas.temperature - float(gas.mass.sum() * (frame @ frame)) / (2 * len(gas)),
             "species": [
                 {"name": name, "number": number, "radius": radius, "mass": mass}
                 for name, number, radius, mass in species

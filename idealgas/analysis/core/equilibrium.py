@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.theory import conserved
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -30,18 +31,13 @@ class Ensemble:
 
 
 def kept_momentum(log: Log) -> np.ndarray:
-    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool.
-
-    Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
-    conserve both components.
-    """
-    return np.array(log.scene.properties.conserves_momentum if log.has_positions else (True, True))
+    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool; see `conserved`."""
+    return conserved.kept_momentum(log.scene)
 
 
 def drift(log: Log) -> np.ndarray:
     """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
-    gas = log.discs
-    return np.where(kept_momentum(log), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
+    return conserved.common_motion(log.scene, log.discs)
 
 
 def ensemble(log: Log) -> Ensemble:

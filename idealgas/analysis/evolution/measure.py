@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.window import span
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
@@ -18,7 +19,7 @@ INSTANTS = 257
 
 
 @dataclass(frozen=True)
-class Evolution:
+class Evolution(Result):
     """Evolution of a gas, at F evenly spaced times and at the P times of the samples stored during the run.
 
     time: (F,), times. temperature: (F,), mean m v²/2 per disc, energy. spin: (F,), mean I ω² per disc, energy; None
@@ -49,7 +50,7 @@ class Evolution:
         if self.law is not None:
             at_rest = {"spin": self.law.spin, "piston": self.law.piston}
             law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
-        return lists | tables | {"law": law, "end": self._end()}
+        return super().as_dict() | lists | tables | {"law": law, "end": self._end()}
 
     def _end(self) -> dict[str, float]:
         """Last value of each series, by name."""
@@ -82,17 +83,19 @@ def evolution(
     inside = (samples >= first) & (samples <= last)
     time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
     parts, given, balance = _account(log, observed)
+    law = expected_course(log, time)
     return Evolution(
         time,
         temperature,
         spin,
         beyond,
-        expected_course(log, time),
+        law,
         samples[inside],
         {name: values[inside] for name, values in parts.items()},
         {name: values[inside] for name, values in given.items()},
         observed["piston_position"][inside] if "piston_position" in observed else None,
         balance[inside],
+        premises=law.premises if law else (),
     )
 
 

@@ -9,6 +9,9 @@ from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_m
 from idealgas.analysis.theory import hard_discs
 from idealgas.log import Log
 
+SLOW = 0.05
+"""Largest speed of a piston, relative to the mean speed of the discs, at which the adiabat is a good law."""
+
 STEPS = 128
 """Number of steps in the integration of the adiabat."""
 
@@ -18,13 +21,14 @@ class Law:
     """Law of the temperature of a gas at F times.
 
     text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
-    coordinate of the piston at rest, length.
+    coordinate of the piston at rest, length. premises: sentences on what it takes and does not hold.
     """
 
     text: str
     temperature: np.ndarray
     spin: float | None = None
     piston: float | None = None
+    premises: tuple[str, ...] = ()
 
 
 def expected_course(log: Log, time: np.ndarray) -> Law | None:
@@ -105,7 +109,12 @@ def _adiabat(log: Log, time: np.ndarray) -> Law:
     slope = np.array([push(log, length) for length in (grid[1:] + grid[:-1]) / 2])
     work = np.concatenate(([0.0], np.cumsum(slope * np.diff(grid))))
     exponent = np.interp(first, grid, work) - np.interp(lengths, grid, work)
-    return Law("slow piston: T A = const, for discs d ln T = -Z d ln A", log.discs.temperature * np.exp(exponent))
+    fastest = float(np.abs(log.observables["piston_velocity"][1]).max())
+    share = fastest / hard_discs.mean_speed(log.discs.temperature, float(log.discs.mass[0]))
+    said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
+    text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
+    temperature = log.discs.temperature * np.exp(exponent)
+    return Law(text, temperature, premises=(said,) if share > SLOW else ())
 
 
 def _at_rest(log: Log, one: np.ndarray) -> Law | None:

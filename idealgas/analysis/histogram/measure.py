@@ -17,6 +17,7 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
@@ -29,6 +30,7 @@ from idealgas.log import Log
 BINS = 120
 SAMPLED = 256  # largest number of discs of a species whose velocities are tested
 INTERVALS = 10_000  # approximate number of intervals that are tested
+FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
 TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
 
@@ -83,7 +85,7 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Histogram:
+class Histogram(Result):
     """Distributions of one quantity (with its unit) in a window of time, one for each species."""
 
     quantity: str
@@ -93,7 +95,7 @@ class Histogram:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "quantity": self.quantity,
             "unit": self.unit,
             "window": self.window.as_dict(),
@@ -126,7 +128,13 @@ def histogram(
         window, found = _waits(log, start, end, progress)
     else:
         window, found = _flights(log, quantity, start, end, progress)
-    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found))
+    few = [
+        f"The tests of {each.name} have {each.samples} decorrelated samples; with fewer than {FEWEST_SAMPLES} they can "
+        "hardly fail."
+        for each in found
+        if each.samples < FEWEST_SAMPLES
+    ]
+    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), premises=tuple(few))
 
 
 Found = tuple[Window, list[Distribution]]

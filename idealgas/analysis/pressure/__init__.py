@@ -13,6 +13,7 @@ ANALYSIS = Analysis(
         Section("Pressure", "Compressibility factor Z by every route with its standard error, and theory as lines"),
     ),
     several=True,
+    averages=True,
     folders=True,
     checked=True,
 )

@@ -25,6 +25,7 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
@@ -53,7 +54,7 @@ class Route:
 
 
 @dataclass(frozen=True)
-class Pressure:
+class Pressure(Result):
     """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
 
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
@@ -84,7 +85,7 @@ class Pressure:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "window": self.window.as_dict(),
             "number": self.number,
             "area": self.area,

@@ -6,7 +6,7 @@ conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value, which is the 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 from scipy import optimize
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
@@ -48,7 +49,7 @@ equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
 
 
 @dataclass(frozen=True)
-class Relaxation:
+class Relaxation(Result):
     """Relaxation of the gas of one log at K instants.
 
     path: of the log. number: of discs. time: (K,), times. collisions: (K,), collisions per disc since the first
@@ -79,7 +80,7 @@ class Relaxation:
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         k = self.first_indistinguishable
-        return {
+        return super().as_dict() | {
             "path": self.path,
             "number": self.number,
             "relaxation_time": self.in_time and self.in_time.as_dict(),
@@ -132,6 +133,7 @@ def relaxation(
     target = 2 / (1 + 2 / equilibrium.dof)
     critical = critical_distance(number)
     indistinguishable = np.flatnonzero(distance < critical)
+    in_collisions = _fit(collisions, sums, members, target)
     return Relaxation(
         path=str(log.path),
         number=number,
@@ -143,11 +145,25 @@ def relaxation(
         equilibrium_kurtosis=target,
         critical_distance=critical,
         in_time=_fit(time - first, sums, members, target),
-        in_collisions=_fit(collisions, sums, members, target),
+        in_collisions=in_collisions,
         first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
+        premises=tuple(_doubts(in_collisions, float(collisions[-1]), number)),
     )
+
+
+def _doubts(fit: Estimate | None, seen: float, number: int) -> Iterator[str]:
+    """Sentences on a relaxation time, in collisions per disc, fitted to `number` discs followed for `seen` of these."""
+    if fit is None:
+        return
+    if seen < fit.value:
+        yield (
+            f"The log is followed for {seen:.2g} collisions per disc, less than the relaxation time that was fitted, "
+            f"{fit.value:.2g}: that is an extrapolation."
+        )
+    if number < GROUPS:
+        yield f"The error of the relaxation time comes from {number} discs only; it takes {GROUPS} or more."
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

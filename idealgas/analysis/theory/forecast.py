@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
@@ -27,8 +27,9 @@ class SpeciesForecast:
     """One species: its discs at the start, and its collision rate in equilibrium.
 
     name: of the species. number: of its discs. radius: length. mass: mass. packing_fraction: area of its discs over the
-    area of the box. temperature: mean kinetic energy of its discs at the start, energy. collision_rate: collisions of
-    one disc with other discs per time, 1/time; None if theory does not know it.
+    area of the box. temperature: mean kinetic energy of its discs at the start, energy, without the motion of the gas
+    as a whole. collision_rate: collisions of one disc with other discs per time, 1/time; None if theory does not know
+    it.
     """
 
     name: str
@@ -51,7 +52,8 @@ class Forecast:
     discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
     duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
     bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
-    approximate; empty if their error is below 2 %.
+    approximate; empty if their error is below 2 %. premises: sentences on what the start of the gas takes from averages
+    over time, and on its motion as a whole.
     """
 
     number: int
@@ -67,6 +69,7 @@ class Forecast:
     bytes: float | None
     species: tuple[SpeciesForecast, ...]
     rough: str = ""
+    premises: tuple[str, ...] = ()
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
@@ -117,8 +120,9 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         events=events,
         rows=rows,
         bytes=None if rows is None else rows * _bytes_a_row(scene),
-        species=tuple(_species(gas, k, area, rates) for k in range(len(gas.species_names))),
+        species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
+        premises=(*conserved.premises(scene, gas), *conserved.lost_motion(scene, gas)),
     )
 
 
@@ -142,7 +146,9 @@ def _spin_energy(scene: Scene) -> float:
 
 def _rates(scene: Scene, gas: Gas) -> _Rates:
     freedom = 2 + scene.properties.spins
-    temperature = 2 * (gas.kinetic_energy + _spin_energy(scene)) / (freedom * len(gas))
+    frame = conserved.common_motion(scene, gas)
+    kinetic = gas.kinetic_energy - float(gas.mass.sum() * (frame @ frame)) / 2
+    temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / (freedom * len(gas))
     number = np.bincount(gas.species)
     _, first = np.unique(gas.species, return_index=True)
     radius, mass = gas.radius[first], gas.mass[first]
@@ -187,8 +193,9 @@ def _rates_without_positions(
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials)
 
 
-def _species(gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
+def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
     members = gas.species == k
+    velocity = gas.velocity[members] - conserved.motion_at_start(scene, gas)
     mass, radius, number = gas.mass[members][0], gas.radius[members][0], int(members.sum())
     return SpeciesForecast(
         name=gas.species_names[k],
@@ -196,7 +203,7 @@ def _species(gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesFore
         radius=float(radius),
         mass=float(mass),
         packing_fraction=float(np.pi * radius**2 * number / area),
-        temperature=float(mass * (gas.velocity[members] ** 2).sum() / (2 * number)),
+        temperature=float(mass * (velocity**2).sum() / (2 * number)),
         collision_rate=float(rates.per_disc[k]) if rates else None,
     )
 
