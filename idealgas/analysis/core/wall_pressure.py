@@ -34,6 +34,11 @@ class Face:
     hits: int
 
 
+def wall_name(wall: int, name: str) -> str:
+    """Name of a wall by its number and its own name, for tables: a side of the box is called a wall."""
+    return f"{name} wall" if wall < FIRST_SEGMENT else name
+
+
 class WallGauge:
     """Pressure on all walls of a log: the tallies that `stream` has to fill, and what follows from them.
 
@@ -67,7 +72,9 @@ class WallGauge:
             exposed = self._exposed(k, wall.start, wall.end, wall.absence, edges)
             if not exposed.any():
                 continue
-            names = [wall.name] if k < FIRST_SEGMENT else [f"{wall.name}, {name}" for name in self._looks(k)]
+            names = [wall_name(k, wall.name)]
+            if k >= FIRST_SEGMENT:
+                names = [f"{wall.name}, {name}" for name in self._looks(k)]
             for face, name in enumerate(names):
                 push, along = self.impulses.faces[:, k, face].T
                 found.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))

@@ -20,6 +20,9 @@ MOST_BINS = 64
 HITS = 32
 """Mean number of hits of walls in a bin, at least, if there is more than one bin."""
 
+ENOUGH_BINS = 16
+"""Number of bins from which their scatter about each other corrects their error bars."""
+
 ALL_SIDES = "all sides"
 
 
@@ -97,4 +100,17 @@ def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarr
         if given.any():
             found = ratio(given[there > 0], there[there > 0])
             values[k], errors[k] = found.value, found.standard_error
-    return values, errors
+    return values, errors * _scatter(values, errors)
+
+
+def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
+    """Scatter of bins about the line through their neighbours, over what independent blocks in them let expect.
+
+    Sound and pistons push a wall to and fro within a bin, so that the mean of a bin varies less than its blocks tell.
+    """
+    if len(values) < ENOUGH_BINS:
+        return 1.0
+    off = values[:-2] - 2 * values[1:-1] + values[2:]
+    square = errors[:-2] ** 2 + 4 * errors[1:-1] ** 2 + errors[2:] ** 2
+    known = np.isfinite(square)
+    return float(np.sqrt((off[known] ** 2).sum() / square[known].sum())) if known.sum() >= ENOUGH_BINS // 2 else 1.0

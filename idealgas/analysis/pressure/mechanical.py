@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
-from idealgas.analysis.core.wall_pressure import Face, WallGauge
+from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
 from idealgas.analysis.core.window import Window
 from idealgas.log import Log
 
@@ -37,14 +37,21 @@ class WallPressure:
 
 @dataclass(frozen=True)
 class WallForce:
-    """Force of the discs on one wall or on all, with its ends, mass·length/time².
+    """Force of the discs on one wall or on all, with their ends, mass·length/time².
 
-    x, y: along each axis. The theory of the force on all walls is the weight of the discs.
+    name: of the wall. x, y: along each axis; the theory of the force on all walls is the weight of the discs.
     """
 
     name: str
     x: Estimate
     y: Estimate
+
+    @property
+    def large(self) -> dict[str, Estimate]:
+        """Components by their axis that are more than rounding, or that have a theory."""
+        both = {"x": self.x, "y": self.y}
+        size = {axis: abs(one.value) + one.standard_error for axis, one in both.items()}
+        return {axis: one for axis, one in both.items() if size[axis] > SMOOTH * max(size.values()) or one.theory}
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -108,7 +115,7 @@ def _forces(log: Log, gauge: WallGauge, window: Window, unsteady: bool) -> tuple
     """Force on every wall that was hit, and on all walls, which carry the weight of a gas in a stationary state."""
     given = window.of(gauge.impulses.given)
     hit = gauge.impulses.hits[window.first :].any(axis=0)
-    by_wall = [(wall.name, given[:, k]) for k, wall in enumerate(log.walls) if hit[k]]
+    by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hit[k]]
     total, kept = given.sum(axis=1), kept_momentum(log)
     weight = [None if kept[k] or unsteady else float(log.discs.mass.sum()) * log.gravity[k] for k in range(2)]
     return (

@@ -21,7 +21,7 @@ def _of_walls(result: Pressure, found: Mechanical) -> list[Table]:
     ]
     if found.unsteady:
         notes.append(f"Never stationary, as {found.unsteady}: means over the window; `evolution` shows P(t).")
-    forces = [(f"{force.name}, {axis}", getattr(force, axis)) for force in found.forces for axis in ("x", "y")]
+    forces = [(f"{force.name}, {axis}", value) for force in found.forces for axis, value in force.large.items()]
     along = [(wall.name, wall.stress) for wall in found.walls if wall.stress]
     return [
         estimates("P on each wall (energy/length²)", [(wall.name, wall.pressure) for wall in found.walls], notes),
