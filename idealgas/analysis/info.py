@@ -10,6 +10,7 @@ from idealgas.log import Log
 def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
     gas, discs = log.discs, composition(log.discs)
+    left, bottom, right, top = log.scene.room
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
     return {
         "file": {
@@ -23,7 +24,7 @@ def info(log: Log) -> dict[str, Any]:
         "gas": {
             "box": list(log.box),
             "number": len(gas),
-            "packing_fraction": gas.packing_fraction,
+            "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom)),
             "kinetic_energy": gas.kinetic_energy,
             "temperature": gas.temperature,
             "species": [

@@ -10,9 +10,9 @@ def why_never_stationary(log: Log) -> str:
     """
     scene, properties = log.scene, log.scene.properties
     if properties.driven:
-        return f"it is driven ({', '.join(scene.lacking('fixed_walls'))})"
+        return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
     if not properties.lossless and properties.isolated:
-        return f"it loses energy ({', '.join(scene.lacking('lossless'))})"
+        return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
     return ""
 
 
@@ -24,5 +24,5 @@ def why_no_equilibrium(log: Log) -> str:
     if len(properties.temperatures) > 1:
         return f"walls have {len(properties.temperatures)} temperatures"
     if not properties.lossless:
-        return f"it loses energy ({', '.join(scene.lacking('lossless'))})"
+        return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
     return ""

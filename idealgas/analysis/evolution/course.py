@@ -77,18 +77,18 @@ def pressure_course(log: Log, first: float, last: float) -> PressureCourse | Non
     given = {face.name: (face.push, face.exposed) for face in faces}
     sides = [face for face in faces if face.wall < FIRST_SEGMENT]
     if log.scene.properties.uniform:
-        given[ALL_SIDES] = sum(face.push for face in sides), sum(face.exposed for face in sides)
-        shown = (ALL_SIDES,)
+        given[ALL_SIDES] = np.sum([face.push for face in sides], axis=0), np.sum([f.exposed for f in sides], axis=0)
+        shown = [ALL_SIDES]
     else:
         moving = gauge.moving.wall if gauge.moving else None
-        shown = tuple(face.name for face in sides if moving in (None, face.wall))
+        shown = [face.name for face in sides if moving in (None, face.wall)]
     found = {name: _in_bins(*series, bins) for name, series in given.items()}
     return PressureCourse(
         blocks[:: BLOCKS // bins],
         gauge.area(blocks).reshape(bins, -1).mean(axis=1),
         {name: values for name, (values, _) in found.items()},
         {name: errors for name, (_, errors) in found.items()},
-        shown,
+        tuple(shown),
         state_lines(log, gauge.area(blocks)) if gauge.moving else None,
     )
 

@@ -160,13 +160,13 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = known.laws(quantity, discs, s, measured)
         spacing = int(np.ceil(ensemble_inefficiency(snapshots)))
-        last_law = None if measured is not None or not possible else list(possible.values())[-1]
+        expected = [law.mean for law in possible.values()] if measured is None else []
         found.append(
             _distribution(
                 name,
                 np.linspace(low[s], high[s], BINS + 1),
                 window.of(tally.counts)[:, s],
-                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], last_law and last_law.mean),
+                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], expected[-1] if expected else None),
                 snapshots[::spacing].ravel(),
                 spacing * window.width,
                 possible,
@@ -205,9 +205,9 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
     found = []
     for s, name in enumerate(discs.name):
-        dilute = None if why_not else law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
-        possible = {"dilute gas": dilute} if dilute else {}
-        found.append(_intervals(name, tally, s, blocks, high[s], possible, dilute and dilute.mean))
+        dilute = law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
+        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, dilute.mean)
+        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected))
     return window, found, why_not
 
 

@@ -7,10 +7,13 @@ import numpy as np
 
 from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.statistics import Estimate, mean, ratio
+from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, ratio
 from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
 from idealgas.analysis.core.window import Window
 from idealgas.log import Log
+
+PIECES = 8
+"""Number of pieces of the window that are averaged one by one if the state of the gas changes all the time."""
 
 SMOOTH = 1e-9
 """Largest stress along a wall, relative to the pressure, that is rounding."""
@@ -83,12 +86,13 @@ class Mechanical:
 
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
-    some, unsteady = slice(window.first, None), why_never_stationary(log)
+    some, why = slice(window.first, None), why_never_stationary(log)
+    faces = [(face, _holding(gauge, face, window)) for face in gauge.faces(window.edges)]
     return Mechanical(
         area=float(gauge.area(window.edges)[some].mean()),
-        walls=tuple(_pressure(face, some, _holding(gauge, face, window)) for face in gauge.faces(window.edges)),
-        forces=_forces(log, gauge, window, bool(unsteady)),
-        unsteady=unsteady,
+        walls=tuple(_pressure(face, some, bool(why), holding) for face, holding in faces),
+        forces=_forces(log, gauge, window, bool(why)),
+        unsteady=why,
     )
 
 
@@ -98,27 +102,40 @@ def _holding(gauge: WallGauge, face: Face, window: Window) -> float | None:
     return moving.balance(window.start, window.end) if moving is not None and face.wall == moving.wall else None
 
 
-def _pressure(face: Face, some: slice, holding: float | None) -> WallPressure:
+def _pressure(face: Face, some: slice, unsteady: bool, holding: float | None) -> WallPressure:
     push, along, exposed = face.push[some], face.along[some], face.exposed[some]
     if not push.any():  # a wall that was never hit tells nothing of its error
         return WallPressure(face.name, Estimate(0.0, np.nan, 0.0, holding), None)
-    there = exposed > 0
     rough = np.abs(along).sum() > SMOOTH * push.sum()
     return WallPressure(
         face.name,
-        ratio(push[there], exposed[there], theory=holding),
-        ratio(along[there], exposed[there]) if rough else None,
+        _average(push, exposed, unsteady, holding),
+        _average(along, exposed, unsteady) if rough else None,
     )
+
+
+def _average(given: np.ndarray, exposed: np.ndarray, unsteady: bool, theory: float | None = None) -> Estimate:
+    """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error."""
+    there = exposed > 0
+    given, exposed = given[there], exposed[there]
+    if not unsteady:
+        return ratio(given, exposed, theory=theory)
+    pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
+    return mean_of_replicates([ratio(*piece) for piece in pieces])
 
 
 def _forces(log: Log, gauge: WallGauge, window: Window, unsteady: bool) -> tuple[WallForce, ...]:
     """Force on every wall that was hit, and on all walls, which carry the weight of a gas in a stationary state."""
     given = window.of(gauge.impulses.given)
-    hit = gauge.impulses.hits[window.first :].any(axis=0)
-    by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hit[k]]
-    total, kept = given.sum(axis=1), kept_momentum(log)
+    hits = gauge.impulses.hits[window.first :].sum(axis=0)
+    by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
+    kept, all_time = kept_momentum(log), np.ones(len(given))
     weight = [None if kept[k] or unsteady else float(log.discs.mass.sum()) * log.gravity[k] for k in range(2)]
+
+    def force(name: str, series: np.ndarray, theory: list[float | None]) -> WallForce:
+        return WallForce(name, *(_average(series[:, k], all_time, unsteady, theory[k]) for k in range(2)))
+
     return (
-        *(WallForce(name, mean(series[:, 0]), mean(series[:, 1])) for name, series in by_wall),
-        WallForce("all walls", mean(total[:, 0], theory=weight[0]), mean(total[:, 1], theory=weight[1])),
+        *(force(name, series, [None, None]) for name, series in by_wall),
+        force("all walls", given.sum(axis=1), weight),
     )
