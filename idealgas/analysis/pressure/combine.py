@@ -27,6 +27,6 @@ def restore_pressure(found: dict[str, Any], label: str) -> Sample:
         UserError: if the gas has no equation of state.
     """
     if not found["routes"]:
-        raise UserError(f"{label}: no equation of state: {found['no_theory']}")
+        raise UserError(f"{label}: {found['no_theory']}")
     pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
     return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

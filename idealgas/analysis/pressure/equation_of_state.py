@@ -94,7 +94,7 @@ def sample_of(measured: Pressure) -> Sample:
         UserError: if the gas has no equation of state.
     """
     if not measured.routes:
-        raise UserError(f"no equation of state: {measured.no_theory}")
+        raise UserError(measured.no_theory)
     pairs = next(route.compressibility for route in measured.routes if route.name == PAIRS)
     return Sample(measured.packing_fraction, measured.number, pairs)
 
