@@ -75,7 +75,7 @@ def test_the_floor_carries_the_column(run):
     assert abs(difference - 200 * 0.3 / 10) < STANDARD_ERRORS * error
     assert above.value > 10 * above.standard_error  # the lid counts
     assert forces.y.theory == pytest.approx(-60)
-    assert agrees(forces.y, -60, 0.02)
+    assert agrees(forces.y, -60, 0.002)
     assert abs(forces.x.deviation) < STANDARD_ERRORS
     assert agrees(found["left wall"], found["right wall"].value, 0.03)
 
@@ -83,10 +83,11 @@ def test_the_floor_carries_the_column(run):
 def test_a_piston_is_held_by_the_gas(run):
     """Its mean force is P L, and in a dilute gas all other walls have the same pressure (Pascal)."""
     log = run(
-        "box.size=[40, 10]", species(100, 0.005), "run.until=2500", "piston={ position = 10, mass = 5, pressure = 1 }"
+        "box.size=[40, 10]", species(100, 0.005), "run.until=4000", "piston={ position = 10, mass = 5, pressure = 1 }"
     )
     found = walls(pressure(log))
     assert found["right wall"].theory == 1.0
+    assert agrees(found["right wall"], 1.0, 0.001)  # its momentum is bounded, so that its mean force is exact in time
     for name, value in found.items():
         assert agrees(value, 1.0, 0.03), name
 
@@ -153,7 +154,8 @@ def test_a_slow_compression_follows_the_adiabat(run):
 def test_error_bars_of_bins(overrides, wall, run):
     """Bins of a stationary gas scatter about their mean by their error bars: rms 0.8 to 1.2 of 64 bins.
 
-    By chance alone the rms of 64 bins is within 1 ± 0.09 (one s.d.).
+    By chance alone the rms of 64 bins is within 1 ± 0.09 (one s.d.). On a piston bins are anticorrelated, as its
+    momentum is bounded, and the error bars 6 % too large.
     """
     course = evolution(run(species(100, 0.02), *overrides)).pressure
     p, error = course.pressure[wall], course.error[wall]
@@ -168,7 +170,7 @@ def test_maxwell_holds_at_all_heights(quantity, run):
     """Under gravity velocities follow Maxwell and Boltzmann's law: Kolmogorov-Smirnov, p > 0.001."""
     log = run("box.size=[10, 30]", species(400, 0.05), "gravity.acceleration=[0, -0.2]", "run.until=150")
     (gas,) = histogram(log, quantity, start=30.0).distributions
-    assert gas.samples > 4000
+    assert gas.samples > 3000
     assert [test.p_value > LEAST_P for test in gas.tests] == [True]
 
 

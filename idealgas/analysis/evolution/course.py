@@ -20,8 +20,8 @@ MOST_BINS = 64
 HITS = 32
 """Mean number of hits of walls in a bin, at least, if there is more than one bin."""
 
-ENOUGH_BINS = 16
-"""Number of bins from which their scatter about each other corrects their error bars."""
+GROUP = 16
+"""Number of bins whose scatter about a straight line corrects their error bars."""
 
 ALL_SIDES = "all sides"
 
@@ -104,13 +104,13 @@ def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarr
 
 
 def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
-    """Scatter of bins about the line through their neighbours, over what independent blocks in them let expect.
+    """Scatter of bins about straight lines through GROUP of them, over what independent blocks in them let expect.
 
     Sound and pistons push a wall to and fro within a bin, so that the mean of a bin varies less than its blocks tell.
     """
-    if len(values) < ENOUGH_BINS:
+    if len(values) < GROUP or not np.isfinite(errors).all():
         return 1.0
-    off = values[:-2] - 2 * values[1:-1] + values[2:]
-    square = errors[:-2] ** 2 + 4 * errors[1:-1] ** 2 + errors[2:] ** 2
-    known = np.isfinite(square)
-    return float(np.sqrt((off[known] ** 2).sum() / square[known].sum())) if known.sum() >= ENOUGH_BINS // 2 else 1.0
+    lines, _ = np.linalg.qr(np.vander(np.arange(GROUP), 2))
+    groups = values.reshape(-1, GROUP)
+    off = groups - groups @ lines @ lines.T
+    return float(np.sqrt((off**2).sum() / (errors**2).sum() / (1 - 2 / GROUP)))

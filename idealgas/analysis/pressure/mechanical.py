@@ -1,5 +1,6 @@
 """Mechanical pressure of every wall, for gases whose pressure follows from no equation of state."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, ratio
+from idealgas.analysis.core.statistics import Estimate, inefficiency, mean_of_replicates, ratio
 from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
 from idealgas.analysis.core.window import Window
 from idealgas.log import Log
@@ -109,19 +110,34 @@ def _pressure(face: Face, some: slice, unsteady: bool, holding: float | None) ->
     rough = np.abs(along).sum() > SMOOTH * push.sum()
     return WallPressure(
         face.name,
-        _average(push, exposed, unsteady, holding),
+        _average(push, exposed, unsteady) if holding is None else _balanced(push / exposed, holding),
         _average(along, exposed, unsteady) if rough else None,
     )
 
 
-def _average(given: np.ndarray, exposed: np.ndarray, unsteady: bool, theory: float | None = None) -> Estimate:
+def _average(given: np.ndarray, exposed: np.ndarray, unsteady: bool) -> Estimate:
     """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error."""
     there = exposed > 0
     given, exposed = given[there], exposed[there]
     if not unsteady:
-        return ratio(given, exposed, theory=theory)
+        return ratio(given, exposed)
     pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
     return mean_of_replicates([ratio(*piece) for piece in pieces])
+
+
+def _balanced(rates: np.ndarray, theory: float) -> Estimate:
+    """Mean of the rate at which momentum is given that `theory` gives back, so that what is stored stays bounded.
+
+    The mean is off by the change of the stored momentum from start to end over the time, with the variance of two
+    independent values of it.
+    """
+    stored = np.cumsum(rates - theory)
+    return Estimate(
+        float(rates.mean()),
+        float(math.sqrt(2) * stored.std() / len(rates)),
+        len(rates) / inefficiency(stored),
+        theory,
+    )
 
 
 def _forces(log: Log, gauge: WallGauge, window: Window, unsteady: bool) -> tuple[WallForce, ...]:
@@ -129,13 +145,16 @@ def _forces(log: Log, gauge: WallGauge, window: Window, unsteady: bool) -> tuple
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
-    kept, all_time = kept_momentum(log), np.ones(len(given))
-    weight = [None if kept[k] or unsteady else float(log.discs.mass.sum()) * log.gravity[k] for k in range(2)]
+    all_time, total, weight = np.ones(len(given)), given.sum(axis=1), log.discs.mass.sum() * np.array(log.gravity)
 
-    def force(name: str, series: np.ndarray, theory: list[float | None]) -> WallForce:
-        return WallForce(name, *(_average(series[:, k], all_time, unsteady, theory[k]) for k in range(2)))
+    def component(series: np.ndarray) -> Estimate:
+        return _average(series, all_time, unsteady)
 
+    known = ~kept_momentum(log) & (not unsteady)
     return (
-        *(force(name, series, [None, None]) for name, series in by_wall),
-        force("all walls", given.sum(axis=1), weight),
+        *(WallForce(name, *map(component, series.T)) for name, series in by_wall),
+        WallForce(
+            "all walls",
+            *(_balanced(total[:, k], float(weight[k])) if known[k] else component(total[:, k]) for k in range(2)),
+        ),
     )
