@@ -14,6 +14,7 @@ def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
     gas, discs, frame = log.discs, composition(log.discs), drift(log)
     frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # without what is only rounding
+    left, bottom, right, top = log.scene.room
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
     return {
         "file": {
@@ -27,7 +28,7 @@ def info(log: Log) -> dict[str, Any]:
         "gas": {
             "box": list(log.box),
             "number": len(gas),
-            "packing_fraction": gas.packing_fraction,
+            "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom)),
             "kinetic_energy": gas.kinetic_energy,
             "common_motion": frame.tolist(),
             "temperature": gas.temperature - float(gas.mass.sum() * (frame @ frame)) / (2 * len(gas)),

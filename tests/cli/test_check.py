@@ -52,17 +52,23 @@ def test_walls_are_listed_by_their_numbers():
 
 
 def test_what_theory_does_not_know_is_said():
-    shown = check(CONFIGS / "atmosphere.toml").stdout
-    assert "not known: beyond the theory of a uniform gas are gravity\n" in shown
-    found = json.loads(check(CONFIGS / "atmosphere.toml", "--json").stdout)
+    shown = check(CONFIGS / "piston.toml").stdout
+    assert "not known: beyond the theory of a uniform gas are piston\n" in shown
+    found = json.loads(check(CONFIGS / "piston.toml", "--json").stdout)
     assert (found["effects"], found["beyond"], found["temperature"], found["rows"]) == (
-        ["gravity"],
-        ["gravity"],
+        ["piston"],
+        ["piston"],
         None,
         None,
     )
-    assert found["duration"] == 400
-    assert found["compiled_out"] == [name for name in EFFECTS if name != "gravity"]
+    assert found["duration"] == 2000
+    assert found["compiled_out"] == [name for name in EFFECTS if name != "piston"]
+
+
+def test_a_column_under_gravity_is_known_roughly():
+    shown = check(CONFIGS / "atmosphere.toml").stdout
+    assert "about: the law of a dilute column, whose lowest layer has a packing fraction of 0.0063\n" in shown
+    assert "not known" not in shown
 
 
 ROUGH = (

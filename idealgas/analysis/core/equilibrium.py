@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.theory import conserved
+from idealgas.analysis.theory.column import barometric_temperature
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -89,20 +89,11 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
         return None
     g = log.gravity[axis]
     start = log.state_at(log.start_time)
-    energy = gas.kinetic_energy - float(gas.mass @ start.position[:, axis]) * g
-    spins = 0.0
+    freedom, energy = 2.0 * len(gas), gas.kinetic_energy
     if log.inertia is not None and start.angular_velocity is not None:
         energy += float(log.inertia @ start.angular_velocity**2) / 2
-        spins = len(gas) / 2
+        freedom += len(gas)
+    above = start.position[:, axis] if g < 0 else log.box[axis] - start.position[:, axis]
+    energy += abs(g) * float(gas.mass @ (above - gas.radius))
     height = log.box[axis] - 2 * discs.radius
-
-    def excess(t: float) -> float:
-        x = discs.mass * g * height / t
-        with np.errstate(over="ignore"):
-            above = height * (1 / -np.expm1(-x) - 1 / x)  # mean of h' in (0, height) with weight exp(x h'/height)
-        potential = -(discs.number * discs.mass * g * (discs.radius + above)).sum()
-        return (len(gas) + spins) * t + float(potential) - energy
-
-    lowest = -(discs.number * discs.mass * g * np.where(g < 0, discs.radius, log.box[axis] - discs.radius)).sum()
-    scale = max(energy - float(lowest), 1e-300) / len(gas)
-    return float(brentq(excess, 1e-3 * scale, 2 * scale))
+    return barometric_temperature(energy, freedom, discs.mass, discs.number, abs(g), height)

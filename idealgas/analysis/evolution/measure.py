@@ -1,4 +1,4 @@
-"""Evolution of a gas in time: temperature, energies, energy given by walls, and discs beyond a gate."""
+"""Evolution of a gas in time: temperature, pressure, energies, energy given by walls, and discs beyond a gate."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ import numpy as np
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.window import span
+from idealgas.analysis.evolution.course import PressureCourse, pressure_course
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -28,7 +29,8 @@ class Evolution(Result):
     samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall gave
     since the start, (P,), by the name of the wall. piston: (P,), its coordinate, length; None without one.
     balance: (P,), change since the start of the energy of discs and piston minus the energy given by walls, relative to
-    the largest part of the energy. Only inelastic collisions change the balance.
+    the largest part of the energy. Only inelastic collisions change the balance. pressure: mechanical pressure on walls
+    in bins of time; None without events or hits of walls.
     """
 
     time: np.ndarray
@@ -41,6 +43,7 @@ class Evolution(Result):
     given: dict[str, np.ndarray]
     piston: np.ndarray | None
     balance: np.ndarray
+    pressure: PressureCourse | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -50,7 +53,8 @@ class Evolution(Result):
         if self.law is not None:
             at_rest = {"spin": self.law.spin, "piston": self.law.piston}
             law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
-        return super().as_dict() | lists | tables | {"law": law, "end": self._end()}
+        pressure = self.pressure.as_dict() if self.pressure else None
+        return super().as_dict() | lists | tables | {"law": law, "end": self._end(), "pressure": pressure}
 
     def _end(self) -> dict[str, float]:
         """Last value of each series, by name."""
@@ -67,7 +71,7 @@ def evolution(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Evolution:
-    """Follow temperature, energies, piston and the account of the walls in time, and discs beyond a gate.
+    """Follow temperature, pressure, energies, piston and the account of the walls in time, and discs beyond a gate.
 
     It needs no equilibrium. Theory, where there is one, is that of the temperature: in equilibrium, of a gas that cools
     by its collisions (Haff's law), or of one that a moving piston compresses (the adiabat).
@@ -95,6 +99,7 @@ def evolution(
         {name: values[inside] for name, values in given.items()},
         observed["piston_position"][inside] if "piston_position" in observed else None,
         balance[inside],
+        pressure_course(log, first, last),
         premises=law.premises if law else (),
     )
 

@@ -101,7 +101,13 @@ class EquationOfState(Result):
 
 
 def sample_of(measured: Pressure) -> Sample:
-    """Compressibility factor of a run from the virial of its pair collisions."""
+    """Compressibility factor of a run from the virial of its pair collisions.
+
+    Raises:
+        UserError: if the gas has no equation of state.
+    """
+    if not measured.routes:
+        raise UserError(measured.no_theory)
     pairs = next(route.compressibility for route in measured.routes if route.name == PAIRS)
     return Sample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
 

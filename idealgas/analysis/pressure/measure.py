@@ -22,12 +22,15 @@ from idealgas.analysis.core.collisions import (
     theory_of,
 )
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
+from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
 from idealgas.errors import NotApplicableError, UserError
@@ -60,7 +63,9 @@ class Pressure(Result):
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
     packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
     that applies. collision_rates: of each pair of species. free_paths: of each species. no_theory: why there is no
-    theory of this gas in its box, as part of a sentence; empty if there is.
+    theory of this gas in its box, as part of a sentence; empty if there is. mechanical: pressure of every wall of a gas
+    without an equation of state; None for others. For such a gas area is what it has on average, temperature the mean
+    of m v²/2 over discs and time, and there are no routes, theories, rates and paths.
     """
 
     window: Window
@@ -73,6 +78,7 @@ class Pressure(Result):
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
     no_theory: str = ""
+    mechanical: Mechanical | None = None
 
     def check(self) -> Verdict:
         """Check that Z by the virial of the walls and of the pairs agrees with theory.
@@ -97,6 +103,7 @@ class Pressure(Result):
             "no_theory": self.no_theory or None,
             "collision_rates": [rate.as_dict() for rate in self.collision_rates],
             "free_paths": [path.as_dict() for path in self.free_paths],
+            **(self.mechanical.as_dict() if self.mechanical else {}),
         }
 
 
@@ -112,15 +119,20 @@ def pressure(
     walls and that passed on in collisions of discs. Theory is that of hard discs in this box, see `hard_disc_theories`;
     collision rates and free paths come from the same events.
 
+    Where the virial theorem needs further terms, or no temperature is known, there is no such Z: with gravity, wall
+    segments, a piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical
+    pressure of every wall, the momentum that it gets per time and length.
+
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read.
 
-    Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects for which the
-    virial theorem needs further terms: gravity, wall segments, a piston, collisions that lose energy.
+    Raises UserError if no disc moves or if there are no events in the window.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
-    equilibrium = ensemble(log)
+    equilibrium = known_ensemble(log)
+    if equilibrium is None or not log.scene.properties.uniform:
+        return _without_theory(log, start, end, progress)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
@@ -139,6 +151,32 @@ def pressure(
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
         no_theory=theory.why_not,
+    )
+
+
+def _without_theory(
+    log: Log, start: float | None, end: float | None, progress: Callable[[int, int], None] | None
+) -> Pressure:
+    """Mechanical pressure of a gas without an equation of state; one that never settles is averaged from its start."""
+    gauge, moments, gas = WallGauge(log), Moments(log.gravity), log.discs
+    if start is None and why_never_stationary(log):
+        start = log.start_time
+    window = measure(log, [moments, *gauge.tallies], start, end, progress)
+    found = mechanical(log, gauge, window)
+    energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
+    causes = log.scene.lacking("uniform", "conserves_energy")
+    return Pressure(
+        window=window,
+        number=len(gas),
+        area=found.area,
+        temperature=float(energies.mean()) / (2 * len(gas)),
+        packing_fraction=gas.packing_fraction * gas.area / found.area,
+        routes=(),
+        theories={},
+        collision_rates=(),
+        free_paths=(),
+        no_theory=f"no equation of state holds under {', '.join(causes) or 'walls of several temperatures'}",
+        mechanical=found,
     )
 
 

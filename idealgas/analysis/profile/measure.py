@@ -185,8 +185,8 @@ def _heat(log: Log, window: Window) -> dict[str, Estimate]:
         return {}
     time, given = log.observables["wall_energy"]
     inside = (time >= window.start) & (time <= window.end)
-    if inside.sum() < 2:
-        return {}
     steps, gains = np.diff(time[inside]), np.diff(given[inside], axis=0)
     some = steps > 0
+    if not some.any():
+        return {}
     return {wall.name: ratio(gains[some, k], steps[some]) for k, wall in enumerate(log.walls) if given[:, k].any()}

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import conserved, hard_discs
+from idealgas.analysis.theory.column import DENSEST, barometric_temperature, column_rates
 from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
@@ -45,7 +46,8 @@ class SpeciesForecast:
 class Forecast:
     """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    Values are None if the theory, which is that of a uniform gas of constant energy, does not know them.
+    Values are None if the theory does not know them: it is that of a uniform gas of constant energy, or of a dilute
+    column under gravity.
 
     number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
     the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
@@ -96,9 +98,12 @@ class _Rates(NamedTuple):
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
-    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule."""
+    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule.
+
+    Of a gas under gravity they are those of a dilute column.
+    """
     beyond = scene.lacking(*KNOWN)
-    rates = None if beyond else _rates(scene, gas)
+    rates = _column(scene, gas) if beyond else _rates(scene, gas)
     duration = _duration(scene, len(gas), rates)
     events = rows = None
     if rates and duration is not None:
@@ -111,7 +116,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     return Forecast(
         number=len(gas),
         packing_fraction=gas.packing_fraction * gas.area / area,
-        beyond=beyond,
+        beyond=() if rates else beyond,
         temperature=rates.temperature if rates else None,
         collision_rate=2 * rates.pairs / len(gas) if rates else None,
         pair_collision_rate=rates.pairs if rates else None,
@@ -159,6 +164,31 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, rough=rough)
+
+
+def _column(scene: Scene, gas: Gas) -> _Rates | None:
+    """Rates of a dilute gas in a closed box under gravity along one axis; None for others."""
+    properties, pull = scene.properties, np.abs(scene.properties.acceleration)
+    closed = properties.empty and properties.fixed_walls and not any(properties.periodic)
+    settles = properties.lossless and properties.isolated and len(gas) > 1
+    if not closed or not settles or np.count_nonzero(pull) != 1 or not gas.radius.all():
+        return None
+    axis = int(pull[1] > 0)
+    falls_to_zero = properties.acceleration[axis] < 0
+    above = gas.position[:, axis] if falls_to_zero else gas.box[axis] - gas.position[:, axis]
+    energy = gas.kinetic_energy + _spin_energy(scene) + float(pull[axis] * (gas.mass @ (above - gas.radius)))
+    if not energy > 0:
+        return None
+    number = np.bincount(gas.species)
+    _, first = np.unique(gas.species, return_index=True)
+    radius, mass, length, across = gas.radius[first], gas.mass[first], gas.box[axis], gas.box[1 - axis]
+    freedom = (2 + properties.spins) * len(gas)
+    t = barometric_temperature(energy, freedom, mass, number, float(pull[axis]), length - 2 * radius)
+    found = column_rates(t, mass, radius, number, float(pull[axis]), length, across)
+    if found.densest > DENSEST:
+        return None
+    rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {found.densest:.2g}"
+    return _Rates(t, found.per_disc, found.pairs, found.hits, rough=rough)
 
 
 def _why_rough(

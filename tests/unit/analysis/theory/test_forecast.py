@@ -140,3 +140,37 @@ def test_rates_of_a_rough_theory_are_marked(overrides, why):
     rough = forecast_of(*overrides).rough
     assert why in rough
     assert bool(why) == bool(rough)
+
+
+def test_a_column_under_gravity():
+    """Temperature and rates of equal discs by the barometric law in a box so high that its lid does not count.
+
+    The energy of motion and height is 2NT; a pair meets at the rate 2σ ∫n² √(πT/m) per disc, with ∫n² of the law
+    N/W mg/2T. The floor is hit as if it carried the weight: n(0) ⟨v⟩/π W.
+    """
+    tall = ("box.size=[20, 400]", "species.radius=0.005", "species.count=400", "species.region=[0, 0, 20, 40]")
+    expected = forecast_of(*tall, "gravity.acceleration=[0, -0.2]")
+    m, g, n = 0.5, 0.2, 400
+    gas = make_gas(parse_scene(GAS, overrides=(*tall, "gravity.acceleration=[0, -0.2]")))
+    t = (gas.kinetic_energy + m * g * float((gas.position[:, 1] - 0.005).sum())) / (2 * n)
+    assert expected.temperature == pytest.approx(t, rel=1e-9)
+    rate = 2 * 0.01 * (n - 1) / 20 * m * g / (2 * t) * math.sqrt(math.pi * t / m)
+    assert expected.collision_rate == pytest.approx(rate, rel=2e-3)
+    flux = math.sqrt(math.pi * t / (2 * m)) / math.pi
+    assert expected.wall_hit_rate == pytest.approx(flux * n * (m * g / t + 2 / (20 - 0.01)), rel=2e-2)
+    assert expected.beyond == ()
+    assert "dilute column" in expected.rough
+    sideways = forecast_of(
+        "box.size=[400, 20]", *tall[1:3], "species.region=[360, 0, 400, 20]", "gravity.acceleration=[0.2, 0]"
+    )
+    assert sideways.collision_rate == pytest.approx(expected.collision_rate, rel=0.05)
+
+
+def test_other_columns_are_not_known():
+    dilute = ("species.radius=0.005", "species.count=100")
+    assert forecast_of(*dilute, "gravity.acceleration=[0, -0.2]").temperature
+    for override in (
+        "gravity.acceleration=[0.1, -0.2]",
+        "box={ size = [10, 20], left = 'periodic', right = 'periodic' }",
+    ):
+        assert forecast_of(*dilute, "gravity.acceleration=[0, -0.2]", override).beyond == ("gravity",)
