@@ -98,9 +98,8 @@ def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
     (tmp_path / "scene.toml").write_text(SCENE.replace("collisions_per_disc = 100", "events = 2000"))
     dense = ("--set", "species.radius=1.2", "--set", "species.count=58", "--set", "species.placement=lattice")
     logs = [tmp_path / f"{name}.h5" for name in ("one", "two", "dilute")]
-    for seed, log, options in zip((1, 2, 3), logs, (dense, dense, ()), strict=True):
-        own = (*options, "--set", f"scene.seed={seed}")
-        assert idealgas("run", tmp_path / "scene.toml", "-o", log, *own).exit_code == 0
+    for log, options in zip(logs, (dense, (*dense, "--set", "scene.seed=2"), ()), strict=True):
+        assert idealgas("run", tmp_path / "scene.toml", "-o", log, *options).exit_code == 0
     checked = idealgas("pressure", *logs[:2], "--check")
     assert (checked.exit_code, checked.stdout.count("\n")) == (0, 1)
     assert checked.stdout.startswith("No theory here: no equation of state: no theory for a gas of packing fraction 0.")
