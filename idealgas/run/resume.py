@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 
 from idealgas._jit import compile_timer
 from idealgas.document.dump import dump_document
-from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
+from idealgas.engine.monte_carlo import V_REF
+from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
 from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
 from idealgas.run.effects import make_effects
@@ -63,7 +64,7 @@ def resume(
 
 
 def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
-    if (made_with := log.attributes.get("trajectory")) != TRAJECTORY:
+    if (made_with := log.attributes.get("trajectory")) not in GOES_ON:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides)
@@ -92,7 +93,8 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     """The simulation of a scene as it was at a checkpoint, or at its start."""
     start = log.discs
     effects = make_effects(scene, start)
-    method = method_of(scene, start)
+    v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
+    method = method_of(scene, start, v_ref, rises=V_REF.name in log.observables)
     if checkpoint is None:
         return Simulation(start, method, effects)
     gas = restore(start, effects, checkpoint)
