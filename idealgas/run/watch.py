@@ -64,7 +64,5 @@ class Watch:
         if share[-1] == 0 or few > math.ceil(n / 4):
             return ""
         self._told = True
-        make = "disc makes" if few == 1 else "discs make"
-        return (
-            f"{few} of {n} {make} most of the events from t = {simulation.time:g} to t = {simulation.last_event_time:g}"
-        )
+        span = f"from t = {simulation.time:g} to t = {simulation.last_event_time:g}"
+        return f"{few} of {n} discs make{'s' * (few == 1)} most of the events {span}"

@@ -12,7 +12,7 @@ from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
-from idealgas.scene import Scene
+from idealgas.scene import Rest, Scene
 from idealgas.scene.defaults import reference_speed
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
@@ -51,7 +51,7 @@ class Forecast:
     discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
     duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
     bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
-    approximate; empty if their error is below 2 %.
+    approximate; empty if their error is below 2 %. rest: what discs do that have come to rest; None if none can.
     """
 
     number: int
@@ -67,6 +67,7 @@ class Forecast:
     bytes: float | None
     species: tuple[SpeciesForecast, ...]
     rough: str = ""
+    rest: Rest | None = None
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
@@ -119,6 +120,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         bytes=None if rows is None else rows * _bytes_a_row(scene),
         species=tuple(_species(gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
+        rest=scene.rest,
     )
 
 

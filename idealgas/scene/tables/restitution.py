@@ -46,16 +46,16 @@ class Rest:
     Such a disc goes on bouncing without loss, as each of its hits comes less than a contact duration t after the one
     before: with the acceleration a its speed is a t/2 at most.
 
-    hits: (least, most) hits of one disc per time, 1/time; the most is infinite for a coefficient of 0. height: largest
-    height of its bounces, a t²/8, length. energy: their largest energy divided by the disc's mass, a² t²/8,
-    (length/time)². per_free_time: most hits of it in a mean free time of the gas at the start; infinite if nothing
-    moves there.
+    hits: (least, most) hits of one disc per time, 1/t and 1/(et), 1/time. height: largest height of its bounces,
+    a t²/8, length. energy: their largest energy divided by the disc's mass, a² t²/8, (length/time)². per_free_time:
+    most hits of it in a mean free time of the gas at the start. The most is None for a coefficient e = 0: the disc then
+    collides without end at one instant.
     """
 
-    hits: tuple[float, float]
+    hits: tuple[float, float | None]
     height: float
     energy: float
-    per_free_time: float
+    per_free_time: float | None
 
 
 def rest(restitution: Restitution, duration: float, free_time: float, press: Vector) -> Rest | None:
@@ -66,9 +66,10 @@ def rest(restitution: Restitution, duration: float, free_time: float, press: Vec
     force = math.hypot(*press)
     if force == 0 or restitution.elastic:
         return None
-    least = min(restitution.normal, restitution.wall)
-    most = 1 / (least * duration) if least > 0 else math.inf
-    return Rest((1 / duration, most), force * duration**2 / 8, (force * duration) ** 2 / 8, most * free_time)
+    e = min(restitution.normal, restitution.wall)
+    most = 1 / (e * duration) if e > 0 else None
+    height, energy = force * duration**2 / 8, (force * duration) ** 2 / 8
+    return Rest((1 / duration, most), height, energy, None if most is None else most * free_time)
 
 
 def contact_duration(
