@@ -8,6 +8,12 @@ from idealgas.physics.contact_value import contact_value
 DENSEST = 0.9  # packing fraction beyond which the contact value is not asked for
 
 
+def pair_encounters(number: int, mean_diameter: float, packing_fraction: float, box: tuple[float, float]) -> float:
+    """Encounters of one disc with the others per length that it moves, 1/length; arguments as below."""
+    chi = contact_value(min(packing_fraction, DENSEST))
+    return math.sqrt(2.0) * mean_diameter * (number - 1) / (box[0] * box[1]) * chi
+
+
 def encounters_of_discs(
     number: int,
     mean_diameter: float,
@@ -22,8 +28,7 @@ def encounters_of_discs(
     box: width and height, length. periodic: whether the sides along x and along y are. Sides that leave the largest
     disc less room than its diameter do not count.
     """
-    chi = contact_value(min(packing_fraction, DENSEST))
-    pairs = math.sqrt(2.0) * mean_diameter * (number - 1) / (box[0] * box[1]) * chi
+    pairs = pair_encounters(number, mean_diameter, packing_fraction, box)
     room = [length - 2.0 * largest_radius for length in box]
     paths = [
         free if free > 2.0 * largest_radius else length * on

@@ -23,7 +23,7 @@ from idealgas.log import LogWriter
 from idealgas.run.effects.bundle import make_effects, whole_state
 from idealgas.run.energy import Energy, energy_of, is_conserved
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state
-from idealgas.run.watch import EMPTY_EPOCHS, Watch
+from idealgas.run.watch import Watch
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
@@ -132,8 +132,8 @@ def simulate(
     The first run with a set of effects compiles its machine code, which takes some seconds and is kept on disk.
 
     Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written;
-    UserError, with a log that can be read and resumed, if a disc collides without end at one instant, or if a run that
-    has no end in time finds no event in EMPTY_EPOCHS epochs.
+    UserError, with a log that can be read and resumed, if a disc collides without end at one instant, or if the events
+    that are to end the run do not come (EMPTY_EPOCHS, EXPECTED_COLLISIONS).
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)
@@ -178,7 +178,7 @@ class LoggedRun:
         self._compilation = compilation
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
-        self._watch = Watch(simulation, self._begun)
+        self._watch = Watch(simulation, self._stop, self._begun)
         self._kept = dict(simulation.method.kept)
 
     def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
@@ -240,14 +240,22 @@ class LoggedRun:
         self._snapshots += 1
 
     def _begin_epoch(self) -> None:
-        """Audit the start of an epoch, and keep the state from which all else can be rebuilt, if anything happened."""
-        simulation = self._simulation
-        if self._watch.sample_due:
+        """Audit the start of an epoch, and keep the state from which all else can be rebuilt, if anything happened.
+
+        UserError, after the log is closed, if the end of the run does not come.
+        """
+        simulation, watch = self._simulation, self._watch
+        missing = watch.in_vain()
+        if watch.sample_due or missing:
             self._observe(simulation.time, simulation.gas, simulation.audit())
-        if self._watch.checkpoint_due(self._scene.log.checkpoint_every):
+        if watch.checkpoint_due(self._scene.log.checkpoint_every) or missing:
             self._checkpoint()
-        elif self._watch.in_vain(self._stop):
-            self._end_in_vain()
+        if missing:
+            self._log.close()
+            raise UserError(
+                f"{self._log.path}: {missing}, up to t = {simulation.time:g}, so the end of the run may never come; "
+                "the log can be read, and resumed (--until gives it an end in time)"
+            )
 
     def _checkpoint(self) -> None:
         """Store the state at the start of an epoch."""
@@ -255,17 +263,6 @@ class LoggedRun:
         state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.without_positions))
         whole = by_name(whole_state(simulation.effects)) | by_name(simulation.method.kept)
         self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals) | whole)
-
-    def _end_in_vain(self) -> None:
-        """Close the log so that it can be resumed from here, and raise UserError: no event comes to end the run."""
-        simulation = self._simulation
-        self._observe(simulation.time, simulation.gas, simulation.audit())
-        self._checkpoint()
-        self._log.close()
-        raise UserError(
-            f"{self._log.path}: no event in {EMPTY_EPOCHS} epochs, up to t = {simulation.time:g}, so the end of the "
-            "run may never come; the log can be read, and resumed (--until gives it an end in time)"
-        )
 
     def _observe(self, time: float, gas: Gas, audit: Audit) -> None:
         self._overlap = max(self._overlap, audit.overlap)

@@ -6,12 +6,18 @@ import numpy as np
 
 from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
 from idealgas.engine.simulation import Simulation, Stop
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import next_change
+from idealgas.physics.encounters import pair_encounters
 
 EMPTY_EPOCHS = 10_000
 """So many epochs in a row without an event end a run that has no end in time.
 
 Kinetic theory expects 4 events a disc or more in every epoch.
 """
+
+EXPECTED_COLLISIONS = 10_000
+"""So many expected collisions of two discs of which none comes end a run that only such collisions can end."""
 
 QUIET_SAMPLES = 64
 """So many epochs in a row without an event have a sample; those after them have none."""
@@ -21,19 +27,30 @@ OVERDUE = 8
 
 
 class Watch:
-    """Epochs in a row without an event, and how many events there were at the last checkpoint."""
+    """What of a run has not come: epochs in a row without an event, and collisions expected since the last one.
 
-    def __init__(self, simulation: Simulation, begun: bool) -> None:
-        """Begin at the start of an epoch; begun: whether a checkpoint of it is there already."""
+    A run that is resumed begins to count anew.
+    """
+
+    def __init__(self, simulation: Simulation, stop: Stop, begun: bool) -> None:
+        """Begin at the start of an epoch of a run to a stop; begun: whether a checkpoint of it is there already."""
         self._simulation = simulation
         self._events_at_checkpoint = simulation.totals.events if begun else -1
+        never = Stop()
+        self._endless = stop.time == never.time and stop.trials == never.trials
+        self._needs_pairs = self._endless and stop.events == never.events
         self._empty = 0
-        self._told = False
+        self._missed = 0.0
+        self._overdue: float = OVERDUE
 
     def end_epoch(self) -> None:
         """Take note of the epoch that is over, before the next one begins."""
-        happened = self._simulation.counters.events > self._simulation.totals.events
-        self._empty = 0 if happened else self._empty + 1
+        simulation = self._simulation
+        before, now = simulation.totals, simulation.counters
+        self._empty = 0 if now.events > before.events else self._empty + 1
+        if self._needs_pairs:
+            met = now.disc_collisions > before.disc_collisions
+            self._missed = 0.0 if met else self._missed + _expected_collisions(simulation.gas, simulation.length)
 
     def checkpoint_due(self, every: int) -> bool:
         """Whether the start of this epoch is to be kept: every so many epochs, if anything has happened since."""
@@ -48,21 +65,34 @@ class Watch:
         """Whether the start of this epoch is to have a sample."""
         return self._empty < QUIET_SAMPLES
 
-    def in_vain(self, stop: Stop) -> bool:
-        """Whether the run is to end, as the events that its stop needs do not come."""
-        return self._empty >= EMPTY_EPOCHS and stop.time == Stop().time and stop.trials == Stop().trials
+    def in_vain(self) -> str:
+        """What has not come, if the run cannot be expected to reach its stop; else empty."""
+        simulation = self._simulation
+        if not self._endless or math.isfinite(next_change(simulation.effects, simulation.time)):
+            return ""
+        if self._empty >= EMPTY_EPOCHS:
+            return f"no event in {EMPTY_EPOCHS} epochs"
+        if self._missed >= EXPECTED_COLLISIONS:
+            return f"no two discs have met where {EXPECTED_COLLISIONS} collisions were to be expected"
+        return ""
 
     def busy(self) -> str:
         """One line, once, if few discs make most of the events of an epoch that has far too many; else empty."""
         simulation, n = self._simulation, len(self._simulation.gas)
         events = simulation.counters.events - simulation.totals.events
-        too_many = OVERDUE * max(EVENTS_PER_DISC * n, FEWEST_EVENTS)
-        if self._told or simulation.method.single_epoch or events <= too_many:
+        if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, FEWEST_EVENTS):
             return ""
         share = np.cumsum(np.sort(simulation.method.discs.record.count)[::-1], dtype=float)
         few = int(share.searchsorted(share[-1] / 2, "right")) + 1
         if share[-1] == 0 or few > math.ceil(n / 4):
+            self._overdue *= 2
             return ""
-        self._told = True
+        self._overdue = math.inf
         span = f"from t = {simulation.time:g} to t = {simulation.last_event_time:g}"
         return f"{few} of {n} discs make{'s' * (few == 1)} most of the events {span}"
+
+
+def _expected_collisions(gas: Gas, duration: float) -> float:
+    """Collisions of two discs to be expected in a time, by kinetic theory; a common motion brings none."""
+    n, speed = len(gas), float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
+    return n / 2 * pair_encounters(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box) * speed * duration
