@@ -133,7 +133,7 @@ def simulate(
 
     Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written;
     UserError, with a log that can be read and resumed, if a disc collides without end at one instant, or if the events
-    that are to end the run do not come (EMPTY_EPOCHS, EXPECTED_COLLISIONS).
+    that are to end the run do not come (see `idealgas.run.watch`).
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)

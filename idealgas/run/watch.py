@@ -11,13 +11,17 @@ from idealgas.physics.effects import next_change
 from idealgas.physics.encounters import pair_encounters
 
 EMPTY_EPOCHS = 10_000
-"""So many epochs in a row without an event end a run that has no end in time.
+"""A run that has no end in time ends after so many epochs in a row without an event, if that cannot be chance."""
 
-Kinetic theory expects 4 events a disc or more in every epoch.
+EXPECTED = 10_000
+"""It cannot be chance where so many collisions of two discs were to be expected, by kinetic theory.
+
+The same number, and not one collision among all events, ends a run that only such collisions can end.
 """
 
-EXPECTED_COLLISIONS = 10_000
-"""So many expected collisions of two discs of which none comes end a run that only such collisions can end."""
+HOPELESS = 1e-9
+"""Where no more collisions than these are to be expected in an epoch, nobody can wait for one: no disc moves past
+another."""
 
 QUIET_SAMPLES = 64
 """So many epochs in a row without an event have a sample; those after them have none."""
@@ -27,7 +31,7 @@ OVERDUE = 8
 
 
 class Watch:
-    """What of a run has not come: epochs in a row without an event, and collisions expected since the last one.
+    """What of a run has not come: events, or collisions of two discs where only they can end it.
 
     A run that is resumed begins to count anew.
     """
@@ -39,25 +43,30 @@ class Watch:
         never = Stop()
         self._endless = stop.time == never.time and stop.trials == never.trials
         self._needs_pairs = self._endless and stop.events == never.events
-        self._empty = 0
-        self._missed = 0.0
+        self._empty = 0  # epochs in a row without an event
+        self._expected = 0.0  # collisions of two discs to be expected in these
+        self._missed = 0.0  # the same since two discs collided, where only they end the run
         self._overdue: float = OVERDUE
 
     def end_epoch(self) -> None:
         """Take note of the epoch that is over, before the next one begins."""
         simulation = self._simulation
         before, now = simulation.totals, simulation.counters
-        self._empty = 0 if now.events > before.events else self._empty + 1
-        if self._needs_pairs:
-            met = now.disc_collisions > before.disc_collisions
-            self._missed = 0.0 if met else self._missed + _expected_collisions(simulation.gas, simulation.length)
+        empty, apart = now.events == before.events, now.disc_collisions == before.disc_collisions
+        expected = 0.0
+        if self._endless and (empty or (apart and self._needs_pairs)):
+            expected = _expected_collisions(simulation.gas, simulation.length)
+        self._empty, self._expected = (self._empty + 1, self._expected + expected) if empty else (0, 0.0)
+        self._missed = self._missed + expected if apart and self._needs_pairs else 0.0
+        if math.isfinite(next_change(simulation.effects, simulation.time)):  # all may be otherwise then
+            self._empty, self._expected, self._missed = min(self._empty, QUIET_SAMPLES), 0.0, 0.0
 
     def checkpoint_due(self, every: int) -> bool:
         """Whether the start of this epoch is to be kept: every so many epochs, if anything has happened since."""
         simulation = self._simulation
         due = simulation.epoch % every == 0 and simulation.totals.events > self._events_at_checkpoint
         if due:
-            self._events_at_checkpoint, self._empty = simulation.totals.events, 0
+            self._events_at_checkpoint, self._empty, self._expected = simulation.totals.events, 0, 0.0
         return due
 
     @property
@@ -67,13 +76,13 @@ class Watch:
 
     def in_vain(self) -> str:
         """What has not come, if the run cannot be expected to reach its stop; else empty."""
-        simulation = self._simulation
-        if not self._endless or math.isfinite(next_change(simulation.effects, simulation.time)):
+        if not self._endless:
             return ""
-        if self._empty >= EMPTY_EPOCHS:
-            return f"no event in {EMPTY_EPOCHS} epochs"
-        if self._missed >= EXPECTED_COLLISIONS:
-            return f"no two discs have met where {EXPECTED_COLLISIONS} collisions were to be expected"
+        hopeless = self._expected < HOPELESS * self._empty
+        if self._empty >= EMPTY_EPOCHS and (self._expected >= EXPECTED or hopeless):
+            return f"no event in {self._empty} epochs"
+        if self._missed >= EXPECTED:
+            return f"no two discs have met where {EXPECTED} collisions were to be expected"
         return ""
 
     def busy(self) -> str:
