@@ -186,7 +186,10 @@ def _rates_without_positions(
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials)
+    fastest = math.sqrt(2 * temperature * math.log(len(gas)) / mass.min())  # of so many discs in equilibrium
+    rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
+    rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough)
 
 
 def _species(gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
