@@ -93,7 +93,7 @@ class Watch:
             return ""
         share = np.cumsum(np.sort(simulation.method.discs.record.count)[::-1], dtype=float)
         few = int(share.searchsorted(share[-1] / 2, "right")) + 1
-        if share[-1] == 0 or few > math.ceil(n / 4):
+        if share[-1] == 0 or n == 1 or few > math.ceil(n / 4):
             self._overdue *= 2
             return ""
         self._overdue = math.inf
