@@ -46,5 +46,15 @@ def info(log: Log) -> dict[str, Any]:
             "checkpoints": len(log.checkpoints),
             "observables": sorted(log.observables),
             "summary": log.summary,
+            **_reference_speed(log),
         },
     }
+
+
+def _reference_speed(log: Log) -> dict[str, Any]:
+    """Where v_ref may rise: that of the start and that of the end, length/time, and how often it was raised."""
+    if "v_ref" not in log.observables:
+        return {}
+    values = log.observables["v_ref"][1]
+    raises = int((values[1:] != values[:-1]).sum())
+    return {"v_ref": {"start": float(values[0]), "end": float(values[-1]), "raises": raises}}

@@ -1,7 +1,7 @@
 """The simulation of a gas through the epochs of its run."""
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
@@ -11,13 +11,20 @@ from idealgas.engine.audit import Audit, audit
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, synchronise
 from idealgas.errors import UserError
-from idealgas.events import EventBatch
+from idealgas.events import Column, EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
-TRAJECTORY = 3
-"""Version of the trajectory, raised by hand whenever the laws would continue an older log differently than it began."""
+TRAJECTORY = 4
+"""Version of the trajectory, raised by hand whenever a scene's log comes out differently than it did."""
+
+GOES_ON = frozenset({3, TRAJECTORY})
+"""Versions of logs that are gone on with as they began.
+
+Since version 4 a scene may have other defaults: the contact duration under a constant force, and a Monte Carlo v_ref
+that rises. A log of version 3 has its contact duration in its scene, and its v_ref stays as it is.
+"""
 
 
 class Method(Protocol):
@@ -27,11 +34,18 @@ class Method(Protocol):
         discs: records of the discs in the present epoch.
         without_positions: whether its discs have no positions; those of the gas then stay as they are.
         single_epoch: whether the run must be one epoch, because its digits would be lost between epochs.
+        kept: what of the method itself, beside the discs, the next epochs follow from: numbers by their columns in the
+            log; `advance` returns after each change.
     """
 
     discs: Discs
     without_positions: bool
     single_epoch: bool
+
+    @property
+    def kept(self) -> Mapping[Column, float]:
+        """See above."""
+        ...
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch with a gas at local time 0."""

@@ -1,5 +1,6 @@
 """What a run puts into its log: columns, together with where their values come from."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -24,8 +25,13 @@ AUDITED = (
 )
 
 
-def layout_of(scene: Scene, gas: Gas, effects: Effects, without_positions: bool) -> LogLayout:
-    """Of the log of a scene; gas, effects: at time 0. without_positions: the method does not know where discs are."""
+def layout_of(
+    scene: Scene, gas: Gas, effects: Effects, without_positions: bool, kept: Iterable[Column] = ()
+) -> LogLayout:
+    """Of the log of a scene; gas, effects: at time 0.
+
+    without_positions: the method does not know where discs are. kept: what it keeps beside the discs.
+    """
     x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
     return LogLayout(
         walls=[Wall(wall.name, wall.start, wall.end) for wall in number_walls(scene)],
@@ -34,8 +40,8 @@ def layout_of(scene: Scene, gas: Gas, effects: Effects, without_positions: bool)
         disc_columns=bundle.disc_constants(effects),
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
-        checkpoint_values=(*TOTALS, *bundle.whole_state(effects)),
-        observables=(*AUDITED, *TOTALS, *observed(gas, effects)),
+        checkpoint_values=(*TOTALS, *kept, *bundle.whole_state(effects)),
+        observables=(*AUDITED, *TOTALS, *kept, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,
@@ -78,6 +84,6 @@ def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
     return sample | bundle.whole_state(effects, local_time)
 
 
-def by_name(values: dict[Column, Any]) -> dict[str, Any]:
+def by_name(values: Mapping[Column, Any]) -> dict[str, Any]:
     """The values by the names of their columns."""
     return {column.name: value for column, value in values.items()}

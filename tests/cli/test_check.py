@@ -109,3 +109,41 @@ def test_the_shown_scene_is_a_scene(tmp_path):
     copy = tmp_path / "copy.toml"
     copy.write_text(shown[: shown.index("Discs at the start")])
     assert check(copy).stdout == shown
+
+
+RESTING = """
+box.size = [10, 10]
+gravity.acceleration = [0, -1]
+restitution.wall = 0.9
+run.until = 20
+species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1 }]
+"""
+
+
+@pytest.mark.parametrize(
+    ("override", "said", "warned"),
+    [
+        ("restitution.wall=0.9", "at rest: a disc goes on bouncing, 13.72 to 15.25 times per time, up to a height", ""),
+        (
+            "restitution.contact_duration=1e-6",
+            "1e+06 to 1.111e+06 times per time",
+            "warning: a disc at rest makes up to",
+        ),
+        (
+            "restitution.wall=0",
+            "",
+            "warning: with a coefficient of restitution of 0, a disc that comes to rest collides",
+        ),
+        ("gravity=", "", ""),
+    ],
+)
+def test_discs_that_may_come_to_rest(override, said, warned, tmp_path):
+    (tmp_path / "scene.toml").write_text(RESTING)
+    result = called("check", "scene.toml", "--set", override, folder=tmp_path)
+    assert result.returncode == 0
+    assert ("at rest:" in result.stdout) == bool(said)
+    assert said in result.stdout
+    assert ("warning:" in result.stdout) == bool(warned)
+    assert warned in result.stdout
+    found = json.loads(called("check", "scene.toml", "--json", "--set", override, folder=tmp_path).stdout)
+    assert (found["rest"] is None) == (not said and not warned)

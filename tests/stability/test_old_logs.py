@@ -8,6 +8,9 @@ Where an analysis is to give other numbers, this puts the new ones on record:
 
     python tests/stability/test_old_logs.py
 
+Some defaults are others since trajectory version 4. `cases/logs/defaults` has logs of version 3 that had the old ones,
+and digests of what version 3 wrote in runs without a break: they go on with the values that they began with.
+
 New formats get logs of their own; these are never written again. What thermal walls emit goes through the logarithm of
 the C library, so of such a log no digest is on record: it is compared with a run on this machine. For the other digests
 see test_golden_logs.py.
@@ -32,10 +35,11 @@ from click.testing import CliRunner
 from idealgas_cli.main import main
 from PIL import Image
 
-from idealgas import open_log
+from idealgas import open_log, parse_scene
 
 FOLDER = Path(__file__).parents[1] / "cases" / "logs"
 RESUMED = FOLDER / "resumed.json"
+DEFAULTS = FOLDER / "defaults"
 PACKED = ".h5.xz"
 LOGS = sorted(path.name.removesuffix(PACKED) for path in FOLDER.glob(f"*{PACKED}"))
 
@@ -243,6 +247,24 @@ def test_between_thermal_walls_resumed_to_the_same_events(own):
     if any(not np.array_equal(again[name], values) for name, values in stored.items()):
         pytest.skip("the logarithm of this C library differs in the last bit")
     assert stored_digests(resume(log, HEAT_BATH)) == stored_digests(whole)
+
+
+@pytest.mark.parametrize(("log", "end"), [("resting", "--events 4000"), ("monte-carlo", "--trials 4500")])
+def test_resumed_with_the_defaults_of_before(log, end, tmp_path):
+    path = tmp_path / f"{log}.h5"
+    path.write_bytes(lzma.decompress((DEFAULTS / f"{log}{PACKED}").read_bytes()))
+    with open_log(path) as old:
+        before = old.scene
+        default = parse_scene(re.sub("contact_duration = .*", "", old.scene_text))
+    ran = CliRunner().invoke(main, ["resume", str(path), *shlex.split(end)])
+    assert ran.exit_code == 0, ran.output
+    assert stored_digests(path) == json.loads((DEFAULTS / "resumed.json").read_text())[log]
+    with open_log(path) as new:
+        assert new.attributes["trajectory"] == 3
+        assert new.scene.restitution == before.restitution
+        assert "v_ref" not in new.observables
+    if log == "resting":
+        assert before.restitution.contact_duration < 1e-6 < 0.01 < default.restitution.contact_duration
 
 
 def test_a_difference_is_found():

@@ -13,7 +13,7 @@ from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
-from idealgas.scene import Scene
+from idealgas.scene import Rest, Scene
 from idealgas.scene.defaults import reference_speed
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
@@ -55,7 +55,7 @@ class Forecast:
     duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
     bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
     approximate; empty if their error is below 2 %. premises: sentences on what the start of the gas takes from averages
-    over time, and on its motion as a whole.
+    over time, and on its motion as a whole. rest: what discs do that have come to rest; None if none can.
     """
 
     number: int
@@ -72,6 +72,7 @@ class Forecast:
     species: tuple[SpeciesForecast, ...]
     rough: str = ""
     premises: tuple[str, ...] = ()
+    rest: Rest | None = None
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
@@ -128,6 +129,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
         premises=(*conserved.premises(scene, gas), *conserved.lost_motion(scene, gas)),
+        rest=scene.rest,
     )
 
 
@@ -220,7 +222,10 @@ def _rates_without_positions(
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials)
+    fastest = math.sqrt(2 * temperature * math.log(len(gas)) / mass.min())  # of so many discs in equilibrium
+    rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
+    rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough)
 
 
 def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:

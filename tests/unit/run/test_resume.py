@@ -133,6 +133,7 @@ def test_a_wrong_end(finished):
 
 
 def test_other_laws_by_their_version(finished, monkeypatch):
+    monkeypatch.setattr(going_on, "GOES_ON", {99})
     monkeypatch.setattr(going_on, "TRAJECTORY", 99)
     with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion, this program has vers"):
         resume(finished, ["run.events=9000"])
