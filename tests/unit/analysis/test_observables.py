@@ -23,6 +23,7 @@ from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature.figure import temperature_figure
 from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.transport.measure import transport
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -107,7 +108,8 @@ def test_log_without_events_is_refused(tmp_path):
 def test_effects_are_not_ignored(log, monkeypatch):
     monkeypatch.setattr(Scene, "called", (Effect("magnets", (), Properties(uniform=False)),))
     with pytest.raises(UserError, match="no answer for a gas with magnets"):
-        pressure(log)
+        transport(log)
+    assert "magnets" in pressure(log).no_theory
 
 
 def test_gas_at_rest_is_refused(tmp_path):
