@@ -68,6 +68,18 @@ def collide_at_random(record, ids, i, j, time, offset, effects):
     record_collision(effects.restitution, ids[U(j)], time)
 
 
+@inline
+def too_fast(a, b, fastest_square):
+    """Square of the speed of the faster one of two discs, (length/time)², if it exceeds a bound; else 0.
+
+    fastest_square: the bound, None if there is none.
+    """
+    if fastest_square is not None:
+        square = max(a.vx * a.vx + a.vy * a.vy, b.vx * b.vx + b.vy * b.vy)
+        return square if square > fastest_square else 0.0
+    return 0.0
+
+
 @njit
 def advance_trials(
     record, ids, effects, until, most_collisions, most_trials,
@@ -81,8 +93,8 @@ def advance_trials(
 
     most_collisions, most_trials: numbers still allowed. key: of the epoch's random numbers. trial_time: mean time
     between trials. fastest: largest relative speed times sum of the radii, length²/time. fastest_square: square of a
-    disc's largest speed, (length/time)². one_sided: whether impact parameters have one sign only. batch: None where no
-    log is kept. counters: (1,) COUNTERS, updated.
+    disc's largest speed, (length/time)², or None. one_sided: whether impact parameters have one sign only. batch: None
+    where no log is kept. counters: (1,) COUNTERS, updated.
     """
     counter = counters[0]
     number = record.shape[0]
@@ -117,10 +129,9 @@ def advance_trials(
         rows += write_pair(batch, rows, epoch_start + time, record, ids, i, j, effects)
         collisions += 1
         counter.time = time
-        square = max(a.vx * a.vx + a.vy * a.vy, b.vx * b.vx + b.vy * b.vy)
-        if square > fastest_square:
+        square = too_fast(a, b, fastest_square)
+        if square > 0.0:
             break
-        square = 0.0
     counter.events += collisions
     counter.disc_collisions += collisions
     return rows, reached, excess, square
@@ -159,10 +170,10 @@ class MonteCarlo:
         """Try pairs, see `advance_trials`; UserError if a pair is faster than a given v_ref allows."""
         record, ids, _ = self.discs
         v_ref, most = self.v_ref, min(limits.events, limits.collisions)
-        fastest_disc = FASTEST_DISC * v_ref if V_REF in self.kept else math.inf
+        fastest_square = (FASTEST_DISC * v_ref) ** 2 if V_REF in self.kept else None
         rows, reached, excess, square = advance_trials(
             record, ids, self._effects, limits.until, most, limits.trials,
-            epoch_key(self._seed, epoch_start), self._trial_time(v_ref), self._reach * v_ref, fastest_disc**2,
+            epoch_key(self._seed, epoch_start), self._trial_time(v_ref), self._reach * v_ref, fastest_square,
             self._one_sided, epoch_start, batch, counters,
         )  # fmt: skip
         if excess > 0:
