@@ -81,7 +81,7 @@ def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
     if not is_ergodic(scene, gas):
         found.append(
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
-            "temperatures along x and y differ for ever. Give them velocities of their own."
+            "temperatures along x and y may differ for ever. Give them velocities of their own."
         )
     velocity = common_motion(scene, gas)
     if (share := share_of_motion(gas, velocity)) > SAID_FROM:
