@@ -33,7 +33,7 @@ HALF = np.int64(32)
 LOW_HALF = np.int64((1 << 32) - 1)
 SMALL = 2.0**62  # terms that are one word
 LARGEST = 2.0**100
-HALF_FULL = 1 << 62  # of the upper word of a sum
+FULL = 1 << 61  # of the upper word of a sum, so that it can be stored
 
 
 class SumRangeError(Exception):
@@ -64,7 +64,7 @@ def add_large(total, units):
     """Add a number of units of 2^62 or more, which is whole, to a SUM."""
     if not abs(units) < LARGEST:
         raise SumRangeError("a term of a sum is too large or not a number")
-    if abs(total.high) > HALF_FULL:
+    if abs(total.high) > FULL:
         raise SumRangeError("a sum is too large")
     high = math.floor(units * 2.0**-64)
     add_words(total, np.int64(high), np.uint64(units - high * 2.0**64))
