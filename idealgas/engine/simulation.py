@@ -13,7 +13,10 @@ from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCas
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
 from idealgas.gas.state import Gas
+from idealgas.physics import momentum_flow
 from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
+from idealgas.physics.exact_sum import SumRangeError
+from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
 TRAJECTORY = 4
@@ -145,7 +148,7 @@ class Simulation:
 
         events: largest number of events in this call. pause: time at which to return with `paused` set, unless it is
         later than the end of the epoch or the stop; it changes no event. UserError if a disc has collisions without end
-        at one instant.
+        at one instant, or if a sum exceeds its range.
         """
         done = self.counters
         end = min(self.length, stop.time - self.time, LATEST)
@@ -158,7 +161,9 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-        except EventCascadeError as error:  # raised by a kernel, which cannot tell the time
+            if self.effects.flow is not None:
+                momentum_flow.settle(self.effects.flow)
+        except (EventCascadeError, SumRangeError) as error:  # raised by a kernel, which cannot tell the time
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0]["time"])
@@ -207,12 +212,19 @@ class Simulation:
         return self.time + float(self._counters[0]["time"])
 
     def state(self) -> tuple[Gas, Effects]:
-        """Copies of the gas and its images, and the effects, where the last call of `advance` ended.
+        """Copies of the gas, its images and its momentum flow, and the effects, where the last `advance` ended.
 
         That is its time limit or, if it was not reached, the time of the last event.
         """
-        periodic = copy_of(self.effects.periodic)
-        return self._synchronised(self._local_now, periodic), self.effects._replace(periodic=periodic)
+        periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
+        self._complete_flights(self._local_now, flow)
+        effects = self.effects._replace(periodic=periodic, flow=flow)
+        return self._synchronised(self._local_now, periodic), effects
+
+    def _complete_flights(self, local_time: float, flow: MomentumFlow | None) -> None:
+        """Add to a momentum flow what is in the air at a local time."""
+        if flow is not None:
+            momentum_flow.complete_flights(self.method.discs.record, local_time, self.effects.gravity, flow)
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
         """The gas at a local time; the records do not change."""
@@ -228,6 +240,7 @@ class Simulation:
 
     def next_epoch(self) -> None:
         """Move all discs to the end of the epoch and begin the next one there."""
+        self._complete_flights(self.length, self.effects.flow)
         self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.counters
         end_epoch(self.effects, self.length)
         self.time += self.length

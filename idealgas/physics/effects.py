@@ -12,6 +12,7 @@ import numpy as np
 
 from idealgas.physics import periodic, piston, restitution, wall
 from idealgas.physics.gravity import Gravity
+from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
@@ -30,6 +31,7 @@ class Effects(NamedTuple):
         thermal: walls with a temperature.
         piston: (1,) PISTON.
         wall_energy: (walls,) f8, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
+        flow: momentum that the gas carries and passes on; None where it is not recorded.
     """
 
     gravity: Gravity | None = None
@@ -40,6 +42,7 @@ class Effects(NamedTuple):
     thermal: Thermal | None = None
     piston: np.ndarray | None = None
     wall_energy: np.ndarray | None = None
+    flow: MomentumFlow | None = None
 
 
 AT_BEGIN: dict[str, Callable[[Any, float], None]] = {"periodic": periodic.begin_epoch, "segments": wall.begin_epoch}

@@ -11,6 +11,7 @@ from idealgas.physics.effects import Effects
 from idealgas.run.effects import bundle
 from idealgas.run.effects.slice import Arrays, Values
 from idealgas.run.energy import Energy, energy_of
+from idealgas.run.sums import kept_sums, observed_sums, restore_sums
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
 
@@ -40,7 +41,7 @@ def layout_of(
         disc_columns=bundle.disc_constants(effects),
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
-        checkpoint_values=(*TOTALS, *kept, *bundle.whole_state(effects)),
+        checkpoint_values=(*TOTALS, *kept, *whole_state(effects)),
         observables=(*AUDITED, *TOTALS, *kept, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
@@ -66,9 +67,15 @@ def snapshot_state(gas: Gas, effects: Effects, without_positions: bool) -> Array
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
 
 
+def whole_state(effects: Effects) -> Values:
+    """What a checkpoint keeps of the effects as a whole, and of the sums, at the start of an epoch."""
+    return bundle.whole_state(effects) | kept_sums(effects)
+
+
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
     """The gas at a checkpoint; the effects get the state that they had there. gas: any of the same discs."""
     bundle.restore_effects(effects, checkpoint)
+    restore_sums(effects, checkpoint.arrays)
     arrays = checkpoint.arrays
     return replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
 
@@ -81,7 +88,7 @@ def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
     for part in Energy._fields:
         if (column := parts.get(part)) is not None:
             sample[column] = getattr(energy, part)
-    return sample | bundle.whole_state(effects, local_time)
+    return sample | bundle.whole_state(effects, local_time) | observed_sums(effects)
 
 
 def by_name(values: Mapping[Column, Any]) -> dict[str, Any]:

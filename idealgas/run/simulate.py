@@ -20,9 +20,10 @@ from idealgas.errors import UserError
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
 from idealgas.log import LogWriter
-from idealgas.run.effects.bundle import make_effects, whole_state
+from idealgas.physics.effects import Effects
+from idealgas.run.effects.bundle import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
-from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state
+from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
 from idealgas.run.watch import Watch
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
@@ -221,8 +222,8 @@ class LoggedRun:
             simulation.advance(self._stop, None, events, self._next_snapshot)
         if self._kept != simulation.method.kept:
             self._kept = dict(simulation.method.kept)
-            gas = simulation.state()[0]
-            self._observe(simulation.last_event_time, gas, simulation.audit_of(gas))
+            gas, effects = simulation.state()
+            self._observe(simulation.last_event_time, gas, effects, simulation.audit_of(gas))
 
     @property
     def _next_snapshot(self) -> float:
@@ -235,7 +236,7 @@ class LoggedRun:
         gas, effects = simulation.state()
         state = by_name(snapshot_state(gas, effects, simulation.method.without_positions))
         if time > simulation.time and not simulation.epoch_over:
-            self._observe(time, gas, simulation.audit_of(gas))
+            self._observe(time, gas, effects, simulation.audit_of(gas))
         self._log.snapshot(time, self._snapshots, state)
         self._snapshots += 1
 
@@ -247,7 +248,7 @@ class LoggedRun:
         simulation, watch = self._simulation, self._watch
         missing = watch.in_vain()
         if watch.sample_due or missing:
-            self._observe(simulation.time, simulation.gas, simulation.audit())
+            self._observe(simulation.time, simulation.gas, simulation.effects, simulation.audit())
         if watch.checkpoint_due(self._scene.log.checkpoint_every) or missing:
             self._checkpoint()
         if missing:
@@ -264,11 +265,11 @@ class LoggedRun:
         whole = by_name(whole_state(simulation.effects)) | by_name(simulation.method.kept)
         self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals) | whole)
 
-    def _observe(self, time: float, gas: Gas, audit: Audit) -> None:
+    def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:
         self._overlap = max(self._overlap, audit.overlap)
         self._outside = max(self._outside, audit.outside)
         simulation = self._simulation
-        sample = by_name(observed(gas, simulation.effects, time - simulation.time)) | by_name(self._kept)
+        sample = by_name(observed(gas, effects, time - simulation.time)) | by_name(self._kept)
         self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.counters) | sample)
 
     def _finish(self, seconds: float) -> Summary:
@@ -276,9 +277,9 @@ class LoggedRun:
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.last_event_time
-        gas = simulation.state()[0]
-        self._observe(end_time, gas, simulation.audit_of(gas))
-        start, end = self._start_energy, energy_of(gas, simulation.effects, end_time - simulation.time)
+        gas, effects = simulation.state()
+        self._observe(end_time, gas, effects, simulation.audit_of(gas))
+        start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
         totals = simulation.counters
         return Summary(

@@ -9,6 +9,7 @@ from idealgas.analysis.core.composition import Composition
 from idealgas.analysis.core.equilibrium import Ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.core.window import Window
 from idealgas.analysis.theory import conserved, hard_discs
@@ -98,7 +99,7 @@ def expected_rates(
 
 
 def collision_rates(
-    discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts
+    discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts | SampledImpacts
 ) -> tuple[CollisionRate, ...]:
     """Measured collision rates of all ordered pairs of species, in 1/time.
 

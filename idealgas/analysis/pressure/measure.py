@@ -26,6 +26,7 @@ from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.samples import SampledImpacts, sampled
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
 from idealgas.analysis.core.wall_pressure import WallGauge
@@ -62,10 +63,10 @@ class Pressure(Result):
 
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
     packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
-    that applies. collision_rates: of each pair of species. free_paths: of each species. no_theory: why there is no
-    theory of this gas in its box, as part of a sentence; empty if there is. mechanical: pressure of every wall of a gas
-    without an equation of state; None for others. For such a gas area is what it has on average, temperature the mean
-    of m v²/2 over discs and time, and there are no routes, theories, rates and paths.
+    that applies. collision_rates: of each pair of species. free_paths: of each species; empty without events.
+    no_theory: why there is no theory of this gas in its box, as part of a sentence; empty if there is. mechanical:
+    pressure of every wall of a gas without an equation of state; None for others. For such a gas area is what it has on
+    average, temperature the mean of m v²/2 over discs and time, and there are no routes, theories, rates and paths.
     """
 
     window: Window
@@ -117,7 +118,8 @@ def pressure(
 
     The routes: momentum given to each wall per time and length, and by Clausius's virial theorem that given to all
     walls and that passed on in collisions of discs. Theory is that of hard discs in this box, see `hard_disc_theories`;
-    collision rates and free paths come from the same events.
+    collision rates and free paths come from the same events. Without events the sums of `log.pressure = true` give the
+    same from sample to sample, but no free paths.
 
     Where the virial theorem needs further terms, or no temperature is known, there is no such Z: with gravity, wall
     segments, a piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical
@@ -126,7 +128,7 @@ def pressure(
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read.
 
-    Raises UserError if no disc moves or if there are no events in the window.
+    Raises UserError if no disc moves, or if there are no events or too few samples in the window.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
@@ -135,11 +137,16 @@ def pressure(
         return _without_theory(log, start, end, progress)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
-    window = measure(log, [moments, impacts], start, end, progress, ("uniform",))
-    gas, discs = log.discs, composition(log.discs)
+    gas, discs, needs = log.discs, composition(log.discs), ("uniform",)
     theory = theory_of(log, discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory)
+    impacts: Impacts | SampledImpacts
+    if log.has_events:
+        moments, events = Moments(), Impacts(len(log.walls), log.periodic)
+        window, impacts = measure(log, [moments, events], start, end, progress, needs), events
+        paths = free_paths(discs, expected, equilibrium, window, moments, events)
+    else:
+        (window, impacts), paths = sampled(log, start, end, needs), ()
     return Pressure(
         window=window,
         number=len(gas),
@@ -149,7 +156,7 @@ def pressure(
         routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, impacts),
         theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
-        free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
+        free_paths=paths,
         no_theory=theory.why_not,
     )
 
@@ -207,7 +214,7 @@ def _routes(
     periodic: tuple[bool, bool],
     theory: BoxTheory,
     window: Window,
-    impacts: Impacts,
+    impacts: Impacts | SampledImpacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]

@@ -11,6 +11,7 @@ from idealgas.log import Checkpoint
 from idealgas.physics.effects import Effects
 from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, wall
 from idealgas.run.effects.slice import Arrays, Slice, Values
+from idealgas.run.sums import make_flow
 from idealgas.scene import Scene
 from idealgas.sides import FIRST_SEGMENT
 
@@ -21,8 +22,8 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     """The effects of a scene at time 0; None for those that it does not call for. gas: its discs at time 0."""
     effects = Effects(**{effect.field: effect.make(scene, gas) for effect in SLICES})
     if any(effect.gives_energy(state) for effect, state in present(effects)):
-        return effects._replace(wall_energy=np.zeros(FIRST_SEGMENT + len(scene.wall)))
-    return effects
+        effects = effects._replace(wall_energy=np.zeros(FIRST_SEGMENT + len(scene.wall)))
+    return effects._replace(flow=make_flow(scene, gas, effects))
 
 
 def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
