@@ -263,7 +263,11 @@ def test_fluctuations_take_samples(made):
     assert long.routes[0].value.independent_samples > 32
 
 
-def test_exact_numbers_are_shown_as_exact():
+def test_exact_numbers_are_shown_as_exact(made):
+    column = ("gravity.acceleration=[0, -0.2]", "log.snapshot_every=0.5", "run.collisions_per_disc=60")
+    isolated = registry.analyse(made(*column), "heat-capacity")
+    assert (isolated.energy.standard_error, isolated.energy.independent_samples) == (0.0, math.inf)
+    assert 0 < isolated.temperature.independent_samples < math.inf
     table = estimates("t", [("walls", Estimate(1.0, 0.0, math.inf)), ("gas", Estimate(1.0, 0.1, 20.0))])
     assert [row[1:4] for row in table.shown] == [["1", "exact", ""], ["1", "0.1", "20"]]
 
