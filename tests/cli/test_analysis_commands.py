@@ -76,7 +76,7 @@ def test_check_names_what_it_judges(path):
     [
         (("species.radius=1.2", "species.count=58"), "above 0.62"),
         (("species.count=1",), "holds less than 3"),
-        (("gravity.acceleration=[0, -0.01]",), "no temperature is known beforehand under gravity"),
+        (("gravity.acceleration=[0, -0.01]",), "no equation of state holds under gravity"),
     ],
 )
 def test_check_without_a_theory_says_so(overrides, why, tmp_path):
