@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, judge
 from idealgas.analysis.core.style import save
@@ -109,7 +108,9 @@ def test_effects_are_not_ignored(log, monkeypatch):
     monkeypatch.setattr(Scene, "called", (Effect("magnets", (), Properties(uniform=False)),))
     with pytest.raises(UserError, match="no answer for a gas with magnets"):
         transport(log)
-    assert "magnets" in pressure(log).no_theory
+    found = pressure(log)
+    assert (found.routes, found.no_theory) == ((), "no equation of state holds under magnets")
+    assert histogram(log, "free-time").no_law == "the gas is not the same everywhere (magnets)"
 
 
 def test_gas_at_rest_is_refused(tmp_path):
@@ -161,19 +162,6 @@ def test_check_fails_when_theory_is_off(log):
     pairs = replace(result.routes[-1].compressibility, standard_error=math.nan)
     with pytest.raises(UserError, match="nothing to check"):
         replace(result, routes=(replace(result.routes[-1], compressibility=pairs),)).check()
-
-
-def test_a_heat_bath_has_no_fixed_energy(tmp_path):
-    """Its laws are Maxwell and Boltzmann's at the walls' temperature, whatever the energy at the start."""
-    with run(tmp_path, "bath.h5", SCENE, "box.left={ thermal = 2 }", "run.collisions_per_disc=20") as bath:
-        found = ensemble(bath)
-        assert math.isinf(found.dof)
-        assert found.temperature == 2.0
-        assert found.of_species == pytest.approx([2.0])
-        (speeds,) = histogram(bath, "speed").distributions
-        assert [test.law_name for test in speeds.tests] == ["Maxwell-Boltzmann"]
-        (flight,) = pressure(bath).free_paths
-        assert flight.speed.theory == pytest.approx(math.sqrt(math.pi * 2 / 2), rel=1e-15)
 
 
 def test_an_error_of_theory_counts_like_one_of_measurement():
