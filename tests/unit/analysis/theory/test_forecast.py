@@ -121,3 +121,14 @@ def test_what_is_beyond_theory_is_not_known(override, beyond):
 def test_the_packing_fraction_is_that_of_the_space_before_a_piston():
     expected = forecast_of("piston={ position = 8, mass = 1, pressure = 10 }")
     assert expected.packing_fraction == pytest.approx(math.pi * 0.1**2 * 1000 / 160, rel=1e-12)
+
+
+def test_trials_are_about_right_where_the_reference_speed_rises():
+    text = """
+        box.size = [10, 10]
+        species = [{ name = "gas", count = 300, radius = 0.05, speed = 1 }]
+        run = { method = "monte_carlo", trials = 9000 }
+    """
+    assert "v_ref rises" in forecast_of(text=text).rough
+    assert forecast_of(text=text.replace("trials = 9000", "trials = 9000, v_ref = 5")).rough == ""
+    assert forecast_of(text=text.replace("trials = 9000", "events = 9000")).rough == ""
