@@ -11,6 +11,7 @@ from log_compare import differences
 from support import ROOT
 
 from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.info import info
 from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.measure import relaxation
 from idealgas.analysis.temperature.measure import temperature
@@ -179,6 +180,8 @@ def test_a_default_reference_speed_is_enough_for_every_run(tmp_path):
         with open_log(path) as log:
             found = acceptance(log)
             values = log.observables["v_ref"][1]
+            told = info(log)["run"]["v_ref"]
+        assert told == {"start": values[0], "end": values[-1], "raises": len(found.raises) - 1}
         deviations.append(found.acceptance.deviation)
         assert values[0] == pytest.approx(5)
         assert (np.diff(values) >= 0).all()

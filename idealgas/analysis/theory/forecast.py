@@ -222,7 +222,8 @@ def _rates_without_positions(
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
-    fastest = math.sqrt(2 * temperature * math.log(len(gas)) / mass.min())  # of so many discs in equilibrium
+    speeds = len(gas) + (scene.run.trials or 0)  # that discs have in a run, each of which may be the largest
+    fastest = math.sqrt(2 * temperature * math.log(speeds) / mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough)

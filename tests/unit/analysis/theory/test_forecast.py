@@ -174,3 +174,14 @@ def test_other_columns_are_not_known():
         "box={ size = [10, 20], left = 'periodic', right = 'periodic' }",
     ):
         assert forecast_of(*dilute, "gravity.acceleration=[0, -0.2]", override).beyond == ("gravity",)
+
+
+def test_trials_are_about_right_where_the_reference_speed_rises():
+    text = """
+        box.size = [10, 10]
+        species = [{ name = "gas", count = 300, radius = 0.05, speed = 1 }]
+        run = { method = "monte_carlo", trials = 9000 }
+    """
+    assert "v_ref rises" in forecast_of(text=text).rough
+    assert forecast_of(text=text.replace("trials = 9000", "trials = 9000, v_ref = 5")).rough == ""
+    assert forecast_of(text=text.replace("trials = 9000", "events = 9000")).rough == ""
