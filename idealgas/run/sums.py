@@ -12,9 +12,9 @@ from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.momentum_flow import COLLISION, KINETIC, TERMS, MomentumFlow
-from idealgas.physics.periodic import periodic_axes
 from idealgas.run.effects.slice import Values
 from idealgas.scene import Scene
+from idealgas.scene.walls import walls_inside
 from idealgas.sides import FIRST_SEGMENT
 
 ACTION, MOMENTUM = "energy time", "mass length/time"
@@ -26,11 +26,11 @@ def make_flow(scene: Scene, gas: Gas, effects: Effects) -> MomentumFlow | None:
     if not scene.log.pressure:
         return None
     momentum = float(gas.mass.mean()) * _speed(scene, gas, effects)
-    encounters = encounters_per_length(gas, periodic_axes(effects.periodic))
+    encounters = encounters_per_length(gas, scene.properties.periodic)
     flight = len(gas) / encounters if encounters > 0 else max(gas.box)
     apart = 2.0 * float(gas.radius.mean())
     tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)
-    faces, species = FIRST_SEGMENT + 2 * len(scene.wall), len(gas.species_names)
+    faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
     push, drag = (make_sums([momentum] * faces) for _ in range(2))
     return MomentumFlow(
         tensor=make_sums(tensor),
