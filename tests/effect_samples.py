@@ -72,7 +72,8 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
         thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
         piston=piston if "piston" in names else None,
-        wall_energy=np.zeros(FIRST_SEGMENT + len(walls)),
+        wall_energy=make_sums([1.0] * (FIRST_SEGMENT + len(walls))),
+        dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + len(walls))),
         flow=make_flow(gas, FIRST_SEGMENT + 2 * len(walls), 7 if "rotation" in names else 6),
     )
 
@@ -108,4 +109,4 @@ def allowed(names: set[str]) -> bool:
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:
     """All columns of the event log, and the state of the effects at the end."""
     columns = record(Simulation(gas, method, effects), stop, rows)
-    return [*(column for column in columns if column is not None), effects.wall_energy, *sums_of(effects)]
+    return [*(column for column in columns if column is not None), *sums_of(effects)]

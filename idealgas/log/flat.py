@@ -88,7 +88,9 @@ def flat_samples(
     some = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
     names = [wall.name for wall in walls]
     faces = {name: [f"{name}_{face}" for face in face_names(names)] for name in ("face_push", "face_drag", "face_hits")}
-    vectors = {**VECTORS, **faces, "wall_energy": [f"wall_energy_{name}" for name in names]}
+    given = [f"wall_energy_{name}" for name in names]
+    lost = [f"dissipated_energy_{name}" for name in ("discs", *names)]
+    vectors = {**VECTORS, **faces, "wall_energy": given, "dissipated_energy": lost}
     return flat({"time": time[some]} | {name: values[some] for name, (_, values) in observables.items()}, vectors)
 
 

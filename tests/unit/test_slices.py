@@ -51,7 +51,7 @@ PATHS = {path.relative_to(ROOT / "idealgas").as_posix(): path for path in sorted
 PATHS |= {path.relative_to(ROOT).as_posix(): path for path in sorted((ROOT / "cli").rglob("*.py"))}
 SLICED = {f"{place}/{word}.py" for place in PLACES for word in WORDS}
 
-SUMS = ("wall_energy", "flow")
+SUMS = ("wall_energy", "dissipated", "flow")
 """What the bundle has beside the effects: sums over a run."""
 
 FIELDS = {"gravity", "wall", "rotation", "restitution", "piston"}
