@@ -20,6 +20,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.records import Limits, make_discs
+from idealgas.engine.resolve import energy_of_pair, record_pair_loss
 from idealgas.engine.rows import batch_capacity, write_pair, write_trial
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
@@ -63,7 +64,10 @@ def collide_at_random(record, ids, i, j, time, offset, effects):
     touch_at_random(a, b, offset)
     a.t = time
     b.t = time
+    energy = energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)
     collide(a, b, ids[U(i)], ids[U(j)], effects.restitution, effects.rotation, None, NO_IMAGES)
+    energy -= energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)
+    record_pair_loss(effects.dissipated, energy)
     record_collision(effects.restitution, ids[U(i)], time)
     record_collision(effects.restitution, ids[U(j)], time)
 

@@ -72,12 +72,13 @@ def whole_state(effects: Effects) -> Values:
     return bundle.whole_state(effects) | kept_sums(effects)
 
 
-def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
-    """The gas at a checkpoint; the effects get the state that they had there. gas: any of the same discs."""
+def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> tuple[Gas, Effects]:
+    """The gas and the effects at a checkpoint, of which the state is written into these. gas: any of the same discs."""
     bundle.restore_effects(effects, checkpoint)
-    restore_sums(effects, checkpoint.arrays)
+    effects = restore_sums(effects, checkpoint.arrays)
     arrays = checkpoint.arrays
-    return replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
+    gas = replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
+    return gas, effects
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:

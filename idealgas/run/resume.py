@@ -97,7 +97,7 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     method = method_of(scene, start, v_ref, rises=V_REF.name in log.observables)
     if checkpoint is None:
         return Simulation(start, method, effects)
-    gas = restore(start, effects, checkpoint)
+    gas, effects = restore(start, effects, checkpoint)
     totals = Totals(**{column.name: int(checkpoint.values[column.name]) for column in TOTALS})
     return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, totals)
 
@@ -123,8 +123,7 @@ def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> No
 def _history_of(log: Log, last: Checkpoint | None, scene: Scene) -> RunHistory:
     if last is None:
         return RunHistory(energy_of(log.discs, make_effects(scene, log.discs)))
-    effects = make_effects(scene, log.discs)
-    gas = restore(log.discs, effects, log.checkpoints[0])
+    gas, effects = restore(log.discs, make_effects(scene, log.discs), log.checkpoints[0])
     deepest = {
         name: float(values[times <= last.time].max())
         for name, (times, values) in log.observables.items()

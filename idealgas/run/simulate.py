@@ -24,6 +24,7 @@ from idealgas.physics.effects import Effects
 from idealgas.run.effects.bundle import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
+from idealgas.run.sums import observed_sums
 from idealgas.run.watch import Watch
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
@@ -39,8 +40,9 @@ class Summary:
     of events, the sum of disc_collisions (of two discs) and wall_hits (of discs with walls and the piston). trials:
     number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision. epochs: number of them.
 
-    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston less
-    what walls gave, relative to the energy: rounding errors only; None where collisions between discs lose energy.
+    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston, with
+    what collisions lost and less what walls gave, relative to the largest of these: rounding errors only. None where
+    collisions lose energy in a log of before, which has no account of that.
     deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
     in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
     the overlap is that of all collisions, each of which has one.
@@ -261,8 +263,10 @@ class LoggedRun:
     def _checkpoint(self) -> None:
         """Store the state at the start of an epoch."""
         simulation = self._simulation
-        state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.without_positions))
-        whole = by_name(whole_state(simulation.effects)) | by_name(simulation.method.kept)
+        effects = simulation.effects
+        state = by_name(disc_state(simulation.gas, effects, simulation.method.without_positions))
+        sums = by_name(observed_sums(effects))  # logs of before keep what walls gave as samples have it
+        whole = sums | by_name(whole_state(effects)) | by_name(simulation.method.kept)
         self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals) | whole)
 
     def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:

@@ -12,25 +12,37 @@ from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.momentum_flow import COLLISION, KINETIC, TERMS, MomentumFlow
-from idealgas.physics.periodic import periodic_axes
 from idealgas.run.effects.slice import Values
 from idealgas.scene import Scene
+from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
 
-ACTION, MOMENTUM = "energy time", "mass length/time"
+ENERGY, ACTION, MOMENTUM = "energy", "energy time", "mass length/time"
 TENSOR = ("xx", "xy", "yy", "yx")
 
 
-def make_flow(scene: Scene, gas: Gas, effects: Effects) -> MomentumFlow | None:
-    """Sums of the momentum flow at time 0, if the scene asks for them. gas: its discs at time 0."""
-    if not scene.log.pressure:
-        return None
-    momentum = float(gas.mass.mean()) * _speed(scene, gas, effects)
-    encounters = encounters_per_length(gas, periodic_axes(effects.periodic))
+def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool) -> Effects:
+    """The effects with all sums that a run needs, at time 0. gas: its discs at time 0.
+
+    gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any.
+    """
+    speed, walls = _speed(scene, gas, effects), len(number_walls(scene))
+    energy = 0.5 * float(gas.mass.mean()) * speed**2
+    return effects._replace(
+        wall_energy=make_sums([energy] * walls) if gives_energy else None,
+        dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
+        flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
+    )
+
+
+def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
+    """Sums of the momentum flow. speed: typical one of the discs, length/time."""
+    momentum = float(gas.mass.mean()) * speed
+    encounters = encounters_per_length(gas, scene.properties.periodic)
     flight = len(gas) / encounters if encounters > 0 else max(gas.box)
     apart = 2.0 * float(gas.radius.mean())
     tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)
-    faces, species = FIRST_SEGMENT + 2 * len(scene.wall), len(gas.species_names)
+    faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
     push, drag = (make_sums([momentum] * faces) for _ in range(2))
     return MomentumFlow(
         tensor=make_sums(tensor),
@@ -57,6 +69,10 @@ def _speed(scene: Scene, gas: Gas, effects: Effects) -> float:
 
 def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
     """The sums that there are: the columns of their samples, and the arrays."""
+    if (given := effects.wall_energy) is not None:
+        yield Column("wall_energy", "f8", given.shape, ENERGY), given
+    if (lost := effects.dissipated) is not None:
+        yield Column("dissipated_energy", "f8", lost.shape, ENERGY), lost
     if (flow := effects.flow) is not None:
         yield Column("kinetic_flow", "f8", (3,), ACTION), flow.tensor[KINETIC]
         yield Column("collision_flow", "f8", (4,), ACTION), flow.tensor[COLLISION]
@@ -97,9 +113,17 @@ def _shaped(found: np.ndarray, column: Column) -> np.ndarray:
     return found.reshape(column.shape)
 
 
-def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> None:
-    """Give the sums what a checkpoint kept of them. entries: by name."""
+def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> Effects:
+    """Give the sums what a checkpoint kept of them; the effects without those of which it kept nothing.
+
+    entries: by name. A log of before has what walls gave as floats, which go on rounded to the sum's units, and nothing
+    of what collisions lose.
+    """
     for column, sums in _sums(effects):
-        restore(sums, entries[_kept(column, sums).name])
+        if (entry := entries.get(_kept(column, sums).name, entries.get(column.name))) is not None:
+            restore(sums, entry)
+        else:
+            effects = effects._replace(dissipated=None)
     for column, counts in _counts(effects):
         counts[:] = entries[column.name]
+    return effects

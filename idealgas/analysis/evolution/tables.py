@@ -22,6 +22,7 @@ def evolution_tables(result: Evolution) -> list[Table]:
     course |= {f"{name} beyond the gate": share for name, share in result.beyond.items()}
     energy = {f"energy of {name}": values for name, values in result.parts.items()}
     energy |= {f"given by {name}": values for name, values in result.given.items()}
+    energy |= {f"lost by {name}": values for name, values in result.dissipated.items()}
     if result.piston is not None:
         energy["piston at"] = result.piston
     energy["balance, relative"] = result.balance

@@ -35,5 +35,6 @@ SLICE = Slice(
     _make,
     disc_state=lambda restitution: {LAST_COLLISION: restitution.last},
     gives_energy=lambda restitution: restitution.wall < 1,
+    loses_energy=lambda restitution: True,
     conserves=_conserves,
 )

@@ -2,20 +2,20 @@
 
 import numpy as np
 import pytest
+from effect_samples import make_flow
 from scipy.integrate import quad
+from support import gas_of
 
 from idealgas._jit import aligned
 from idealgas.engine.records import DISC
 from idealgas.engine.resolve import resolve_pair, resolve_segment, resolve_side
 from idealgas.physics.effects import Effects
-from idealgas.physics.exact_sum import make_sums, stored, values
+from idealgas.physics.exact_sum import stored, values
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.momentum_flow import (
     COLLISION,
     KINETIC,
-    TERMS,
     WAITING,
-    MomentumFlow,
     carried,
     complete_flights,
     copy_of,
@@ -26,11 +26,8 @@ from idealgas.run.effects.wall import make_segments
 
 
 def flow_of(faces=4, rough=False):
-    n = 7 if rough else 6
-    push, drag = make_sums([1.0] * faces), make_sums([1.0] * faces)
-    hits = np.zeros(faces, np.int64)
-    terms, waiting = aligned(n, TERMS), np.zeros(1, np.int64)
-    return MomentumFlow(make_sums([1.0] * n), terms, waiting, make_sums([1.0]), push, drag, hits, None, None, 5.0, 4.0)
+    """In a box whose middle is (5, 4)."""
+    return make_flow(gas_of((10, 8), [(1, 1)], 0.0, 0.1), faces, 7 if rough else 6)
 
 
 def discs(*rows):
