@@ -132,12 +132,12 @@ def _analyse(
     try:
         with reading(analysis.reads) as progress:
             results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
+        result = analysis.combine(results)
     except NotApplicableError as error:
         if not check or plot or as_csv:
             raise
         _print_no_theory(error, as_json)
         return
-    result = analysis.combine(results)
     verdict = result.check() if check else None
     if plot:
         from idealgas.analysis.core.style import save
@@ -149,6 +149,8 @@ def _analyse(
     elif as_csv:
         from idealgas.analysis.core import tables
 
+        for sentence in result.premises:
+            click.echo(f"premise: {sentence}", err=True)
         click.echo(tables.as_csv(analysis.tables(result)), nl=False)
     else:
         print_tables(analysis.tables(result))
@@ -181,8 +183,8 @@ def _results(
     if analysis.folders and os.path.isdir(path):
         from idealgas.study.sweep.results import stored
 
-        for label, found in stored(path, analysis.key):
-            yield analysis.restore(found, label)
+        for label, found, origin in stored(path, analysis.key):
+            yield analysis.restore(found, label, origin)
         return
     with open_log(path) as log:
         yield analysis.measure(log, start, end, progress, **options)

@@ -10,7 +10,10 @@ if TYPE_CHECKING:
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[["Progress"], None]]:
-    """Yield the function that shows a run's progress: share done, simulated time, events per second, remaining time."""
+    """Yield the function that shows a run's progress: share done, simulated time, events per second, remaining time.
+
+    Notices of the run are printed to stderr, be it a terminal or not.
+    """
     import time
 
     from rich.console import Console
@@ -34,6 +37,8 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
                 first.append(progress.events)
             rate = (progress.events - first[0]) / (time.perf_counter() - started)
             doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}, remaining"
+            if progress.notice:
+                bar.console.print(progress.notice, markup=False, highlight=False, soft_wrap=True)
             bar.update(task, completed=progress.share, description=doing)
 
         yield show

@@ -1,5 +1,6 @@
 """Command `idealgas check`: errors of a scene, and cost estimate of its run."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import click
@@ -10,7 +11,10 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from idealgas.analysis.theory.forecast import Forecast
-    from idealgas.scene import Scene
+    from idealgas.scene import Rest, Scene
+
+MANY_HITS = 100.0
+"""Hits of a disc at rest in a mean free time of the gas, above which `check` warns of them."""
 
 
 @click.command()
@@ -41,10 +45,31 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     console.print(_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until))
     if expected.rough:
         click.echo(f"about: {expected.rough}")
+    for sentence in expected.premises:
+        click.echo(f"premise: {sentence}")
     if expected.beyond:
         click.echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
+    if expected.rest:
+        click.echo("\n".join(_rest_lines(expected.rest, expected.number)))
     click.echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
     click.echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
+
+
+def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:
+    """What discs do that have come to rest, and a warning if that is to take most of the run."""
+    least, most = rest.hits
+    if most is None or rest.per_free_time is None:
+        yield "warning: with a coefficient of restitution of 0, a disc that comes to rest collides without end there"
+        return
+    yield (
+        f"at rest: a disc goes on bouncing, {least:.4g} to {most:.4g} times per time, up to a height of "
+        f"{rest.height:.3g} and an energy of {rest.energy:.3g} times its mass"
+    )
+    if rest.per_free_time > MANY_HITS:
+        yield (
+            f"warning: a disc at rest makes up to {rest.per_free_time:.3g} times the events of a disc of the gas at "
+            f"first, all {number} together {number * most:.3g} per time: a longer contact duration bounds them"
+        )
 
 
 def _absent(scene: "Scene") -> tuple[str, ...]:

@@ -71,7 +71,7 @@ def _view(log: "Log", seen: "Status", rate: float | None) -> "Group":
     for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility)):
         table.add_row(name, "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}")
     table.add_row("KS distance of speeds", "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}")
-    return Group(table, Text(_histogram(seen)))
+    return Group(*(Text(f"premise: {sentence}") for sentence in seen.premises), table, Text(_histogram(seen)))
 
 
 def _histogram(seen: "Status") -> str:

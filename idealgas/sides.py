@@ -1,5 +1,7 @@
 """Numbers of the walls: 0 to 3 are the sides of the box, wall segments follow. Events name wall k as partner -1 - k."""
 
+from collections.abc import Sequence
+
 SIDES = ("left", "right", "bottom", "top")
 """Names of walls 0 to 3."""
 
@@ -10,6 +12,15 @@ OUTWARD = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
 """Unit normals (x, y) of the sides, pointing out of the box."""
 
 Point = tuple[float, float]
+
+
+def face_names(walls: Sequence[str]) -> list[str]:
+    """Names of all that a disc can hit, by the names of the walls: the sides, then both faces of every segment.
+
+    That on the left of the way from the segment's start to its end comes first.
+    """
+    segments = walls[FIRST_SEGMENT:]
+    return [*walls[:FIRST_SEGMENT], *(f"{name} {face}" for name in segments for face in ("left", "right"))]
 
 
 def axis_of(side: int) -> int:

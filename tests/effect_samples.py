@@ -9,13 +9,17 @@ from idealgas._jit import aligned
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
+from idealgas.physics.momentum_flow import TERMS, MomentumFlow
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.run.effects.wall import make_segments
+from idealgas.run.layout import by_name
+from idealgas.run.sums import kept_sums
 from idealgas.sides import FIRST_SEGMENT
 
 BOX = (12.0, 9.0)
@@ -68,8 +72,33 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
         thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
         piston=piston if "piston" in names else None,
-        wall_energy=np.zeros(FIRST_SEGMENT + len(walls)),
+        wall_energy=make_sums([1.0] * (FIRST_SEGMENT + len(walls))),
+        dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + len(walls))),
+        flow=make_flow(gas, FIRST_SEGMENT + 2 * len(walls), 7 if "rotation" in names else 6),
     )
+
+
+def make_flow(gas: Gas, faces: int, tensor: int = 6) -> MomentumFlow:
+    """Sums of the momentum flow for a number of faces and of parts of the tensor."""
+    kinds = len(gas.species_names)
+    return MomentumFlow(
+        tensor=make_sums([1.0] * tensor),
+        terms=aligned(tensor, TERMS),
+        waiting=np.zeros(1, np.int64),
+        walls=make_sums([1.0]),
+        push=make_sums([1.0] * faces),
+        drag=make_sums([1.0] * faces),
+        hits=np.zeros(faces, np.int64),
+        pairs=np.zeros((kinds, kinds), np.int64) if kinds > 1 else None,
+        species=gas.species.copy() if kinds > 1 else None,
+        x=gas.box[0] / 2,
+        y=gas.box[1] / 2,
+    )
+
+
+def sums_of(effects: Effects) -> list[np.ndarray]:
+    """The sums of a run: those that do not depend on order as whole numbers, and counts."""
+    return list(by_name(kept_sums(effects)).values())
 
 
 def allowed(names: set[str]) -> bool:
@@ -80,4 +109,4 @@ def allowed(names: set[str]) -> bool:
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:
     """All columns of the event log, and the state of the effects at the end."""
     columns = record(Simulation(gas, method, effects), stop, rows)
-    return [*(column for column in columns if column is not None), effects.wall_energy]
+    return [*(column for column in columns if column is not None), *sums_of(effects)]

@@ -3,13 +3,18 @@
 import os
 from typing import Any
 
+import numpy as np
+
 from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import drift
 from idealgas.log import Log
 
 
 def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
-    gas, discs = log.discs, composition(log.discs)
+    gas, discs, frame = log.discs, composition(log.discs), drift(log)
+    frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # without what is only rounding
+    left, bottom, right, top = log.scene.room
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
     return {
         "file": {
@@ -23,9 +28,10 @@ def info(log: Log) -> dict[str, Any]:
         "gas": {
             "box": list(log.box),
             "number": len(gas),
-            "packing_fraction": gas.packing_fraction,
+            "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom)),
             "kinetic_energy": gas.kinetic_energy,
-            "temperature": gas.temperature,
+            "common_motion": frame.tolist(),
+            "temperature": gas.temperature - float(gas.mass.sum() * (frame @ frame)) / (2 * len(gas)),
             "species": [
                 {"name": name, "number": number, "radius": radius, "mass": mass}
                 for name, number, radius, mass in species
@@ -40,5 +46,15 @@ def info(log: Log) -> dict[str, Any]:
             "checkpoints": len(log.checkpoints),
             "observables": sorted(log.observables),
             "summary": log.summary,
+            **_reference_speed(log),
         },
     }
+
+
+def _reference_speed(log: Log) -> dict[str, Any]:
+    """Where v_ref may rise: that of the start and that of the end, length/time, and how often it was raised."""
+    if "v_ref" not in log.observables:
+        return {}
+    values = log.observables["v_ref"][1]
+    raises = int((values[1:] != values[:-1]).sum())
+    return {"v_ref": {"start": float(values[0]), "end": float(values[-1]), "raises": raises}}

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.premises import of_log
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
@@ -21,11 +23,12 @@ class Status:
 
     time: end of the log, time. rows: number of event rows; None if the log has no events. events: number of events so
     far, from the number of rows and the ratio of events to rows at the last checkpoint. temperature: mean kinetic
-    energy of all discs, energy. pressure, compressibility: pressure (energy/length²) and Z = PA/NT from the virial of
-    the latest pair collisions; None if they cannot be measured. ks_distance: Kolmogorov-Smirnov distance of the speeds,
-    in units of √(T/m), from Maxwell-Boltzmann's distribution; None if no disc moves. edges: (BINS + 1,), edges of the
-    bins of these speeds. density: (BINS,), their measured probability density, None if no disc moves. expected:
-    (BINS,), Maxwell-Boltzmann's density.
+    energy of all discs without their conserved common motion, energy. pressure, compressibility: pressure
+    (energy/length²) and Z = PA/NT from the virial of the latest pair collisions; None if they cannot be measured.
+    ks_distance: Kolmogorov-Smirnov distance of the speeds, in units of √(T/m), from Maxwell-Boltzmann's distribution;
+    None if no disc moves. edges: (BINS + 1,), edges of the bins of these speeds. density: (BINS,), their measured
+    probability density, None if no disc moves. expected: (BINS,), Maxwell-Boltzmann's density. premises: sentences on
+    what does not hold for averages over this gas.
     """
 
     time: float
@@ -38,13 +41,14 @@ class Status:
     edges: np.ndarray
     density: np.ndarray | None
     expected: np.ndarray
+    premises: tuple[str, ...]
 
 
 def status(log: Log) -> Status:
     """Status of a log, from its latest state and a bounded number of its latest events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
-    squares = mass * (state.velocity**2).sum(axis=1)
+    squares = mass * ((state.velocity - drift(log)) ** 2).sum(axis=1)
     temperature = float(squares.mean() / 2)
     edges = np.linspace(0, HIGHEST, BINS + 1)
     speeds = np.sqrt(squares / temperature) if temperature > 0 else None
@@ -60,6 +64,7 @@ def status(log: Log) -> Status:
         edges=edges,
         density=None if speeds is None else np.histogram(speeds, edges)[0] / len(speeds) / np.diff(edges),
         expected=np.diff(_reduced_speed_cdf(edges)) / np.diff(edges),
+        premises=of_log(log),
     )
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from idealgas.gas.state import Gas
-from idealgas.physics.contact_value import contact_value
 from idealgas.physics.effects import Effects
+from idealgas.physics.encounters import encounters_of_discs
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
 FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs
@@ -22,17 +22,9 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
     are left to `narrow_encounters`.
     """
     n = len(gas)
-    largest_radius = float(gas.radius.max())
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
-    phi = min(math.pi * math.fsum((gas.radius**2).tolist()) / gas.area, 0.9)
-    pairs = math.sqrt(2.0) * mean_diameter * (n - 1) / gas.area * contact_value(phi)
-    room = [length - 2.0 * largest_radius for length in gas.box]
-    paths = [
-        free if free > 2.0 * largest_radius else length * on
-        for free, length, on in zip(room, gas.box, periodic, strict=True)
-    ]
-    sides = sum(2.0 / (math.pi * path) for path in paths if path > 0.0)
-    return n * (pairs + sides)
+    phi = math.pi * math.fsum((gas.radius**2).tolist()) / gas.area
+    return encounters_of_discs(n, mean_diameter, float(gas.radius.max()), phi, gas.box, periodic)
 
 
 def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:

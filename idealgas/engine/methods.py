@@ -16,12 +16,13 @@ def make_method(
     v_ref: float | None = None,
     seed: int = 0,
     one_sided: bool = False,
+    rises: bool = False,
 ) -> Method:
     """Make a method by its name in a scene; ValueError for an unknown name or a missing parameter.
 
     precision: number type of `brute_force`. dt: step of `time_driven`, time. v_ref: relative speed at which
     `monte_carlo` accepts a pair of the largest discs for certain, length/time. seed: of its random numbers. one_sided:
-    whether its impact parameters have one sign only.
+    whether its impact parameters have one sign only. rises: whether v_ref is raised where it is too small.
     """
     match name:
         case "event_driven":
@@ -31,5 +32,5 @@ def make_method(
         case "time_driven" if dt is not None:
             return TimeDriven(dt)
         case "monte_carlo" if v_ref is not None:
-            return MonteCarlo(seed, v_ref, one_sided=one_sided)
+            return MonteCarlo(seed, v_ref, one_sided=one_sided, rises=rises)
     raise ValueError(f"no method {name} with these parameters")

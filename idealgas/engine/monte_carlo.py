@@ -3,18 +3,27 @@
 Trials are a Poisson process; each takes any pair and accepts it in the ratio of its collision rate to the largest
 possible one, so that collisions happen exactly at the rates of their pairs. Such a process has no memory: an epoch
 begins with a new waiting time and with random numbers of its own, keyed by the seed and the epoch's start. So the
-velocities alone are enough to continue a run.
+velocities alone are enough to continue a run, with v_ref where that has been raised.
+
+The largest possible rate is that of a pair of the largest discs at the relative speed v_ref. Where v_ref is a default,
+it is raised at the collision after which two discs of the new speed could be faster than it, before the next trial:
+then no pair ever exceeds it, seen or not. A collision is an instant that does not look ahead, and from it on both the
+rate of trials and the share accepted go with the new v_ref; so every pair still collides at its own rate (thinning with
+a bound that depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). To wait until a pair that is too fast
+comes up in a trial would not do: it would have collided too rarely until then.
 """
 
 import math
+from functools import partial
 
 import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.records import Limits, make_discs
+from idealgas.engine.resolve import energy_of_pair, record_pair_loss
 from idealgas.engine.rows import batch_capacity, write_pair, write_trial
 from idealgas.errors import UserError
-from idealgas.events import EventBatch
+from idealgas.events import Column, EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.effects import Effects
@@ -25,6 +34,12 @@ from idealgas.physics.restitution import record_collision
 
 U = np.uintp
 DRAWS = np.uint64(5)  # random numbers reserved for a trial
+
+V_REF = Column("v_ref", "f8", (), "length/time")
+"""Where the log keeps a reference speed that may be raised."""
+
+FASTEST_DISC = 0.499  # of v_ref, by a disc that leaves it as it is: just under a half, so that rounding does not matter
+RAISED = 2.5  # times the speed of the disc that was too fast
 
 
 @inline
@@ -49,24 +64,41 @@ def collide_at_random(record, ids, i, j, time, offset, effects):
     touch_at_random(a, b, offset)
     a.t = time
     b.t = time
+    energy = energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)
     collide(a, b, ids[U(i)], ids[U(j)], effects.restitution, effects.rotation, None, NO_IMAGES)
+    energy -= energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)
+    record_pair_loss(effects.dissipated, energy)
     record_collision(effects.restitution, ids[U(i)], time)
     record_collision(effects.restitution, ids[U(j)], time)
+
+
+@inline
+def too_fast(a, b, fastest_square):
+    """Square of the speed of the faster one of two discs, (length/time)², if it exceeds a bound; else 0.
+
+    fastest_square: the bound, None if there is none.
+    """
+    if fastest_square is not None:
+        square = max(a.vx * a.vx + a.vy * a.vy, b.vx * b.vx + b.vy * b.vy)
+        return square if square > fastest_square else 0.0
+    return 0.0
 
 
 @njit
 def advance_trials(
     record, ids, effects, until, most_collisions, most_trials,
-    key, trial_time, fastest, one_sided, epoch_start, batch, counters,
+    key, trial_time, fastest, fastest_square, one_sided, epoch_start, batch, counters,
 ):  # fmt: skip
-    """Try pairs up to local time `until`, or to a limit, or until the batch is full.
+    """Try pairs up to local time `until`, or to a limit, or until the batch is full or a disc is too fast.
 
-    Returns the number of rows written, whether everything up to `until` has happened, and a rate: relative speed times
-    sum of the radii (length²/time) of a pair that exceeds `fastest`, else 0.
+    Returns the number of rows written; whether everything up to `until` has happened; a rate: relative speed times sum
+    of the radii (length²/time) of a pair that exceeds `fastest`, else 0; and the square of the speed of a disc that
+    exceeds `fastest_square` after the last collision, (length/time)², else 0.
 
     most_collisions, most_trials: numbers still allowed. key: of the epoch's random numbers. trial_time: mean time
-    between trials. fastest: largest relative speed times sum of the radii, length²/time. one_sided: whether impact
-    parameters have one sign only. batch: None where no log is kept. counters: (1,) COUNTERS, updated.
+    between trials. fastest: largest relative speed times sum of the radii, length²/time. fastest_square: square of a
+    disc's largest speed, (length/time)², or None. one_sided: whether impact parameters have one sign only. batch: None
+    where no log is kept. counters: (1,) COUNTERS, updated.
     """
     counter = counters[0]
     number = record.shape[0]
@@ -76,6 +108,7 @@ def advance_trials(
     rows = 0
     reached = False
     excess = 0.0
+    square = 0.0
     while collisions < most_collisions and counter.trials < last_trial and rows < capacity:
         start = key + GOLDEN * DRAWS * np.uint64(counter.trials)
         time = counter.trial_time - trial_time * math.log(draw(start, 0))
@@ -100,9 +133,12 @@ def advance_trials(
         rows += write_pair(batch, rows, epoch_start + time, record, ids, i, j, effects)
         collisions += 1
         counter.time = time
+        square = too_fast(a, b, fastest_square)
+        if square > 0.0:
+            break
     counter.events += collisions
     counter.disc_collisions += collisions
-    return rows, reached, excess
+    return rows, reached, excess, square
 
 
 class MonteCarlo:
@@ -111,36 +147,47 @@ class MonteCarlo:
     without_positions = True
     single_epoch = False
 
-    def __init__(self, seed: int, v_ref: float, one_sided: bool = False) -> None:
+    def __init__(self, seed: int, v_ref: float, one_sided: bool = False, rises: bool = False) -> None:
         """Set the seed and v_ref, the relative speed at which a pair of the largest discs is accepted for certain.
 
-        v_ref: length/time. one_sided: whether impact parameters have one sign only.
+        v_ref: length/time. one_sided: whether impact parameters have one sign only. rises: whether v_ref is raised
+        where it is too small, instead of ending the run.
         """
         self._seed, self._v_ref, self._one_sided = seed, v_ref, one_sided
+        self.kept: dict[Column, float] = {V_REF: v_ref} if rises else {}
+
+    @property
+    def v_ref(self) -> float:
+        """Relative speed at which a pair of the largest discs is accepted for certain, length/time."""
+        return self.kept.get(V_REF, self._v_ref)
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""
         self.discs = make_discs(gas, np.arange(len(gas)))
         self._effects = effects
         self._reach = float(np.sort(gas.radius)[-2:].sum())
-        self._trial_time = mean_trial_time(len(gas), gas.area, gas.packing_fraction, self._reach, self._v_ref)
+        self._trial_time = partial(mean_trial_time, len(gas), gas.area, gas.packing_fraction, self._reach)
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Try pairs, see `advance_trials`; UserError if a pair is faster than v_ref allows."""
+        """Try pairs, see `advance_trials`; UserError if a pair is faster than a given v_ref allows."""
         record, ids, _ = self.discs
-        rows, reached, excess = advance_trials(
-            record, ids, self._effects, limits.until, min(limits.events, limits.collisions), limits.trials,
-            epoch_key(self._seed, epoch_start), self._trial_time, self._reach * self._v_ref, self._one_sided,
-            epoch_start, batch, counters,
+        v_ref, most = self.v_ref, min(limits.events, limits.collisions)
+        fastest_square = (FASTEST_DISC * v_ref) ** 2 if V_REF in self.kept else None
+        rows, reached, excess, square = advance_trials(
+            record, ids, self._effects, limits.until, most, limits.trials,
+            epoch_key(self._seed, epoch_start), self._trial_time(v_ref), self._reach * v_ref, fastest_square,
+            self._one_sided, epoch_start, batch, counters,
         )  # fmt: skip
         if excess > 0:
             needed = excess / self._reach
             raise UserError(
-                f"run.v_ref: too small: an acceptance of {needed / self._v_ref:.4g} in trial {counters[0].trials} "
-                f"(got {self._v_ref:.6g}; allowed >= {needed:.6g}, better {1.25 * needed:.3g})"
+                f"run.v_ref: too small: an acceptance of {needed / v_ref:.4g} in trial {counters[0].trials} "
+                f"(got {v_ref:.6g}; allowed >= {needed:.6g}, better {1.25 * needed:.3g})"
             )
+        if square > 0:
+            self.kept[V_REF] = RAISED * math.sqrt(square)
         return rows, reached
 
     def deepest_overlap(self) -> float:

@@ -1,10 +1,13 @@
 """Arrays of the engines: one 64-byte record for each disc, in an order that is not the order of ids."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from idealgas._jit import aligned, inline, njit
+from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.physics.constants import NEVER
 from idealgas.physics.motion import advance
@@ -32,6 +35,10 @@ COUNTERS = np.dtype(
         ("trials", "i8"), ("trial_time", "f8"),  # Monte Carlo trials since time 0; local time of the last trial
     ]
 )  # fmt: skip
+
+
+NOTHING_KEPT: Mapping[Column, float] = MappingProxyType({})
+"""What a method keeps whose epochs all follow from the discs and the effects."""
 
 
 class EventCascadeError(Exception):

@@ -5,10 +5,13 @@ import numpy as np
 from idealgas._jit import inline
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
+from idealgas.physics.exact_sum import add
+from idealgas.physics.momentum_flow import record_collision_flow, record_flight, record_flights, record_hit
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
-from idealgas.physics.piston import advance_piston, collide_with_piston
+from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston
 from idealgas.physics.restitution import record_collision
+from idealgas.physics.thermal import is_thermal
 from idealgas.physics.wall import segment_normal
 from idealgas.physics.wall_collision import collide_with_wall
 from idealgas.sides import FIRST_SEGMENT
@@ -29,7 +32,29 @@ def energy_of(disc, own, rotation):
 def record_wall_energy(wall_energy, wall, energy):
     """Add an energy (mass length²/time²) to what a wall has given to discs, where that is recorded."""
     if wall_energy is not None:
-        wall_energy[U(wall)] += energy
+        add(wall_energy[U(wall)], energy)
+
+
+@inline
+def energy_of_pair(a, b, a_id, b_id, rotation, dissipated):
+    """Kinetic energy of two discs, spins included, where losses are recorded; else 0."""
+    if dissipated is not None:
+        return energy_of(a, a_id, rotation) + energy_of(b, b_id, rotation)
+    return 0.0
+
+
+@inline
+def record_pair_loss(dissipated, energy):
+    """Add an energy (mass length²/time²) to what was lost in collisions of two discs, where losses are recorded."""
+    if dissipated is not None:
+        add(dissipated[0], energy)
+
+
+@inline
+def record_wall_loss(dissipated, wall, thermal, energy):
+    """Add an energy to what was lost in hits of a wall, unless it emits discs, where losses are recorded."""
+    if dissipated is not None and not is_thermal(thermal, wall):
+        add(dissipated[U(1 + wall)], energy)
 
 
 @inline
@@ -46,31 +71,51 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
     images: numbers of box lengths (x, y) between their records, where sides are periodic.
     """
+    record_flights(effects.flow, a, b, time, effects.gravity)
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
+    energy = energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
+    before = a.vx, a.vy, b.vx, b.vy
     collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
+    energy -= energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
+    record_pair_loss(effects.dissipated, energy)
+    record_collision_flow(effects.flow, a, b, a_id, b_id, before, effects.periodic, images, effects.rotation)
     finish(a, a_id, time, effects)
     finish(b, b_id, time, effects)
+
+
+@inline
+def arrive(disc, time, effects):
+    """Move a disc's record to the local time at which it meets a wall."""
+    record_flight(effects.flow, disc, time, effects.gravity)
+    advance(disc, time, effects.gravity)
 
 
 @inline
 def bounce(disc, own, nx, ny, wall, time, effects):
     """Reflect or emit a disc, whose record is at the time of contact, at a wall at rest; record the wall's energy.
 
-    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
+    nx, ny: unit normal of the wall towards the disc. wall: number of the wall. Returns the momentum (px, py) that the
+    disc received, mass length/time.
     """
-    before = energy_of(disc, own, effects.rotation)
+    energy = energy_of(disc, own, effects.rotation)
+    vx = disc.vx
+    vy = disc.vy
     collide_with_wall(disc, own, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
-    record_wall_energy(effects.wall_energy, wall, energy_of(disc, own, effects.rotation) - before)
+    energy -= energy_of(disc, own, effects.rotation)
+    record_wall_energy(effects.wall_energy, wall, -energy)
+    record_wall_loss(effects.dissipated, wall, effects.thermal, energy)
     finish(disc, own, time, effects)
+    return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
 
 
 @inline
 def resolve_side(disc, own, side, time, effects):
     """Collide a disc with a side of the box at a local time."""
-    advance(disc, time, effects.gravity)
+    arrive(disc, time, effects)
     nx, ny = inward_normal(side)
-    bounce(disc, own, nx, ny, side, time, effects)
+    px, py = bounce(disc, own, nx, ny, side, time, effects)
+    record_hit(effects.flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
 
 
 @inline
@@ -80,9 +125,13 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
     images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic.
     """
     if segments is not None:
-        advance(disc, time, effects.gravity)
-        nx, ny, at_end = segment_normal(disc, segments[U(segment)], effects.periodic, images)
-        bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
+        arrive(disc, time, effects)
+        wall = segments[U(segment)]
+        nx, ny, at_end = segment_normal(disc, wall, effects.periodic, images)
+        px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
+        left = 1.0 if wall.tx * ny - wall.ty * nx >= 0.0 else -1.0
+        face = FIRST_SEGMENT + 2 * segment + (0 if left > 0.0 else 1)
+        record_hit(effects.flow, disc, face, -left * wall.ty, left * wall.tx, wall.tx, wall.ty, px, py)
         return at_end
     return False
 
@@ -92,12 +141,20 @@ def resolve_piston(disc, own, time, piston, effects):
     """Collide a disc with the piston at a local time."""
     if piston is not None:
         p = piston[0]
-        advance(disc, time, effects.gravity)
+        arrive(disc, time, effects)
         advance_piston(p, time)
-        before = energy_of(disc, own, effects.rotation)
+        energy = energy_of(disc, own, effects.rotation)
+        loss = energy_at_piston(disc, energy, p)
+        vx = disc.vx
+        vy = disc.vy
         collide_with_piston(disc, own, p, effects.restitution)
-        record_wall_energy(effects.wall_energy, p.side, energy_of(disc, own, effects.rotation) - before)
+        after = energy_of(disc, own, effects.rotation)
+        record_wall_energy(effects.wall_energy, p.side, after - energy)
+        record_wall_loss(effects.dissipated, p.side, effects.thermal, loss - energy_at_piston(disc, after, p))
         finish(disc, own, time, effects)
+        nx, ny = inward_normal(p.side)
+        px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
+        record_hit(effects.flow, disc, p.side, nx, ny, abs(ny), abs(nx), px, py)
 
 
 @inline

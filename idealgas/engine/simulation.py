@@ -1,7 +1,7 @@
 """The simulation of a gas through the epochs of its run."""
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
@@ -11,13 +11,23 @@ from idealgas.engine.audit import Audit, audit
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, synchronise
 from idealgas.errors import UserError
-from idealgas.events import EventBatch
+from idealgas.events import Column, EventBatch
 from idealgas.gas.state import Gas
+from idealgas.physics import momentum_flow
 from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
+from idealgas.physics.exact_sum import SumRangeError
+from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
-TRAJECTORY = 3
-"""Version of the trajectory, raised by hand whenever the laws would continue an older log differently than it began."""
+TRAJECTORY = 4
+"""Version of the trajectory, raised by hand whenever a scene's log comes out differently than it did."""
+
+GOES_ON = frozenset({3, TRAJECTORY})
+"""Versions of logs that are gone on with as they began.
+
+Since version 4 a scene may have other defaults: the contact duration under a constant force, and a Monte Carlo v_ref
+that rises. A log of version 3 has its contact duration in its scene, and its v_ref stays as it is.
+"""
 
 
 class Method(Protocol):
@@ -27,11 +37,18 @@ class Method(Protocol):
         discs: records of the discs in the present epoch.
         without_positions: whether its discs have no positions; those of the gas then stay as they are.
         single_epoch: whether the run must be one epoch, because its digits would be lost between epochs.
+        kept: what of the method itself, beside the discs, the next epochs follow from: numbers by their columns in the
+            log; `advance` returns after each change.
     """
 
     discs: Discs
     without_positions: bool
     single_epoch: bool
+
+    @property
+    def kept(self) -> Mapping[Column, float]:
+        """See above."""
+        ...
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch with a gas at local time 0."""
@@ -131,7 +148,7 @@ class Simulation:
 
         events: largest number of events in this call. pause: time at which to return with `paused` set, unless it is
         later than the end of the epoch or the stop; it changes no event. UserError if a disc has collisions without end
-        at one instant.
+        at one instant, or if a sum exceeds its range.
         """
         done = self.counters
         end = min(self.length, stop.time - self.time, LATEST)
@@ -144,7 +161,9 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-        except EventCascadeError as error:  # raised by a kernel, which cannot tell the time
+            if self.effects.flow is not None:
+                momentum_flow.settle(self.effects.flow)
+        except (EventCascadeError, SumRangeError) as error:  # raised by a kernel, which cannot tell the time
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else float(self._counters[0]["time"])
@@ -193,12 +212,19 @@ class Simulation:
         return self.time + float(self._counters[0]["time"])
 
     def state(self) -> tuple[Gas, Effects]:
-        """Copies of the gas and its images, and the effects, where the last call of `advance` ended.
+        """Copies of the gas, its images and its momentum flow, and the effects, where the last `advance` ended.
 
         That is its time limit or, if it was not reached, the time of the last event.
         """
-        periodic = copy_of(self.effects.periodic)
-        return self._synchronised(self._local_now, periodic), self.effects._replace(periodic=periodic)
+        periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
+        self._complete_flights(self._local_now, flow)
+        effects = self.effects._replace(periodic=periodic, flow=flow)
+        return self._synchronised(self._local_now, periodic), effects
+
+    def _complete_flights(self, local_time: float, flow: MomentumFlow | None) -> None:
+        """Add to a momentum flow what is in the air at a local time."""
+        if flow is not None:
+            momentum_flow.complete_flights(self.method.discs.record, local_time, self.effects.gravity, flow)
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
         """The gas at a local time; the records do not change."""
@@ -214,6 +240,7 @@ class Simulation:
 
     def next_epoch(self) -> None:
         """Move all discs to the end of the epoch and begin the next one there."""
+        self._complete_flights(self.length, self.effects.flow)
         self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.counters
         end_epoch(self.effects, self.length)
         self.time += self.length

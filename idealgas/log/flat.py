@@ -11,6 +11,7 @@ from idealgas.gas.state import Gas
 from idealgas.log.errors import LogError
 from idealgas.log.replay import LogState
 from idealgas.log.schema import Wall
+from idealgas.sides import face_names
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -23,6 +24,8 @@ KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
 VECTORS: dict[str, Sequence[str]] = {
     **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},
     "momentum": ("momentum_x", "momentum_y"),
+    "kinetic_flow": tuple(f"kinetic_flow_{part}" for part in ("xx", "xy", "yy")),
+    "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
 }
 """Names of the columns that the components of a vector become."""
 
@@ -31,11 +34,17 @@ CHOSEN_BY = {"events": ("disc", "t0", "t1"), "discs": ("disc", "times"), "observ
 
 
 def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTORS) -> Columns:
-    """Columns (n,) from columns (n,) and (n, components), without those that are None. vectors: names of components."""
+    """Columns (n,) from columns (n,) and (n, components), without those that are None.
+
+    vectors: names of components. A component without a name is numbered, as in name_0_1.
+    """
     columns: Columns = {}
     for name, column in values.items():
         if name in vectors and column is not None:
             columns |= dict(zip(vectors[name], np.ascontiguousarray(column.T), strict=True))
+        elif column is not None and column.ndim > 1:
+            for place in np.ndindex(column.shape[1:]):
+                columns["_".join(map(str, (name, *place)))] = column[:, *place]
         elif column is not None:
             columns[name] = column
     return columns
@@ -77,7 +86,11 @@ def flat_samples(
     """Samples at times t0 ≤ t < t1, with their times; observables: times and values, by name."""
     time = next((time for time, _ in observables.values()), np.empty(0))
     some = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
-    vectors = {**VECTORS, "wall_energy": [f"wall_energy_{wall.name}" for wall in walls]}
+    names = [wall.name for wall in walls]
+    faces = {name: [f"{name}_{face}" for face in face_names(names)] for name in ("face_push", "face_drag", "face_hits")}
+    given = [f"wall_energy_{name}" for name in names]
+    lost = [f"dissipated_energy_{name}" for name in ("discs", *names)]
+    vectors = {**VECTORS, **faces, "wall_energy": given, "dissipated_energy": lost}
     return flat({"time": time[some]} | {name: values[some] for name, (_, values) in observables.items()}, vectors)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from idealgas.physics import periodic, piston, restitution, wall
 from idealgas.physics.gravity import Gravity
+from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
@@ -29,7 +30,11 @@ class Effects(NamedTuple):
         restitution: inelastic collisions.
         thermal: walls with a temperature.
         piston: (1,) PISTON.
-        wall_energy: (walls,) f8, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
+        wall_energy: (walls,) SUM, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
+        dissipated: (1 + walls,) SUM, energy that was lost in collisions of two discs, then in hits of each wall that
+            emits none, mass length²/time²; None if nothing is lost. What a wall at rest gave is less by what was lost
+            there.
+        flow: momentum that the gas carries and passes on; None where it is not recorded.
     """
 
     gravity: Gravity | None = None
@@ -39,7 +44,9 @@ class Effects(NamedTuple):
     restitution: Restitution | None = None
     thermal: Thermal | None = None
     piston: np.ndarray | None = None
-    wall_energy: np.ndarray | None = None
+    wall_energy: np.recarray | None = None
+    dissipated: np.recarray | None = None
+    flow: MomentumFlow | None = None
 
 
 AT_BEGIN: dict[str, Callable[[Any, float], None]] = {"periodic": periodic.begin_epoch, "segments": wall.begin_epoch}

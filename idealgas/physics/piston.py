@@ -111,6 +111,21 @@ def collide_with_piston(disc, own, piston, restitution):
 
 
 @inline
+def energy_at_piston(disc, energy, piston):
+    """Energy that an elastic hit would not change, mass length²/time².
+
+    That of a disc with a kinetic energy, and of the motion of a piston with a mass; without one it is the disc's
+    kinetic energy as the piston sees it, of the motion along the axis.
+
+    energy: of the disc, mass length²/time².
+    """
+    if piston.m > 0.0:
+        return energy + 0.5 * piston.m * piston.v * piston.v
+    approach = (disc.vy if piston.side >= 2 else disc.vx) - piston.v
+    return 0.5 * disc.m * approach * approach
+
+
+@inline
 def is_piston_side(side, piston):
     """Whether the piston stands in place of this side of the box."""
     if piston is not None:

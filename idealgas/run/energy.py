@@ -2,8 +2,11 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.physics.exact_sum import values
 from idealgas.run.effects.bundle import present
 
 
@@ -11,7 +14,8 @@ class Energy(NamedTuple):
     """The energy of a gas by its parts.
 
     kinetic, rotational, potential: of the discs. piston: of motion and position of a piston with a mass. given: energy
-    that walls gave to the discs; what a piston with a mass gave is not counted, as its own energy is.
+    that walls gave to the discs, less what was lost at them; what a piston with a mass gave is not counted, as its own
+    energy is. lost: what collisions between discs, and with a piston with a mass, have lost.
     """
 
     kinetic: float
@@ -19,6 +23,7 @@ class Energy(NamedTuple):
     potential: float = 0.0
     piston: float = 0.0
     given: float = 0.0
+    lost: float = 0.0
 
     @property
     def gas(self) -> float:
@@ -27,8 +32,8 @@ class Energy(NamedTuple):
 
     @property
     def balance(self) -> float:
-        """What stays the same where energy is conserved: discs and piston, less what walls gave."""
-        return self.gas + self.piston - self.given
+        """What stays the same: discs and piston with what was lost, less what walls gave."""
+        return self.gas + self.piston + self.lost - self.given
 
     @property
     def scale(self) -> float:
@@ -38,16 +43,18 @@ class Energy(NamedTuple):
 
 def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
     """Energy of a gas; local_time: of the gas, from the start of the epoch."""
-    given = 0.0 if effects.wall_energy is None else float(effects.wall_energy.sum())
-    parts = {}
+    by_wall = np.zeros(0) if effects.wall_energy is None else values(effects.wall_energy)
+    losses = np.zeros(0) if effects.dissipated is None else values(effects.dissipated)
+    given, lost, parts = float(by_wall.sum()), float(losses[:1].sum()), {}
     for effect, state in present(effects):
         if effect.energy is not None:
             parts[effect.energy.part] = effect.energy.of(state, gas, local_time)
-        if effects.wall_energy is not None and (wall := effect.own_wall(state)) is not None:
-            given -= float(effects.wall_energy[wall])
-    return Energy(gas.kinetic_energy, **parts, given=given)
+        if (wall := effect.own_wall(state)) is not None:
+            given -= float(by_wall[wall : wall + 1].sum())
+            lost += float(losses[1 + wall : 2 + wall].sum())
+    return Energy(gas.kinetic_energy, **parts, given=given, lost=lost)
 
 
 def is_conserved(effects: Effects) -> bool:
-    """Whether the balance is: no energy is lost between discs, or between a disc and a wall with energy of its own."""
-    return all(effect.conserves(effects) for effect, _ in present(effects))
+    """Whether the balance is: what is lost between discs, or with a wall that has energy of its own, is recorded."""
+    return effects.dissipated is not None or all(effect.conserves(effects) for effect, _ in present(effects))

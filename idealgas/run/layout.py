@@ -1,5 +1,6 @@
 """What a run puts into its log: columns, together with where their values come from."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +11,7 @@ from idealgas.physics.effects import Effects
 from idealgas.run.effects import bundle
 from idealgas.run.effects.slice import Arrays, Values
 from idealgas.run.energy import Energy, energy_of
+from idealgas.run.sums import kept_sums, observed_sums, restore_sums
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
 
@@ -24,8 +26,13 @@ AUDITED = (
 )
 
 
-def layout_of(scene: Scene, gas: Gas, effects: Effects, without_positions: bool) -> LogLayout:
-    """Of the log of a scene; gas, effects: at time 0. without_positions: the method does not know where discs are."""
+def layout_of(
+    scene: Scene, gas: Gas, effects: Effects, without_positions: bool, kept: Iterable[Column] = ()
+) -> LogLayout:
+    """Of the log of a scene; gas, effects: at time 0.
+
+    without_positions: the method does not know where discs are. kept: what it keeps beside the discs.
+    """
     x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
     return LogLayout(
         walls=[Wall(wall.name, wall.start, wall.end) for wall in number_walls(scene)],
@@ -34,8 +41,8 @@ def layout_of(scene: Scene, gas: Gas, effects: Effects, without_positions: bool)
         disc_columns=bundle.disc_constants(effects),
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
-        checkpoint_values=(*TOTALS, *bundle.whole_state(effects)),
-        observables=(*AUDITED, *TOTALS, *observed(gas, effects)),
+        checkpoint_values=(*TOTALS, *kept, *whole_state(effects)),
+        observables=(*AUDITED, *TOTALS, *kept, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,
@@ -60,11 +67,18 @@ def snapshot_state(gas: Gas, effects: Effects, without_positions: bool) -> Array
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
 
 
-def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
-    """The gas at a checkpoint; the effects get the state that they had there. gas: any of the same discs."""
+def whole_state(effects: Effects) -> Values:
+    """What a checkpoint keeps of the effects as a whole, and of the sums, at the start of an epoch."""
+    return bundle.whole_state(effects) | kept_sums(effects)
+
+
+def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> tuple[Gas, Effects]:
+    """The gas and the effects at a checkpoint, of which the state is written into these. gas: any of the same discs."""
     bundle.restore_effects(effects, checkpoint)
+    effects = restore_sums(effects, checkpoint.arrays)
     arrays = checkpoint.arrays
-    return replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
+    gas = replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
+    return gas, effects
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
@@ -75,9 +89,9 @@ def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
     for part in Energy._fields:
         if (column := parts.get(part)) is not None:
             sample[column] = getattr(energy, part)
-    return sample | bundle.whole_state(effects, local_time)
+    return sample | bundle.whole_state(effects, local_time) | observed_sums(effects)
 
 
-def by_name(values: dict[Column, Any]) -> dict[str, Any]:
+def by_name(values: Mapping[Column, Any]) -> dict[str, Any]:
     """The values by the names of their columns."""
     return {column.name: value for column, value in values.items()}

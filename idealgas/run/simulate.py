@@ -14,14 +14,18 @@ from idealgas._jit import compile_timer
 from idealgas.document.dump import dump_document
 from idealgas.engine.audit import Audit
 from idealgas.engine.methods import make_method
-from idealgas.engine.records import LATEST
+from idealgas.engine.records import LATEST, UNLIMITED
 from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
+from idealgas.errors import UserError
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
 from idealgas.log import LogWriter
-from idealgas.run.effects.bundle import make_effects, whole_state
+from idealgas.physics.effects import Effects
+from idealgas.run.effects.bundle import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
-from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state
+from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
+from idealgas.run.sums import observed_sums
+from idealgas.run.watch import Watch
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
@@ -36,8 +40,9 @@ class Summary:
     of events, the sum of disc_collisions (of two discs) and wall_hits (of discs with walls and the piston). trials:
     number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision. epochs: number of them.
 
-    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston less
-    what walls gave, relative to the energy: rounding errors only; None where collisions between discs lose energy.
+    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston, with
+    what collisions lost and less what walls gave, relative to the largest of these: rounding errors only. None where
+    collisions lose energy in a log of before, which has no account of that.
     deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
     in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
     the overlap is that of all collisions, each of which has one.
@@ -67,11 +72,15 @@ class Summary:
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is. share: of the way to its end, 0 to 1. time: of the last event. events: number of them so far."""
+    """Where a run is. share: of the way to its end, 0 to 1. time: of the last event. events: number of them so far.
+
+    notice: one line for the user, each given once; mostly empty.
+    """
 
     share: float
     time: float
     events: int
+    notice: str = ""
 
 
 def stop_of(scene: Scene, n: int) -> Stop:
@@ -89,16 +98,20 @@ def stop_of(scene: Scene, n: int) -> Stop:
     return stop
 
 
-def method_of(scene: Scene, start: Gas) -> Method:
-    """The method a scene calls for; start: its discs at time 0."""
+def method_of(scene: Scene, start: Gas, v_ref: float | None = None, rises: bool = True) -> Method:
+    """The method a scene calls for; start: its discs at time 0.
+
+    v_ref: what that of the scene has been raised to, length/time. rises: whether a default v_ref may be raised.
+    """
     run = scene.run
     return make_method(
         run.method,
         precision=run.precision or "float64",
         dt=run.dt,
-        v_ref=reference_speed(run, float(np.hypot(*start.velocity.T).max())),
+        v_ref=v_ref or reference_speed(run, float(np.hypot(*start.velocity.T).max())),
         seed=scene.scene.seed,
         one_sided=run.impact == "one_sided",
+        rises=rises and run.v_ref is None,
     )
 
 
@@ -121,7 +134,9 @@ def simulate(
 
     The first run with a set of effects compiles its machine code, which takes some seconds and is kept on disk.
 
-    Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written.
+    Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written;
+    UserError, with a log that can be read and resumed, if a disc collides without end at one instant, or if the events
+    that are to end the run do not come (see `idealgas.run.watch`).
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)
@@ -130,7 +145,7 @@ def simulate(
         with LogWriter(
             path,
             gas,
-            layout_of(scene, gas, effects, method.without_positions),
+            layout_of(scene, gas, effects, method.without_positions, method.kept),
             scene_text=dump_document(scene),
             seed=scene.scene.seed,
             command=command,
@@ -166,14 +181,16 @@ class LoggedRun:
         self._compilation = compilation
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
+        self._watch = Watch(simulation, self._stop, self._begun)
+        self._kept = dict(simulation.method.kept)
 
     def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
-        """Go on to the stop, or until `interrupted` says True, and close the log."""
+        """Go on to the stop, or until `interrupted` says True, and close the log; UserError if no event comes."""
         simulation, stop = self._simulation, self._stop
         if not self._begun:
             if self._scene.log.snapshot_every:
                 self._snapshot()
-            self._checkpoint()
+            self._begin_epoch()
         self._slice(0)  # compiles, before the clock starts
         started = time.perf_counter()
         slice_events = 4096
@@ -183,14 +200,15 @@ class LoggedRun:
             if simulation.paused:
                 self._snapshot()
             if simulation.epoch_over and not simulation.finished(stop):
+                self._watch.end_epoch()
                 simulation.next_epoch()
-                self._checkpoint()
+                self._begin_epoch()
             on_progress(self._progress())
             if interrupted():
                 break
             taken = time.perf_counter() - before
             if taken < SHORTEST_SLICE and not simulation.paused:
-                slice_events *= 2
+                slice_events = min(2 * slice_events, UNLIMITED)
             elif taken > LONGEST_SLICE:
                 slice_events = max(slice_events // 2, 1)
         summary = self._finish(time.perf_counter() - started)
@@ -199,12 +217,15 @@ class LoggedRun:
 
     def _slice(self, events: int) -> None:
         """Advance by at most so many events and hand their rows to the log."""
-        if not self._scene.log.events:
-            self._simulation.advance(self._stop, None, events, self._next_snapshot)
-            return
-        batch = self._log.batch()
-        rows = self._simulation.advance(self._stop, batch, events, self._next_snapshot)
-        self._log.write(rows)
+        simulation = self._simulation
+        if self._scene.log.events:
+            self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
+        else:
+            simulation.advance(self._stop, None, events, self._next_snapshot)
+        if self._kept != simulation.method.kept:
+            self._kept = dict(simulation.method.kept)
+            gas, effects = simulation.state()
+            self._observe(simulation.last_event_time, gas, effects, simulation.audit_of(gas))
 
     @property
     def _next_snapshot(self) -> float:
@@ -217,24 +238,42 @@ class LoggedRun:
         gas, effects = simulation.state()
         state = by_name(snapshot_state(gas, effects, simulation.method.without_positions))
         if time > simulation.time and not simulation.epoch_over:
-            self._observe(time, gas, simulation.audit_of(gas))
+            self._observe(time, gas, effects, simulation.audit_of(gas))
         self._log.snapshot(time, self._snapshots, state)
         self._snapshots += 1
 
-    def _checkpoint(self) -> None:
-        """At the start of an epoch: audit, and store the state from which everything else can be rebuilt."""
-        simulation = self._simulation
-        self._observe(simulation.time, simulation.gas, simulation.audit())
-        if simulation.epoch % self._scene.log.checkpoint_every == 0:
-            state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.without_positions))
-            values = asdict(simulation.totals) | by_name(whole_state(simulation.effects))
-            self._log.checkpoint(simulation.time, simulation.epoch, state, values)
+    def _begin_epoch(self) -> None:
+        """Audit the start of an epoch, and keep the state from which all else can be rebuilt, if anything happened.
 
-    def _observe(self, time: float, gas: Gas, audit: Audit) -> None:
+        UserError, after the log is closed, if the end of the run does not come.
+        """
+        simulation, watch = self._simulation, self._watch
+        missing = watch.in_vain()
+        if watch.sample_due or missing:
+            self._observe(simulation.time, simulation.gas, simulation.effects, simulation.audit())
+        if watch.checkpoint_due(self._scene.log.checkpoint_every) or missing:
+            self._checkpoint()
+        if missing:
+            self._log.close()
+            raise UserError(
+                f"{self._log.path}: {missing}, up to t = {simulation.time:g}, so the end of the run may never come; "
+                "the log can be read, and resumed (--until gives it an end in time)"
+            )
+
+    def _checkpoint(self) -> None:
+        """Store the state at the start of an epoch."""
+        simulation = self._simulation
+        effects = simulation.effects
+        state = by_name(disc_state(simulation.gas, effects, simulation.method.without_positions))
+        sums = by_name(observed_sums(effects))  # logs of before keep what walls gave as samples have it
+        whole = sums | by_name(whole_state(effects)) | by_name(simulation.method.kept)
+        self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals) | whole)
+
+    def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:
         self._overlap = max(self._overlap, audit.overlap)
         self._outside = max(self._outside, audit.outside)
         simulation = self._simulation
-        sample = by_name(observed(gas, simulation.effects, time - simulation.time))
+        sample = by_name(observed(gas, effects, time - simulation.time)) | by_name(self._kept)
         self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.counters) | sample)
 
     def _finish(self, seconds: float) -> Summary:
@@ -242,9 +281,9 @@ class LoggedRun:
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.last_event_time
-        gas = simulation.state()[0]
-        self._observe(end_time, gas, simulation.audit_of(gas))
-        start, end = self._start_energy, energy_of(gas, simulation.effects, end_time - simulation.time)
+        gas, effects = simulation.state()
+        self._observe(end_time, gas, effects, simulation.audit_of(gas))
+        start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
         totals = simulation.counters
         return Summary(
@@ -265,4 +304,4 @@ class LoggedRun:
         done, stop = self._simulation.counters, self._stop
         now = self._simulation.last_event_time
         counted = (done.events / stop.events, done.disc_collisions / stop.disc_collisions, done.trials / stop.trials)
-        return Progress(max(now / stop.time, *counted), now, done.events)
+        return Progress(max(now / stop.time, *counted), now, done.events, self._watch.busy())

@@ -6,7 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from idealgas.physics.encounters import encounters_of_discs
+
 if TYPE_CHECKING:
+    from idealgas.document.table import Rectangle, Vector
     from idealgas.scene.tables.discs import Disc, Species
     from idealgas.scene.tables.run import Run
 
@@ -23,6 +26,36 @@ def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:
         if s.velocities is None
     )
     return (sum(speeds) + spread) / (len(disc) + sum(s.count for s in species))
+
+
+def number_of_discs(species: Sequence[Species], disc: Sequence[Disc]) -> int:
+    """Number of all discs."""
+    return sum(s.count for s in species) + len(disc)
+
+
+def sum_of_diameters(species: Sequence[Species], disc: Sequence[Disc]) -> float:
+    """Sum of the diameters of all discs, length."""
+    return sum(2 * s.radius * s.count for s in species) + sum(2 * d.radius for d in disc)
+
+
+def mean_free_time(
+    species: Sequence[Species], disc: Sequence[Disc], room: Rectangle, periodic: tuple[bool, bool], press: Vector
+) -> float:
+    """Expected time between two collisions of a disc, with discs and sides, time; infinite if nothing moves.
+
+    room: what the discs have at the start. periodic: whether the sides along x and along y are. press: constant
+    acceleration, length/time². The speed is that of a disc with the mean speed at the start after a fall through half
+    of the room.
+    """
+    n = number_of_discs(species, disc)
+    radii = [(s.radius, s.count) for s in species] + [(d.radius, 1) for d in disc]
+    size = room[2] - room[0], room[3] - room[1]
+    phi = math.pi * math.fsum(r * r * count for r, count in radii) / (size[0] * size[1])
+    diameter = sum_of_diameters(species, disc) / n
+    encounters = encounters_of_discs(n, diameter, max(radii)[0], phi, size, periodic) / n
+    way = 1.0 / max(encounters, 1.0 / sum(size))
+    speed = math.sqrt(mean_speed(species, disc) ** 2 + abs(press[0]) * size[0] + abs(press[1]) * size[1])
+    return way / speed if speed > 0 else math.inf
 
 
 def reference_speed(run: Run, largest: float) -> float:

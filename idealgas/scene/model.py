@@ -11,7 +11,6 @@ from idealgas.document.origin import Origin
 from idealgas.document.table import Table
 from idealgas.scene.checks.issues import issues
 from idealgas.scene.tables.document import Document
-from idealgas.scene.tables.restitution import contact_duration
 
 
 class Scene(Document):
@@ -31,8 +30,7 @@ class Scene(Document):
         if self.piston:
             update["piston"] = self.piston.model_copy(update={"position": self.piston.start(self.box.size)})
         if self.restitution and not self.restitution.elastic:
-            duration = contact_duration(self.restitution, self.species, self.disc)
-            update["restitution"] = self.restitution.model_copy(update={"contact_duration": duration})
+            update["restitution"] = self.restitution.model_copy(update={"contact_duration": self.contact_duration})
         return self.model_copy(update=update)
 
     def from_origin(self, origin: Origin) -> Self:

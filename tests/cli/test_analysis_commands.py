@@ -76,7 +76,7 @@ def test_check_names_what_it_judges(path):
     [
         (("species.radius=1.2", "species.count=58"), "above 0.62"),
         (("species.count=1",), "holds less than 3"),
-        (("gravity.acceleration=[0, -0.01]",), "no temperature is known beforehand under gravity"),
+        (("gravity.acceleration=[0, -0.01]",), "no equation of state holds under gravity"),
     ],
 )
 def test_check_without_a_theory_says_so(overrides, why, tmp_path):
@@ -91,6 +91,20 @@ def test_check_without_a_theory_says_so(overrides, why, tmp_path):
     assert as_json.exit_code == 0
     assert json.loads(as_json.stdout)["agrees"] is None
     assert why in json.loads(as_json.stdout)["no_theory"]
+
+
+def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
+    """Without --check there is no equation of state either, and with one other gas of a theory nothing is checked."""
+    (tmp_path / "scene.toml").write_text(SCENE.replace("collisions_per_disc = 100", "events = 2000"))
+    dense = ("--set", "species.radius=1.2", "--set", "species.count=58", "--set", "species.placement=lattice")
+    logs = [tmp_path / f"{name}.h5" for name in ("one", "two", "dilute")]
+    for log, options in zip(logs, (dense, (*dense, "--set", "scene.seed=2"), ()), strict=True):
+        assert idealgas("run", tmp_path / "scene.toml", "-o", log, *options).exit_code == 0
+    checked = idealgas("pressure", *logs[:2], "--check")
+    assert (checked.exit_code, checked.stdout.count("\n")) == (0, 1)
+    assert checked.stdout.startswith("No theory here: no equation of state: no theory for a gas of packing fraction 0.")
+    assert idealgas("pressure", *logs[:2]).exit_code == 2
+    assert idealgas("pressure", *logs, "--check").exit_code == 2
 
 
 def test_check_that_fails_exits_with_one(path, monkeypatch):

@@ -52,17 +52,45 @@ def test_walls_are_listed_by_their_numbers():
 
 
 def test_what_theory_does_not_know_is_said():
-    shown = check(CONFIGS / "atmosphere.toml").stdout
-    assert "not known: beyond the theory of a uniform gas are gravity\n" in shown
-    found = json.loads(check(CONFIGS / "atmosphere.toml", "--json").stdout)
+    shown = check(CONFIGS / "piston.toml").stdout
+    assert "not known: beyond the theory of a uniform gas are piston\n" in shown
+    found = json.loads(check(CONFIGS / "piston.toml", "--json").stdout)
     assert (found["effects"], found["beyond"], found["temperature"], found["rows"]) == (
-        ["gravity"],
-        ["gravity"],
+        ["piston"],
+        ["piston"],
         None,
         None,
     )
-    assert found["duration"] == 400
-    assert found["compiled_out"] == [name for name in EFFECTS if name != "gravity"]
+    assert found["duration"] == 2000
+    assert found["compiled_out"] == [name for name in EFFECTS if name != "piston"]
+
+
+def test_a_column_under_gravity_is_known_roughly():
+    shown = check(CONFIGS / "atmosphere.toml").stdout
+    assert "about: the law of a dilute column, whose lowest layer has a packing fraction of 0.0063\n" in shown
+    assert "not known" not in shown
+
+
+ROUGH = (
+    ("dense", "the packing fraction is above 0.62", ("species.radius=0.147", "species.placement=lattice")),
+    ("quickstart", "Enskog's theory is off by up to", ("species.count=6", "species.placement=random")),
+)
+
+
+@pytest.mark.parametrize(("scene", "why", "overrides"), ROUGH)
+def test_numbers_of_a_rough_theory_are_about(scene, why, overrides):
+    settings = [word for override in overrides for word in ("--set", override)]
+    shown = check(CONFIGS / f"{scene}.toml", *settings).stdout
+    assert f"about: {why}" in shown.replace("\n", " ")
+    for name in ("collisions per disc and time Γ", "pair collisions per time", "events", "rows in", "size of"):
+        assert any(line.startswith(f"│ {name}") and " about " in line for line in shown.splitlines()), name
+    assert "about" not in next(line for line in shown.splitlines() if line.startswith("│ temperature T"))
+    assert why in json.loads(check(CONFIGS / f"{scene}.toml", *settings, "--json").stdout)["rough"]
+
+
+def test_numbers_of_a_good_theory_are_not_about():
+    assert "about" not in check(CONFIGS / "dilute.toml").stdout
+    assert json.loads(check(CONFIGS / "dilute.toml", "--json").stdout)["rough"] == ""
 
 
 def test_json():
@@ -81,3 +109,41 @@ def test_the_shown_scene_is_a_scene(tmp_path):
     copy = tmp_path / "copy.toml"
     copy.write_text(shown[: shown.index("Discs at the start")])
     assert check(copy).stdout == shown
+
+
+RESTING = """
+box.size = [10, 10]
+gravity.acceleration = [0, -1]
+restitution.wall = 0.9
+run.until = 20
+species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1 }]
+"""
+
+
+@pytest.mark.parametrize(
+    ("override", "said", "warned"),
+    [
+        ("restitution.wall=0.9", "at rest: a disc goes on bouncing, 13.72 to 15.25 times per time, up to a height", ""),
+        (
+            "restitution.contact_duration=1e-6",
+            "1e+06 to 1.111e+06 times per time",
+            "warning: a disc at rest makes up to",
+        ),
+        (
+            "restitution.wall=0",
+            "",
+            "warning: with a coefficient of restitution of 0, a disc that comes to rest collides",
+        ),
+        ("gravity=", "", ""),
+    ],
+)
+def test_discs_that_may_come_to_rest(override, said, warned, tmp_path):
+    (tmp_path / "scene.toml").write_text(RESTING)
+    result = called("check", "scene.toml", "--set", override, folder=tmp_path)
+    assert result.returncode == 0
+    assert ("at rest:" in result.stdout) == bool(said)
+    assert said in result.stdout
+    assert ("warning:" in result.stdout) == bool(warned)
+    assert warned in result.stdout
+    found = json.loads(called("check", "scene.toml", "--json", "--set", override, folder=tmp_path).stdout)
+    assert (found["rest"] is None) == (not said and not warned)

@@ -38,17 +38,18 @@ FOLDER = {
 
         import numpy as np
 
+        from idealgas.analysis.core.result import Result
         from idealgas.analysis.core.statistics import Estimate
         from idealgas.errors import UserError
 
 
         @dataclass(frozen=True)
-        class FastestDisc:
+        class FastestDisc(Result):
             speeds: np.ndarray
             speed: Estimate
 
             def as_dict(self):
-                return {"speed": self.speed.as_dict()}
+                return super().as_dict() | {"speed": self.speed.as_dict()}
 
 
         def fastest_disc(log, start=None, end=None, progress=None, rank=1):

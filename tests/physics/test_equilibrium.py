@@ -12,6 +12,7 @@ from idealgas.analysis.heat_capacity.measure import heat_capacity
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.theory import hard_discs
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
@@ -114,6 +115,24 @@ def test_mixture(tmp_path):
         assert abs(rate.rate.deviation) < STANDARD_ERRORS, (rate.species, rate.other)
         assert rate.rate.standard_error < 0.01 * rate.rate.value
     assert pressures.check().agrees
+
+
+def test_few_discs_in_a_heat_bath(tmp_path):
+    """Speeds and rates of Maxwell and Boltzmann's law, not of four discs that share a fixed energy: 3 % faster."""
+    sides = "".join(f"box.{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
+    species = 'species = [{ name = "gas", count = 4, radius = 0.03, temperature = 3 }]'
+    simulate(
+        parse_scene(f"scene.seed = 7\nbox.size = [1, 1]\n{sides}{species}\nrun.events = 300_000"), tmp_path / "run.h5"
+    )
+    with open_log(tmp_path / "run.h5") as log:
+        result = pressure(log)
+    (rate,), (flight,) = result.collision_rates, result.free_paths
+    for estimate in (rate.rate, flight.path, flight.time, flight.speed):
+        assert abs(estimate.deviation) < STANDARD_ERRORS
+        assert estimate.standard_error < 0.006 * estimate.value
+    fixed = flight.speed.theory * hard_discs.finite_speed_factor(8)
+    assert fixed - flight.speed.value > 10 * flight.speed.standard_error
+    assert result.check().agrees
 
 
 def test_heat_capacity_is_the_number_of_discs(tmp_path):

@@ -7,14 +7,17 @@ import math
 
 import numpy as np
 import pytest
+from log_compare import differences
 from support import ROOT
 
 from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.info import info
 from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.measure import relaxation
 from idealgas.analysis.temperature.measure import temperature
 from idealgas.errors import UserError
 from idealgas.log import open_log
+from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
 
@@ -165,6 +168,38 @@ def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
         simulate(equal_speeds("monte_carlo", 100, 1, 5000, keys="run.v_ref = 3.5"), path)
     with open_log(path) as log:
         assert not log.complete
+
+
+def test_a_default_reference_speed_is_enough_for_every_run(tmp_path):
+    """It rises in all of these runs; the shares accepted are right together, and any break leaves the log as it is."""
+    deviations = []
+    for seed in range(40):
+        path, part = tmp_path / "run.h5", tmp_path / "part.h5"
+        scene = equal_speeds("monte_carlo", 300, seed, 60)
+        simulate(scene, path, force=True)
+        with open_log(path) as log:
+            found = acceptance(log)
+            values = log.observables["v_ref"][1]
+            told = info(log)["run"]["v_ref"]
+        assert told == {"start": values[0], "end": values[-1], "raises": len(found.raises) - 1}
+        deviations.append(found.acceptance.deviation)
+        assert values[0] == pytest.approx(5)
+        assert (np.diff(values) >= 0).all()
+        assert [v_ref for _, v_ref in found.raises] == sorted(set(values.tolist()))
+        assert len(found.raises) > 1
+        if seed < 4:
+            simulate(equal_speeds("monte_carlo", 300, seed, 20), part, force=True)
+            resume(part, ["run.collisions_per_disc=60"])
+            assert differences(part, path) == []
+    assert abs(np.mean(deviations)) < STANDARD_ERRORS / math.sqrt(len(deviations))
+
+
+@pytest.mark.slow
+def test_a_large_gas_of_equal_speeds(tmp_path):
+    """20 000 discs have pairs faster than 5 times their speed at any time; each of six seeds comes to its end."""
+    for seed in range(6):
+        summary = simulate(equal_speeds("monte_carlo", 20_000, seed, 20), tmp_path / "run.h5", force=True)
+        assert summary.completed
 
 
 @pytest.mark.parametrize(("number", "settled"), [(500, 5.0), (100, 25.0)])

@@ -8,6 +8,9 @@ Where an analysis is to give other numbers, this puts the new ones on record:
 
     python tests/stability/test_old_logs.py
 
+Some defaults are others since trajectory version 4. `cases/logs/defaults` has logs of version 3 that had the old ones,
+and digests of what version 3 wrote in runs without a break: they go on with the values that they began with.
+
 New formats get logs of their own; these are never written again. What thermal walls emit goes through the logarithm of
 the C library, so of such a log no digest is on record: it is compared with a run on this machine. For the other digests
 see test_golden_logs.py.
@@ -32,10 +35,11 @@ from click.testing import CliRunner
 from idealgas_cli.main import main
 from PIL import Image
 
-from idealgas import open_log
+from idealgas import open_log, parse_scene
 
 FOLDER = Path(__file__).parents[1] / "cases" / "logs"
 RESUMED = FOLDER / "resumed.json"
+DEFAULTS = FOLDER / "defaults"
 PACKED = ".h5.xz"
 LOGS = sorted(path.name.removesuffix(PACKED) for path in FOLDER.glob(f"*{PACKED}"))
 
@@ -161,12 +165,17 @@ def differences(found: Any, recorded: Any, place: str = "") -> list[str]:
     return [] if same else [f"{place}: {found!r}, {recorded!r} on record"]
 
 
+SUMS = {f"checkpoints/{name}" for name in ("wall_energy", "wall_energy_sum", "dissipated_energy_sum")}
+"""Energies that are added up differently than when these logs were written."""
+
+
 def stored_digests(path: Path) -> dict[str, str]:
-    """Digest of each dataset of events, checkpoints and snapshots; event times of Monte Carlo in single precision."""
+    """Digest of each dataset of events, checkpoints and snapshots, without SUMS; event times of Monte Carlo as f4."""
     found = {}
 
     def keep(name: str, item: object) -> None:
-        if isinstance(item, h5py.Dataset) and name.split("/")[0] in ("events", "checkpoints", "particles"):
+        table = name.split("/")[0]
+        if isinstance(item, h5py.Dataset) and table in ("events", "checkpoints", "particles") and name not in SUMS:
             values = item[()].astype("f4") if name == "events/time" and without_positions else item[()]
             found[name] = hashlib.sha256(values.astype(values.dtype.newbyteorder("<")).tobytes()).hexdigest()
 
@@ -243,6 +252,40 @@ def test_between_thermal_walls_resumed_to_the_same_events(own):
     if any(not np.array_equal(again[name], values) for name, values in stored.items()):
         pytest.skip("the logarithm of this C library differs in the last bit")
     assert stored_digests(resume(log, HEAT_BATH)) == stored_digests(whole)
+
+
+@pytest.mark.parametrize(("log", "end"), [("resting", "--events 4000"), ("monte-carlo", "--trials 4500")])
+def test_resumed_with_the_defaults_of_before(log, end, tmp_path):
+    path = tmp_path / f"{log}.h5"
+    path.write_bytes(lzma.decompress((DEFAULTS / f"{log}{PACKED}").read_bytes()))
+    with open_log(path) as old:
+        before = old.scene
+        default = parse_scene(re.sub("contact_duration = .*", "", old.scene_text))
+    ran = CliRunner().invoke(main, ["resume", str(path), *shlex.split(end)])
+    assert ran.exit_code == 0, ran.output
+    assert stored_digests(path) == json.loads((DEFAULTS / "resumed.json").read_text())[log]
+    with open_log(path) as new:
+        assert new.attributes["trajectory"] == 3
+        assert new.scene.restitution == before.restitution
+        assert "v_ref" not in new.observables
+    if log == "resting":
+        assert before.restitution.contact_duration < 1e-6 < 0.01 < default.restitution.contact_duration
+
+
+@pytest.mark.parametrize("log", ["effects", "interrupted"])
+def test_energies_go_on_as_floats(log, own):
+    """What walls gave, in the samples and in the checkpoints of a resumed log, is that of a run of its scene."""
+    whole = run_without_a_break(log, ENDS[log])
+    with open_log(resume(log, ENDS[log])) as old, open_log(whole) as new:
+        time, given = old.observables["wall_energy"]
+        assert np.array_equal(time, new.observables["wall_energy"][0])
+        assert given == pytest.approx(new.observables["wall_energy"][1], rel=1e-12, abs=1e-12 * np.abs(given).max())
+        at = np.searchsorted(time, old.checkpoints[-1].time, "right") - 1
+        assert np.array_equal(old.checkpoints[-1].arrays["wall_energy"], given[at])
+        assert given.any()
+        assert "dissipated_energy" not in old.observables
+        assert abs(new.summary["energy_drift"]) < 1e-12
+        assert old.summary["energy_drift"] in (None, pytest.approx(0.0, abs=1e-12))
 
 
 def test_a_difference_is_found():

@@ -12,7 +12,7 @@ FREE = {"_version", "errors", "events", "sides", ""}
 
 ALLOWED = {
     "document": set(),
-    "scene": {"document"},
+    "scene": {"document", "physics"},  # defaults that follow from a law
     "physics": {"_jit"},
     "gas": {"_jit", "document", "scene", "physics"},  # discs are placed by the nearest image's distance
     "engine": {"_jit", "gas", "physics"},

@@ -36,6 +36,7 @@ NAMED = {
     "log/header.py": ({"gravity"}, "names in the file"),
     "log/export/frames.py": ({"periodic"}, "H5MD's word for a boundary"),
     "run/layout.py": ({"periodic"}, "H5MD's word for a boundary"),
+    "analysis/core/moving_wall.py": ({"gravity", "piston"}, "the room that a piston leaves, and what presses it"),
     "analysis/evolution/theory.py": ({"restitution", "piston"}, "Haff's law and those of a piston"),
     "analysis/evolution/measure.py": ({"gravity", "piston"}, "the course of a piston and its energy"),
     "analysis/evolution/figure.py": ({"piston"}, "the course of a piston"),
@@ -51,6 +52,9 @@ PATHS = {path.relative_to(ROOT / "idealgas").as_posix(): path for path in sorted
 PATHS |= {path.relative_to(ROOT).as_posix(): path for path in sorted((ROOT / "cli").rglob("*.py"))}
 SLICED = {f"{place}/{word}.py" for place in PLACES for word in WORDS}
 
+SUMS = ("wall_energy", "dissipated", "flow")
+"""What the bundle has beside the effects: sums over a run."""
+
 FIELDS = {"gravity", "wall", "rotation", "restitution", "piston"}
 SAID = dict(zip(EFFECTS, WORDS, strict=True)) | {word: word for word in WORDS if word != "wall"} | {"segments": "wall"}
 """Strings that name an effect; "wall" does not, as a wall is anything that has a number."""
@@ -65,7 +69,7 @@ def owned(owner: str, name: str, own: bool) -> str | None:
     """The effect that `owner.name` stands for: a table of a scene, a part of its box, or a field of the bundle."""
     if owner in ("scene", "_scene") or (own and owner == "self"):
         return name if name in FIELDS else None
-    if owner == "effects" and name in Effects._fields[:-1]:
+    if owner == "effects" and name in Effects._fields and name not in SUMS:
         return SAID[name]
     return "periodic" if owner == "box" and name in ("periodic", "sides") else None
 
@@ -107,7 +111,7 @@ def test_the_lists_of_effects_have_them_all_in_one_order():
     runs = [import_module(f"idealgas.run.effects.{word}") for word in WORDS]
     assert tuple(table.NAME for table in tables) == EFFECTS
     assert tuple(run.SLICE for run in runs) == SLICES
-    assert (*(piece.field for piece in SLICES), "wall_energy") == Effects._fields
+    assert (*(piece.field for piece in SLICES), *SUMS) == Effects._fields
     assert set(Document.model_fields) >= FIELDS
 
 

@@ -6,12 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble, drift
+from idealgas.analysis.core.equilibrium import Ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.core.window import Window
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
 from idealgas.log import Log
 
@@ -72,20 +73,9 @@ class ExpectedRates(NamedTuple):
 
 def theory_of(log: Log, discs: Composition) -> BoxTheory:
     """Theory of the pressure and of the contacts of a uniform gas, the one of a log."""
-    return box_theory(discs.radius, discs.number, log.box, log.periodic, ergodic=_is_ergodic(log))
-
-
-def _is_ergodic(log: Log) -> bool:
-    """Whether the gas reaches all states of its energy. False only for two equal discs that start without momentum.
-
-    Between walls their velocities then remain equal in every component except for signs. As long as they meet with
-    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
-    """
-    gas = log.discs
-    if len(gas) != 2 or all(log.periodic) or not log.scene.properties.isolated or np.ptp(gas.mass) > 0:
-        return True
-    speeds = np.abs(gas.velocity - drift(log))[:, ~np.array(log.periodic)]
-    return bool(np.abs(speeds[0] - speeds[1]).max() > 1e-9 * speeds.max())
+    return box_theory(
+        discs.radius, discs.number, log.box, log.periodic, ergodic=conserved.is_ergodic(log.scene, log.discs)
+    )
 
 
 def expected_rates(
@@ -109,7 +99,7 @@ def expected_rates(
 
 
 def collision_rates(
-    discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts
+    discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts | SampledImpacts
 ) -> tuple[CollisionRate, ...]:
     """Measured collision rates of all ordered pairs of species, in 1/time.
 

@@ -8,11 +8,13 @@ The folder `idealgas/analysis/NAME` of an analysis declares it as `ANALYSIS` and
     combine.py   with `several`: combine_NAME(results): one result of several logs, for tables and figure;
                  with `folders` too: restore_NAME(found, label): the result that a sweep stored as plain values
 
-Results are dataclasses with `as_dict()`: plain values, ready for JSON.
+Results are dataclasses that inherit `Result` and extend its `as_dict()`: plain values, ready for JSON. What must hold
+for the numbers and does not, a result says in its `premises`: plain sentences, which `Analysis` brings into tables,
+reports and JSON. `core/premises.py` has the premises that all analyses share.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property, wraps
 from importlib import import_module
@@ -25,6 +27,7 @@ from idealgas.errors import UserError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from idealgas.analysis.core.result import Origin
     from idealgas.analysis.core.tables import Table
     from idealgas.log import Log
 
@@ -94,9 +97,10 @@ class Analysis:
 
     package: name of its Python package, `__name__` there. help: help text of the command; its first sentence stands in
     the list of commands. sections: sections of the report. options: options beside the start and end of the window.
-    several: whether the analysis combines several logs. folders: whether it also takes folders of sweeps. checked:
-    whether results have a method `check()` that compares measurement and theory. start, end: description of the default
-    start and end of the window. reads: what the progress bar counts, such as events or frames.
+    several: whether the analysis combines several logs. averages: whether it then takes averages over them, so that
+    their runs must be independent. folders: whether it also takes folders of sweeps. checked: whether results have a
+    method `check()` that compares measurement and theory. start, end: description of the default start and end of the
+    window. reads: what the progress bar counts, such as events or frames.
     """
 
     package: str
@@ -104,6 +108,7 @@ class Analysis:
     sections: tuple[Section, ...]
     options: tuple[Option, ...] = ()
     several: bool = False
+    averages: bool = False
     folders: bool = False
     checked: bool = False
     start: str = "detected equilibrium"
@@ -128,7 +133,7 @@ class Analysis:
         progress: Progress | None = None,
         **options: Any,
     ) -> Any:
-        """Analyse one log between the times `start` and `end` and return the result, a dataclass with `as_dict()`.
+        """Analyse one log between the times `start` and `end` and return the result, a `Result`.
 
         Raises:
             UserError: if an option is unknown or its value not allowed, or if the analysis does not apply to the log.
@@ -138,8 +143,12 @@ class Analysis:
             if name not in known:
                 raise unknown(f"option of {self.key}", name, ("start", "end", *known))
             known[name].check(value)
+        from idealgas.analysis.core import premises
+
         values = {name: option.default for name, option in known.items()} | options
-        return self._code("measure", self.name)(log, start=start, end=end, progress=progress, **values)
+        found = self._code("measure", self.name)(log, start=start, end=end, progress=progress, **values)
+        origin = premises.origin_of(log.scene, str(log.path))
+        return replace(found, premises=(*premises.of_log(log), *found.premises), origin=origin)
 
     @cached_property
     def function(self) -> Callable[..., Any]:
@@ -154,19 +163,35 @@ class Analysis:
         return function
 
     def combine(self, results: Sequence[Any]) -> Any:
-        """Combine the results of one log or, with `several`, of more logs into what tables and figure show."""
-        if self.several:
-            return self._code("combine", f"combine_{self.name}")(results)
-        (result,) = results
-        return result
+        """Combine the results of one log or, with `several`, of more logs into what tables and figure show.
 
-    def restore(self, found: dict[str, Any], label: str) -> Any:
-        """Make a result again from the values of its `as_dict()` that a sweep stored; label: name of the point."""
-        return self._code("combine", f"restore_{self.name}")(found, label)
+        Raises:
+            UserError: if the analysis takes averages and a run is there twice, or if the gases do not go together.
+        """
+        if not self.several:
+            (result,) = results
+            return result
+        from idealgas.analysis.core import premises
+
+        independent = premises.of_averages(results) if self.averages else ()
+        combined = self._code("combine", f"combine_{self.name}")(results)
+        if len(results) == 1 and combined is results[0]:
+            return combined
+        return replace(combined, premises=(*premises.of_several(results), *independent, *combined.premises))
+
+    def restore(self, found: dict[str, Any], label: str, origin: "Origin | None" = None) -> Any:
+        """Make a result again from the values of its `as_dict()` that a sweep stored.
+
+        label: name of the point. origin: its run.
+        """
+        result = self._code("combine", f"restore_{self.name}")(found, label)
+        return replace(result, premises=tuple(found.get("premises", ())), origin=origin)  # those of before have none
 
     def tables(self, combined: Any) -> "list[Table]":
-        """Tables of a combined result."""
-        return self._code("tables", f"{self.name}_tables")(combined)
+        """Tables of a combined result; the first one has a note for each premise that does not hold."""
+        first, *others = self._code("tables", f"{self.name}_tables")(combined)
+        notes = (*(f"premise: {sentence}" for sentence in combined.premises), *first.notes)
+        return [replace(first, notes=notes), *others]
 
     def figure(self, combined: Any) -> "Figure":
         """Picture of a combined result."""

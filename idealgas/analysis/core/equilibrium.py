@@ -1,11 +1,13 @@
 """Conserved quantities of a gas, and the ensemble of its equilibrium: how the energy is shared among the discs."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.theory import conserved
+from idealgas.analysis.theory.column import barometric_temperature
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -29,18 +31,13 @@ class Ensemble:
 
 
 def kept_momentum(log: Log) -> np.ndarray:
-    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool.
-
-    Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
-    conserve both components.
-    """
-    return np.array(log.scene.properties.conserves_momentum if log.has_positions else (True, True))
+    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool; see `conserved`."""
+    return conserved.kept_momentum(log.scene)
 
 
 def drift(log: Log) -> np.ndarray:
     """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
-    gas = log.discs
-    return np.where(kept_momentum(log), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
+    return conserved.common_motion(log.scene, log.discs)
 
 
 def ensemble(log: Log) -> Ensemble:
@@ -68,8 +65,11 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
-    temperature = min(properties.temperatures, default=energy / dof)
     share = 1 - kept.mean() * mass / gas.mass.sum()
+    if properties.temperatures:  # the walls' heat bath has no limit to its energy
+        (temperature,) = properties.temperatures
+        return Ensemble(frame, math.inf, temperature, temperature * share)
+    temperature = energy / dof
     return Ensemble(frame, dof, temperature, temperature * share)
 
 
@@ -89,20 +89,11 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
         return None
     g = log.gravity[axis]
     start = log.state_at(log.start_time)
-    energy = gas.kinetic_energy - float(gas.mass @ start.position[:, axis]) * g
-    spins = 0.0
+    freedom, energy = 2.0 * len(gas), gas.kinetic_energy
     if log.inertia is not None and start.angular_velocity is not None:
         energy += float(log.inertia @ start.angular_velocity**2) / 2
-        spins = len(gas) / 2
+        freedom += len(gas)
+    above = start.position[:, axis] if g < 0 else log.box[axis] - start.position[:, axis]
+    energy += abs(g) * float(gas.mass @ (above - gas.radius))
     height = log.box[axis] - 2 * discs.radius
-
-    def excess(t: float) -> float:
-        x = discs.mass * g * height / t
-        with np.errstate(over="ignore"):
-            above = height * (1 / -np.expm1(-x) - 1 / x)  # mean of h' in (0, height) with weight exp(x h'/height)
-        potential = -(discs.number * discs.mass * g * (discs.radius + above)).sum()
-        return (len(gas) + spins) * t + float(potential) - energy
-
-    lowest = -(discs.number * discs.mass * g * np.where(g < 0, discs.radius, log.box[axis] - discs.radius)).sum()
-    scale = max(energy - float(lowest), 1e-300) / len(gas)
-    return float(brentq(excess, 1e-3 * scale, 2 * scale))
+    return barometric_temperature(energy, freedom, discs.mass, discs.number, abs(g), height)

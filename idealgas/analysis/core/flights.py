@@ -6,6 +6,15 @@ from typing import Any
 import numpy as np
 
 from idealgas._jit import inline, njit
+from idealgas.analysis.core.falls import (
+    changes_in_fall,
+    integral_over_fall,
+    length_of_fall,
+    time_at_value,
+    turning_time,
+    value_in_fall,
+    velocity_quantity,
+)
 from idealgas.analysis.core.stream import block_at, block_back
 from idealgas.gas.state import Gas
 from idealgas.physics.motion import velocity_after
@@ -84,19 +93,11 @@ def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
 def _add_fall(sums, mass, vx, vy, gx, gy, t):
     """Add the time integrals over a parabolic flight of duration t that starts at velocity (vx, vy)."""
     a, b, c = gx * gx + gy * gy, vx * gx + vy * gy, vx * vx + vy * vy  # v² = a s² + 2 b s + c
-    across = abs(vx * gy - vy * gx) / a
-    sums[0] += math.sqrt(a) * (_half_arc(t + b / a, across) - _half_arc(b / a, across))
+    sums[0] += length_of_fall(vx, vy, (gx, gy), t)
     sums[1] += mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0))
     sums[2] += mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0))
     power = c * c + t * (2.0 * b * c + t * ((4.0 * b * b + 2.0 * a * c) / 3.0 + t * (a * b + t * a * a / 5.0)))
     sums[3] += mass * mass * t * power
-
-
-@inline
-def _half_arc(u, k):
-    """Integral ∫₀ᵘ √(s² + k²) ds."""
-    root = math.sqrt(u * u + k * k)
-    return 0.5 * (u * root + (k * k * math.asinh(u / k) if k > 0.0 else 0.0))
 
 
 @njit
@@ -132,8 +133,20 @@ class VelocityHistogram:
 
     columns = ("time", "disc", "velocity")
 
-    def __init__(self, quantity: str, low: np.ndarray, high: np.ndarray, bins: int, sampled: np.ndarray) -> None:
-        """Take the range of the bins of each species: low and high of shape (S,), in the unit of the quantity."""
+    def __init__(
+        self,
+        quantity: str,
+        low: np.ndarray,
+        high: np.ndarray,
+        bins: int,
+        sampled: np.ndarray,
+        gravity: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """Take the range of the bins of each species: low and high of shape (S,), in the unit of the quantity.
+
+        gravity: acceleration between events, length/time².
+        """
+        self.gravity = gravity
         self.quantity = VELOCITY_QUANTITIES.index(quantity)
         self.low, self.per_unit, self.bins = low, bins / (high - low), bins
         self.sampled = sampled
@@ -153,14 +166,14 @@ class VelocityHistogram:
     def add(self, rows: Any) -> None:
         """Add the next event rows of the log."""
         self._block = _add_histogram(
-            rows.time, rows.disc, rows.velocity, self.quantity, self._species, self._mass, self._slot,
+            rows.time, rows.disc, rows.velocity, self.quantity, self.gravity, self._species, self._mass, self._slot,
             self._tracks, self.edges, self._block, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
         )  # fmt: skip
 
     def finish(self) -> None:
         """Add the last part of the flight of every disc, up to time edges[-1]."""
         _finish_histogram(
-            self.quantity, self._species, self._mass, self._slot,
+            self.quantity, self.gravity, self._species, self._mass, self._slot,
             self._tracks, self.edges, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
         )  # fmt: skip
         self.snapshots = self.snapshots[:-1]
@@ -175,42 +188,71 @@ def bin_of(value, low, per_unit, bins):
 
 
 @inline
-def _spend_histogram(quantity, mass, slot, track, s, until, edges, block, low, per_unit, counts, sums, snapshots):
+def _spend_histogram(
+    quantity, gravity, mass, slot, track, s, until, edges, block, low, per_unit, counts, sums, snapshots
+):
     vx, vy = track[VX], track[VY]
-    if quantity == 0:
-        value = math.sqrt(vx * vx + vy * vy)
-    elif quantity == 1:
-        value = vx
-    elif quantity == 2:
-        value = vy
-    else:
-        value = 0.5 * mass * (vx * vx + vy * vy)
+    changes = changes_in_fall(quantity, gravity)
+    value = velocity_quantity(quantity, mass, vx, vy)
     b = bin_of(value, low[s], per_unit[s], counts.shape[2] - 2)
     since = track[T]
     k = block_back(edges, block, since)
-    while k < block:
-        counts[k, s, b] += edges[k + 1] - since
-        sums[k, s] += value * (edges[k + 1] - since)
+    while True:
+        stop = until if k == block else edges[k + 1]
+        if changes:
+            start, weight = since - track[T], stop - since
+            fall_x = velocity_after(vx, gravity[0], start)
+            fall_y = velocity_after(vy, gravity[1], start)
+            _spend_fall(quantity, mass, fall_x, fall_y, gravity, weight, low[s], per_unit[s], counts[k, s])
+            sums[k, s] += integral_over_fall(quantity, mass, fall_x, fall_y, gravity, weight)
+            value = value_in_fall(quantity, mass, fall_x, fall_y, gravity, weight)
+        else:
+            counts[k, s, b] += stop - since
+            sums[k, s] += value * (stop - since)
+        if k == block:
+            break
         if slot >= 0:
             snapshots[k, slot] = value
-        since = edges[k + 1]
+        since = stop
         k += 1
-    counts[block, s, b] += until - since
-    sums[block, s] += value * (until - since)
+
+
+@inline
+def _spend_fall(quantity, mass, vx, vy, gravity, duration, low, per_unit, counts):
+    """Add the times to counts (bins + 2,) that a quantity spends in each bin during a fall."""
+    bins = counts.shape[0] - 2
+    turn = turning_time(quantity, vx, vy, gravity)
+    b = bin_of(velocity_quantity(quantity, mass, vx, vy), low, per_unit, bins)
+    since = 0.0
+    while since < duration:  # twice at most: before the least value and after it
+        rises = since >= turn
+        until = duration if rises else min(turn, duration)
+        last = bin_of(value_in_fall(quantity, mass, vx, vy, gravity, until), low, per_unit, bins)
+        step = 1 if last > b else -1
+        while b != last:
+            edge = low + (b if step > 0 else b - 1) / per_unit
+            met = min(max(time_at_value(quantity, mass, edge, rises, vx, vy, gravity), since), until)
+            counts[b] += met - since
+            since = met
+            b += step
+        counts[b] += until - since
+        since = until
 
 
 @njit
 def _add_histogram(
-    time, disc, velocity, quantity, species, mass, slot, tracks, edges, block, low, per_unit, counts, sums, snapshots
-):
+    time, disc, velocity, quantity, gravity, species, mass, slot,
+    tracks, edges, block, low, per_unit, counts, sums, snapshots,
+):  # fmt: skip
     for row in range(time.shape[0]):
         i = np.uintp(disc[row])
         now = time[row]
         block = block_at(edges, block, now)
         track = tracks[i]
         _spend_histogram(
-            quantity, mass[i], slot[i], track, species[i], now, edges, block, low, per_unit, counts, sums, snapshots
-        )
+            quantity, gravity, mass[i], slot[i], track, species[i], now,
+            edges, block, low, per_unit, counts, sums, snapshots,
+        )  # fmt: skip
         track[T] = now
         track[VX] = velocity[row, 0]
         track[VY] = velocity[row, 1]
@@ -218,11 +260,12 @@ def _add_histogram(
 
 
 @njit
-def _finish_histogram(quantity, species, mass, slot, tracks, edges, low, per_unit, counts, sums, snapshots):
+def _finish_histogram(quantity, gravity, species, mass, slot, tracks, edges, low, per_unit, counts, sums, snapshots):
     last = edges.shape[0] - 2
     for i in range(tracks.shape[0]):
         _spend_histogram(
             quantity,
+            gravity,
             mass[i],
             slot[i],
             tracks[i],

@@ -1,11 +1,11 @@
 """Intervals between events: free flights of discs and waiting times of the gas, as histograms and thinned samples."""
 
-import math
 from typing import Any
 
 import numpy as np
 
 from idealgas._jit import inline, njit
+from idealgas.analysis.core.falls import length_of_flight
 from idealgas.analysis.core.flights import bin_of
 from idealgas.analysis.core.stream import block_at, block_back
 from idealgas.gas.state import Gas
@@ -55,29 +55,39 @@ class FreeFlights(_Intervals):
 
     columns = ("time", "disc", "partner", "velocity")
 
-    def __init__(self, path: bool, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
+    def __init__(
+        self,
+        path: bool,
+        high: np.ndarray,
+        bins: int,
+        stride: int,
+        most_samples: int,
+        gravity: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """Take whether paths are measured or times, and the acceleration `gravity` in length/time²."""
         super().__init__(high, bins, stride, most_samples)
-        self.path = path
+        self.path, self.gravity = path, gravity
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
         self._species = gas.species
-        # time of the last event, speed (1 if times are measured), path since the last collision, time of that collision
-        self._tracks = np.zeros((len(gas), 4))
-        self._tracks[:, 3] = -np.inf
+        # time of the last event, velocity then, path (or time) since the last collision, time of that collision
+        self._tracks = np.zeros((len(gas), 5))
+        self._tracks[:, 4] = -np.inf
 
     def add(self, rows: Any) -> None:
         """Add the next event rows of the log."""
         self._block = _add_free_flights(
-            rows.time, rows.disc, rows.partner, rows.velocity, self.path, self._species, self._tracks, self.edges,
-            self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,
+            rows.time, rows.disc, rows.partner, rows.velocity, self.path, self.gravity, self._species, self._tracks,
+            self.edges, self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample,
+            self._origin,
         )  # fmt: skip
 
 
 @njit
 def _add_free_flights(
-    time, disc, partner, velocity, path, species, tracks, edges, block,
+    time, disc, partner, velocity, path, gravity, species, tracks, edges, block,
     per_unit, counts, sums, stride, seen, sample, origin,
 ):  # fmt: skip
     for row in range(time.shape[0]):
@@ -85,15 +95,17 @@ def _add_free_flights(
         now = time[row]
         block = block_at(edges, block, now)
         track = tracks[i]
-        track[2] += track[1] * (now - track[0])
+        since = now - track[0]
+        track[3] += length_of_flight(track[1], track[2], gravity, since) if path else since
         if partner[row] >= 0:
-            if track[3] >= edges[0]:
-                began = block_back(edges, block, track[3])
-                _put(track[2], began, species[i], per_unit, counts, sums, stride, seen, sample, origin)
-            track[2] = 0.0
-            track[3] = now
+            if track[4] >= edges[0]:
+                began = block_back(edges, block, track[4])
+                _put(track[3], began, species[i], per_unit, counts, sums, stride, seen, sample, origin)
+            track[3] = 0.0
+            track[4] = now
         track[0] = now
-        track[1] = math.sqrt(velocity[row, 0] ** 2 + velocity[row, 1] ** 2) if path else 1.0
+        track[1] = velocity[row, 0]
+        track[2] = velocity[row, 1]
     return block
 
 

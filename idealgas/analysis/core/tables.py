@@ -16,14 +16,17 @@ class Number(NamedTuple):
     """A number in a table.
 
     value: the number, None if there is none. digits: format for the terminal and the report. absent: text that is shown
-    if there is no value.
+    if there is no value. instead: text that is shown instead of the value; CSV has the value.
     """
 
     value: float | None
     digits: str = ".6g"
     absent: str = ""
+    instead: str | None = None
 
     def __str__(self) -> str:
+        if self.instead is not None:
+            return self.instead
         return self.absent if self.value is None else f"{self.value:{self.digits}}"
 
 
@@ -75,10 +78,12 @@ def estimates(title: str, rows: Iterable[tuple[str, Estimate]], notes: Sequence[
     rough = any(found.theory_error > 0 for _, found in rows)
 
     def cells(name: str, found: Estimate) -> tuple[Cell, ...]:
-        samples = Number(found.independent_samples, ".0f")
+        exact = math.isinf(found.independent_samples)
+        samples = Number(found.independent_samples, ".0f", instead="" if exact else None)
+        spread = Number(found.standard_error, ".2g", instead="exact" if exact else None)
         error = [Number(None if found.theory is None else found.theory_error, ".2g")] if rough else []
         theory = Number(found.theory), *error, Number(found.deviation, "+.2f")
-        return name, Number(found.value), Number(found.standard_error, ".2g"), samples, *theory
+        return name, Number(found.value), spread, samples, *theory
 
     heads = (*ESTIMATE_HEADS[:-1], *[THEORY_ERROR] * rough, ESTIMATE_HEADS[-1])
     return Table(title, heads, [cells(*row) for row in rows], notes)

@@ -10,6 +10,7 @@ ANALYSIS = Analysis(
     """,
     sections=(Section("Effusion", "Share of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),),
     several=True,
+    averages=True,
     folders=True,
     start="the opening of the gate",
     reads="frames",

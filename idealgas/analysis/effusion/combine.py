@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.effusion.measure import Effusion
+from idealgas.errors import UserError
 
 
 @dataclass(frozen=True)
-class Effusions:
+class Effusions(Result):
     """Flow through a slit in groups of runs that differ only in their seeds.
 
     groups: runs of each group, by its name. together: mean flux over density of each group, length/time.
@@ -20,13 +22,20 @@ class Effusions:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {name: estimate.as_dict() for name, estimate in self.together.items()}
+        return super().as_dict() | {name: estimate.as_dict() for name, estimate in self.together.items()}
 
 
 def combine_effusion(results: Sequence[Effusion]) -> Effusions:
-    """Combine runs of the same name into groups and average their flux."""
+    """Combine runs of the same name into groups and average their flux.
+
+    Raises:
+        UserError: if runs of one name are of different gases.
+    """
     names = dict.fromkeys(found.name for found in results)
     groups = {name: tuple(found for found in results if found.name == name) for name in names}
+    for name, runs in groups.items():
+        if len(gases := {run.origin.gas: run.origin.words for run in runs if run.origin is not None}) > 1:
+            raise UserError(f"{name}: different gases under one name ({'; '.join(gases.values())}): analyse them apart")
     together = {name: mean_of_replicates([found.speed for found in runs]) for name, runs in groups.items()}
     return Effusions(groups, together)
 

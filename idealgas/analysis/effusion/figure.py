@@ -14,10 +14,14 @@ def effusion_figure(found: Effusions) -> Figure:
     for (name, runs), colour in zip(groups.items(), COLOURS * len(groups), strict=False):
         beyond = np.mean([run.beyond for run in runs], axis=0)
         course.plot(runs[0].time, beyond, color=colour, label=name)
-        course.plot(runs[0].time, np.mean([run.expected for run in runs], axis=0), "--", color=GREY, linewidth=0.8)
-        n = runs[0].density
-        speed, expected = together[name], together[name].theory or 0.0
-        flux.errorbar(n * expected, n * speed.value, n * speed.standard_error, fmt="o", color=colour, capsize=3)
+        if laws := [run.expected for run in runs if run.expected is not None]:
+            course.plot(runs[0].time, np.mean(laws, axis=0), "--", color=GREY, linewidth=0.8)
+        n, speed = runs[0].density, together[name]
+        if speed.theory is None:
+            flux.axhline(n * speed.value, color=colour, label=f"{name}: no theory")
+        else:
+            expected, value, error = n * speed.theory, n * speed.value, n * speed.standard_error
+            flux.errorbar(expected, value, error, fmt="o", color=colour, capsize=3)
     line = np.array([0.0, 1.1 * max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())])
     flux.plot(line, line, "--", color=GREY, label="n⟨v⟩/π")
     course.set_xlabel("t (time)")

@@ -3,12 +3,17 @@
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.evolution.course import PressureCourse
 from idealgas.analysis.evolution.measure import Evolution
 
 
 def evolution_figure(result: Evolution) -> Figure:
-    """Picture of the temperature, its law dashed, and of discs beyond a gate, piston and energy given by walls."""
-    shown = [result.beyond, result.piston is not None, result.given]
+    """Picture of the temperature, its law dashed, of discs beyond a gate, pressure, piston and energy given by walls.
+
+    With a piston the pressure against the area comes last, with the isotherm and the adiabat through the start.
+    """
+    course, has_piston = result.pressure, result.piston is not None
+    shown = [result.beyond, course, has_piston, result.given, course and has_piston]
     figure, axes = panels(1 + sum(map(bool, shown)))
     _temperature(axes[0], result)
     rest = iter(axes[1:])
@@ -18,6 +23,8 @@ def evolution_figure(result: Evolution) -> Figure:
             ax.plot(result.time, share, color=colour, label=name)
         ax.set_ylim(-0.05, 1.05)
         ax.set_ylabel("share beyond the gate (no unit)")
+    if course:
+        _pressure(next(rest), course)
     if result.piston is not None:
         ax = next(rest)
         ax.plot(result.samples, result.piston, "o-", ms=3, color=COLOURS[0], label="piston")
@@ -31,6 +38,9 @@ def evolution_figure(result: Evolution) -> Figure:
         ax.set_ylabel("energy (k_B = 1)")
     for ax in axes:
         ax.set_xlabel("t (time)")
+    if course and has_piston:
+        _state(next(rest), course)
+    for ax in axes:
         ax.legend(frameon=False, fontsize="small")
     return figure
 
@@ -47,3 +57,23 @@ def _temperature(ax, result: Evolution) -> None:  # type: ignore[no-untyped-def]
     elif high - low < 1e-6 * high:  # changes only by rounding
         ax.set_ylim(0.9 * low, 1.1 * high)
     ax.set_ylabel("temperature (energy, k_B = 1)")
+
+
+def _pressure(ax, course: PressureCourse) -> None:  # type: ignore[no-untyped-def]
+    for name, colour in zip(course.shown, COLOURS, strict=False):
+        p, error = course.pressure[name], course.error[name]
+        ax.errorbar(course.middles, p, error, fmt="o", ms=3, color=colour, elinewidth=0.8, label=f"P on {name}")
+    ax.set_ylabel("pressure (energy/length²)")
+
+
+def _state(ax, course: PressureCourse) -> None:  # type: ignore[no-untyped-def]
+    """Pressure against area, in order of time, with isotherm and adiabat."""
+    for name, colour in zip(course.shown, COLOURS, strict=False):
+        p, error = course.pressure[name], course.error[name]
+        ax.errorbar(course.area, p, error, fmt="o-", ms=3, lw=0.5, color=colour, elinewidth=0.8, label=f"P on {name}")
+    if course.lines:
+        ax.plot(course.lines.area, course.lines.isotherm, "--", color=GREY, label="isotherm through the start")
+        if course.lines.adiabat is not None:
+            ax.plot(course.lines.area, course.lines.adiabat, "-", color=GREY, label="adiabat through the start")
+    ax.set_xlabel("area of the gas (length²)")
+    ax.set_ylabel("pressure (energy/length²)")

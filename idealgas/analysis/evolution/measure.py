@@ -1,4 +1,4 @@
-"""Evolution of a gas in time: temperature, energies, energy given by walls, and discs beyond a gate."""
+"""Evolution of a gas in time: temperature, pressure, energies, energy given by walls, and discs beyond a gate."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.window import span
+from idealgas.analysis.evolution.course import PressureCourse, pressure_course
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -18,7 +20,7 @@ INSTANTS = 257
 
 
 @dataclass(frozen=True)
-class Evolution:
+class Evolution(Result):
     """Evolution of a gas, at F evenly spaced times and at the P times of the samples stored during the run.
 
     time: (F,), times. temperature: (F,), mean m v²/2 per disc, energy. spin: (F,), mean I ω² per disc, energy; None
@@ -27,7 +29,9 @@ class Evolution:
     samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall gave
     since the start, (P,), by the name of the wall. piston: (P,), its coordinate, length; None without one.
     balance: (P,), change since the start of the energy of discs and piston minus the energy given by walls, relative to
-    the largest part of the energy. Only inelastic collisions change the balance.
+    the largest part of the energy. Only inelastic collisions change the balance, in logs of before, which have no
+    account of them. dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
+    pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
     """
 
     time: np.ndarray
@@ -40,6 +44,8 @@ class Evolution:
     given: dict[str, np.ndarray]
     piston: np.ndarray | None
     balance: np.ndarray
+    dissipated: dict[str, np.ndarray]
+    pressure: PressureCourse | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -49,7 +55,8 @@ class Evolution:
         if self.law is not None:
             at_rest = {"spin": self.law.spin, "piston": self.law.piston}
             law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
-        return lists | tables | {"law": law, "end": self._end()}
+        pressure = self.pressure.as_dict() if self.pressure else None
+        return super().as_dict() | lists | tables | {"law": law, "end": self._end(), "pressure": pressure}
 
     def _end(self) -> dict[str, float]:
         """Last value of each series, by name."""
@@ -57,7 +64,7 @@ class Evolution:
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
 
-TABLES = ("beyond", "parts", "given")
+TABLES = ("beyond", "parts", "given", "dissipated")
 
 
 def evolution(
@@ -66,7 +73,7 @@ def evolution(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Evolution:
-    """Follow temperature, energies, piston and the account of the walls in time, and discs beyond a gate.
+    """Follow temperature, pressure, energies, piston and the account of the walls in time, and discs beyond a gate.
 
     It needs no equilibrium. Theory, where there is one, is that of the temperature: in equilibrium, of a gas that cools
     by its collisions (Haff's law), or of one that a moving piston compresses (the adiabat).
@@ -81,18 +88,22 @@ def evolution(
     samples = log.observables["kinetic_energy"][0]
     inside = (samples >= first) & (samples <= last)
     time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
-    parts, given, balance = _account(log, observed)
+    parts, given, dissipated, balance = _account(log, observed)
+    law = expected_course(log, time)
     return Evolution(
         time,
         temperature,
         spin,
         beyond,
-        expected_course(log, time),
+        law,
         samples[inside],
         {name: values[inside] for name, values in parts.items()},
         {name: values[inside] for name, values in given.items()},
         observed["piston_position"][inside] if "piston_position" in observed else None,
         balance[inside],
+        {name: values[inside] for name, values in dissipated.items()},
+        pressure_course(log, first, last),
+        premises=law.premises if law else (),
     )
 
 
@@ -138,22 +149,27 @@ def _gate(log: Log) -> tuple[int, float] | None:
     return None
 
 
-def _account(
-    log: Log, observed: dict[str, np.ndarray]
-) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], np.ndarray]:
-    """Parts of the energy by name, energy given by each wall, and the balance."""
+Series = dict[str, np.ndarray]
+
+
+def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
+    """Parts of the energy by name, energy given by each wall, energy lost by collisions of each kind, the balance."""
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
     given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
-    counted = np.ones(given.shape[1], bool)
+    lost = observed.get("dissipated_energy", np.zeros((len(given), 1 + len(log.walls))))
+    counted, unpaid = np.ones(given.shape[1], bool), lost[:, 0]
     piston = log.scene.piston
     if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
-        counted[[wall.name for wall in log.walls].index(piston.side)] = False
+        own = [wall.name for wall in log.walls].index(piston.side)
+        counted[own], unpaid = False, unpaid + lost[:, 1 + own]
         pull = piston.acceleration(log.box, log.scene.gravity)
         place, velocity = observed["piston_position"], observed["piston_velocity"]
         parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
     from_outside = given[:, counted].sum(axis=1)
-    total = sum(parts.values()) - from_outside
-    scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside))
-    by_wall = {wall.name: given[:, k] for k, wall in enumerate(log.walls) if given.shape[1] and given[:, k].any()}
-    return parts, by_wall, (total - total[0]) / (scale or 1.0)
+    total = sum(parts.values()) + unpaid - from_outside
+    scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
+    walls = [wall.name for wall in log.walls]
+    by_wall = {name: series for name, series in zip(walls, given.T, strict=False) if series.any()}
+    losses = {name: series for name, series in zip(("discs", *walls), lost.T, strict=True) if series.any()}
+    return parts, by_wall, losses, (total - total[0]) / (scale or 1.0)

@@ -1,14 +1,17 @@
 """Temperature of a gas against time by theory."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_momentum, known_ensemble
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST
 from idealgas.log import Log
+
+SLOW = 0.05
+"""Largest speed of a piston, relative to the mean speed of the discs, at which the adiabat is a good law."""
 
 STEPS = 128
 """Number of steps in the integration of the adiabat."""
@@ -19,13 +22,32 @@ class Law:
     """Law of the temperature of a gas at F times.
 
     text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
-    coordinate of the piston at rest, length.
+    coordinate of the piston at rest, length. premises: sentences on what it takes and does not hold.
     """
 
     text: str
     temperature: np.ndarray
     spin: float | None = None
     piston: float | None = None
+    premises: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class StateLines:
+    """Isotherm and adiabat of a gas below a piston, through its state at the start.
+
+    area: (L,), area that the gas has, length². isotherm, adiabat: (L,), pressure on the piston, energy/length²; no
+    adiabat where heat flows in or discs spin.
+    """
+
+    area: np.ndarray
+    isotherm: np.ndarray
+    adiabat: np.ndarray | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        adiabat = None if self.adiabat is None else self.adiabat.tolist()
+        return {"area": self.area.tolist(), "isotherm": self.isotherm.tolist(), "adiabat": adiabat}
 
 
 def expected_course(log: Log, time: np.ndarray) -> Law | None:
@@ -33,7 +55,7 @@ def expected_course(log: Log, time: np.ndarray) -> Law | None:
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
-    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= HIGHEST
+    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= hard_discs.HIGHEST
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
     if single and alone and not properties.fixed_walls:
@@ -97,16 +119,47 @@ def push(log: Log, length: float) -> float:
     return z / (length - 2 * float(gas.radius[0]))
 
 
+def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
+    """Isotherm and adiabat through the start of a gas below a piston, over the range of areas that it has.
+
+    None without theory: for several species, above freezing, or where the gas is not uniform below the piston.
+    """
+    table, gas = log.scene.piston, log.discs
+    lacking = log.scene.lacking("uniform", "straight_flight", "elastic")
+    if table is None or len(lacking) > 1 or len(gas.species_names) > 1 or not gas.radius[0] > 0:
+        return None
+    across = log.box[1 - table.axis]
+    first = float(room(log, log.observables["piston_position"][1][:1])[0])
+    lengths = np.linspace(min(areas.min() / across, first), max(areas.max() / across, first), STEPS + 1)
+    if gas.packing_fraction * gas.area > hard_discs.HIGHEST * lengths[0] * across:
+        return None
+    temperature = _kinetic(log) / len(gas)
+    pressure = np.array([push(log, length) for length in lengths]) * len(gas) * temperature / across
+    adiabat = None
+    if len(log.scene.lacking("uniform", "conserves_motion")) == 1:
+        adiabat = pressure * np.exp(_work(log, lengths, first) - _work(log, lengths, lengths))
+    return StateLines(lengths * across, pressure, adiabat)
+
+
+def _work(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
+    """Work ∫ F dL/NT of the gas on a piston from the length grid[0] to others, at rising grid points."""
+    slope = np.array([push(log, length) for length in (grid[1:] + grid[:-1]) / 2])
+    return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
+
+
 def _adiabat(log: Log, time: np.ndarray) -> Law:
     """Adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the collisions of the discs."""
     at, places = log.observables["piston_position"]
     lengths = room(log, np.interp(time, at, places))
     first = float(room(log, places[:1])[0])
     grid = np.linspace(min(lengths.min(), first), max(lengths.max(), first), STEPS + 1)
-    slope = np.array([push(log, length) for length in (grid[1:] + grid[:-1]) / 2])
-    work = np.concatenate(([0.0], np.cumsum(slope * np.diff(grid))))
-    exponent = np.interp(first, grid, work) - np.interp(lengths, grid, work)
-    return Law("slow piston: T A = const, for discs d ln T = -Z d ln A", log.discs.temperature * np.exp(exponent))
+    exponent = _work(log, grid, first) - _work(log, grid, lengths)
+    fastest = float(np.abs(log.observables["piston_velocity"][1]).max())
+    share = fastest / hard_discs.mean_speed(log.discs.temperature, float(log.discs.mass[0]))
+    said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
+    text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
+    temperature = log.discs.temperature * np.exp(exponent)
+    return Law(text, temperature, premises=(said,) if share > SLOW else ())
 
 
 def _at_rest(log: Log, one: np.ndarray) -> Law | None:

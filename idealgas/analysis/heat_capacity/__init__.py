@@ -12,5 +12,6 @@ ANALYSIS = Analysis(
     """,
     sections=(Section("Heat capacity", "Heat capacity per disc by every route with its standard error, and theory"),),
     several=True,
+    averages=True,
     folders=True,
 )

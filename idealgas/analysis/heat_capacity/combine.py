@@ -1,17 +1,19 @@
 """Heat capacities from several logs: slopes of the energy against the temperature, and means over the logs."""
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, mean_theory
 from idealgas.analysis.heat_capacity.measure import BATH, CLOSED, PISTON, ROUGH, Measured
 
 ROUTES = {
-    "dE/dT": "it takes logs of one kind of gas at several energies",
+    "dE/dT": "it takes logs of one gas at several energies",
     "E/T": "it takes the pressure on the walls of a closed box, in a log with events",
     "Var(E)/T²": "it takes thermal walls of one temperature",
     "fluctuations of the kinetic energy": "it takes an isolated gas with spin, gravity or a piston",
@@ -22,19 +24,25 @@ ROUTES = {
 
 @dataclass(frozen=True)
 class Route:
-    """Heat capacity per disc (k_B = 1), or γ (no unit), of one kind of gas by one way of measuring."""
+    """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one way of measuring.
+
+    name: of the route. kind: of gas. gas: its number of discs, box and effects; empty if the logs hold one gas of this
+    kind.
+    """
 
     name: str
     kind: str
     value: Estimate
+    gas: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {"route": self.name, "kind": self.kind, "value": self.value.as_dict()}
+        gas = {"gas": self.gas} if self.gas else {}
+        return {"route": self.name, "kind": self.kind, **gas, "value": self.value.as_dict()}
 
 
 @dataclass(frozen=True)
-class HeatCapacity:
+class HeatCapacity(Result):
     """Heat capacity by every route that a set of logs allows.
 
     routes: heat capacities, one for each route and kind of gas. refused: reason why a route does not apply, by the name
@@ -47,7 +55,7 @@ class HeatCapacity:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "routes": [route.as_dict() for route in self.routes],
             "refused": self.refused,
             "logs": [measured.as_dict() for measured in self.logs],
@@ -55,20 +63,48 @@ class HeatCapacity:
 
 
 def combine_heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
-    """Combine the logs of each kind of gas: slopes dE/dT, means of the routes of single logs, and γ."""
-    routes = [route for kind in dict.fromkeys(m.kind for m in logs) for route in _of_kind(kind, logs)]
-    routes += _gammas(routes, logs)
+    """Combine the logs of each gas: slopes dE/dT, means of the routes of single logs, and γ."""
+    groups = _groups(logs)
+    routes = [route for (kind, gas), members in groups.items() for route in _of_gas(kind, gas, members)]
+    routes += _gammas(tuple(routes), groups)
     used = {route.name for route in routes}
-    return HeatCapacity(tuple(routes), {name: why for name, why in ROUTES.items() if name not in used}, tuple(logs))
+    refused = {name: why for name, why in ROUTES.items() if name not in used}
+    return HeatCapacity(tuple(routes), refused, tuple(logs), premises=tuple(_apart(groups)))
 
 
-def _of_kind(kind: str, logs: Sequence[Measured]) -> Iterator[Route]:
-    members = [m for m in logs if m.kind == kind]
+Groups = dict[tuple[str, str], list[Measured]]
+
+
+def _groups(logs: Sequence[Measured]) -> Groups:
+    """Logs by kind of gas and gas in words; the words are empty where all logs of the kind are of one gas."""
+    by_digest: dict[tuple[str, str], list[Measured]] = {}
+    for log in logs:
+        by_digest.setdefault((log.kind, log.origin.gas if log.origin else ""), []).append(log)
+    kinds = Counter(kind for kind, _ in by_digest)
+    groups: Groups = {}
+    for (kind, _), members in by_digest.items():
+        origin = members[0].origin
+        words = origin.words if origin and kinds[kind] > 1 else ""
+        if (kind, words) in groups and origin:
+            words = f"{words}, as in {origin.path}"  # gases that differ in what words do not tell
+        groups[kind, words] = members
+    return groups
+
+
+def _apart(groups: Groups) -> Iterator[str]:
+    """Sentence for each kind of gas of which there is more than one gas."""
+    for kind in dict.fromkeys(kind for kind, _ in groups):
+        if len(gases := [gas for other, gas in groups if other == kind]) > 1:
+            words = "; ".join(gases)
+            yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: {words}."
+
+
+def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:
     if (slope := _slope(members)) is not None:
-        yield Route("dE/dT", kind, slope)
+        yield Route("dE/dT", kind, slope, gas)
     for name in dict.fromkeys(name for m in members for name in m.routes):
         values = [m.routes[name] for m in members if name in m.routes]
-        yield Route(name, kind, mean_of_replicates(values))
+        yield Route(name, kind, mean_of_replicates(values), gas)
 
 
 def _slope(members: Sequence[Measured]) -> Estimate | None:
@@ -95,10 +131,10 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
     return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]))
 
 
-def _gammas(routes: Sequence[Route], logs: Sequence[Measured]) -> Iterator[Route]:
+def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:
     """Ratio γ = C_P/C_A: C_A is measured in a log without the piston if there is one, else C_P - C_A is from theory."""
     for route in routes:
-        excess = next((m.excess for m in logs if m.kind == route.kind and m.excess), None)
+        excess = next((m.excess for m in groups[route.kind, route.gas] if m.excess), None)
         c_p = route.value
         if excess is None or c_p.theory is None:
             continue
@@ -112,7 +148,8 @@ def _gammas(routes: Sequence[Route], logs: Sequence[Measured]) -> Iterator[Route
         else:
             value = c_p.value / (c_p.value - excess)
             error = excess * c_p.standard_error / (c_p.value - excess) ** 2
-        yield Route("γ", f"{route.kind}: {route.name}", Estimate(value, error, c_p.independent_samples, expected))
+        gamma = Estimate(value, error, c_p.independent_samples, expected)
+        yield Route("γ", f"{route.kind}: {route.name}", gamma, route.gas)
 
 
 def restore_heat_capacity(found: dict[str, Any], label: str) -> Measured:

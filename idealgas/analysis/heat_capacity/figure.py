@@ -14,7 +14,8 @@ def heat_capacity_figure(result: HeatCapacity) -> Figure:
         ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
         if route.value.theory is not None:
             ax.plot([route.value.theory] * 2, [k - 0.35, k + 0.35], color=COLOURS[1])
-    ax.set_yticks(range(len(routes)), [f"{route.name}\n({route.kind})" for route in routes], fontsize="small")
+    names = [f"{route.name}\n({', '.join(filter(None, (route.kind, route.gas)))})" for route in routes]
+    ax.set_yticks(range(len(routes)), names, fontsize="small")
     ax.plot([], [], "o", color=COLOURS[0], label="measured")
     ax.plot([], [], color=COLOURS[1], label="theory")
     ax.set_xlabel("C/N, and γ (no unit, k_B = 1)")

@@ -12,19 +12,25 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST
 from idealgas.errors import UserError
 from idealgas.log import Log
+
+LEAST_SAMPLES = 32
+"""Least number of independent samples for heat capacities from fluctuations; the error of a variance is then 25 %."""
+
+LARGEST_ERROR = 0.5
+"""Largest standard error of such a heat capacity, relative to it."""
 
 CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
 
 
 @dataclass(frozen=True)
-class Measured:
+class Measured(Result):
     """Measurements of one log that concern the heat capacity.
 
     path: of the log. kind: kind of gas, such as a closed box or a heat bath. number: of discs. energy: mean energy per
@@ -60,7 +66,7 @@ class Measured:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "path": self.path,
             "kind": self.kind,
             "number": self.number,
@@ -83,7 +89,7 @@ def heat_capacity(
 
     A closed box gives E/T, with T from the pressure on its walls; a heat bath Var(E)/T²; discs with spin, gravity or a
     piston the fluctuations of the kinetic energy at fixed total energy (Lebowitz, Percus & Verlet, Phys. Rev. 153, 250,
-    1967).
+    1967). Fluctuations in fewer than LEAST_SAMPLES independent samples give none; `premises` says so.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if there is no equilibrium, or none known: walls of two temperatures, collisions
@@ -107,13 +113,34 @@ def heat_capacity(
     if BATH in kinds:
         (bath,) = properties.temperatures
         temperature, thermometer = Estimate(bath, 0.0, math.inf), "the walls' own"
-        routes = {"Var(E)/T²": _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)}
+        route = "Var(E)/T²"
+        found = _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)
     else:
         temperature, thermometer = mean(2 * series.kinetic / dof), "kinetic energy"
+        route = "fluctuations of the kinetic energy"
         found = _kinetic_fluctuations(series, n, dof, capacity, PISTON in kinds)
-        routes = {"fluctuations of the kinetic energy": found}
-    energy = mean(series.energy / n)
-    return Measured(str(log.path), ", ".join(kinds), n, energy, temperature, thermometer, routes, capacity, excess)
+    lacking = too_few(route, found)
+    routes, measured = {} if lacking else {route: found}, (_mean_energy(series.energy / n), temperature, thermometer)
+    return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, capacity, excess, premises=lacking)
+
+
+def _mean_energy(energy: np.ndarray) -> Estimate:
+    """Mean of a series of energies; known exactly if only rounding changes it."""
+    if np.ptp(energy) <= 1e-9 * np.abs(energy).max():
+        return Estimate(float(energy.mean()), 0.0, math.inf)
+    return mean(energy)
+
+
+def too_few(route: str, found: Estimate) -> tuple[str, ...]:
+    """Why fluctuations give no heat capacity, as one sentence; empty if there are enough samples."""
+    samples, error = found.independent_samples, found.standard_error
+    if samples >= LEAST_SAMPLES and 0 < error <= LARGEST_ERROR * found.value:
+        return ()
+    if samples < LEAST_SAMPLES:
+        why = f"{samples:.0f} independent samples of the energy are too few ({LEAST_SAMPLES} needed)"
+    else:
+        why = f"its error is too large ({found.value:.2g} ± {error:.2g})"
+    return (f"No heat capacity from {route}: {why}; a longer run, or samples at shorter times, would give one.",)
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, float | None]:
@@ -140,7 +167,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     across = gas.box[1 - scene.piston.axis]
     room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))
     phi = gas.packing_fraction * gas.area / (room * across)
-    if phi > HIGHEST:
+    if phi > hard_discs.HIGHEST:
         return None, None
     z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
     slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
@@ -155,14 +182,17 @@ def _closed_box(
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility for route in measured.routes if route.name == WALLS), None)
     if walls is None or walls.theory is None or not walls.value > 0:
-        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or of a gas too dense")
+        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, energy = measured.number, log.discs.kinetic_energy / measured.number
     error = energy * t.standard_error / t.value**2
     per_disc = Estimate(energy / t.value, error, t.independent_samples, 1.0, relative)
     exact = Estimate(energy, 0.0, math.inf)
-    return Measured(str(log.path), CLOSED, n, exact, t, "pressure on the walls", {"E/T": per_disc}, 1.0, None)
+    routes = {"E/T": per_disc}
+    return Measured(
+        str(log.path), CLOSED, n, exact, t, "pressure on the walls", routes, 1.0, None, premises=measured.premises
+    )
 
 
 def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: float | None, piston: bool) -> Estimate:

@@ -14,6 +14,6 @@ def heat_capacity_tables(result: HeatCapacity) -> list[Table]:
         rows = [(f"{log.path}: E/N", log.energy) for log in result.logs]
         rows += [(f"{log.path}: T by {log.thermometer}", log.temperature) for log in result.logs]
         tables.append(estimates("Logs (energy)", rows))
-    routes = [(f"{route.name}, {route.kind}", route.value) for route in result.routes]
+    routes = [(", ".join(filter(None, (route.name, route.kind, route.gas))), route.value) for route in result.routes]
     refused = [f"no {name}: {why}" for name, why in result.refused.items()]
     return [*tables, estimates("C per disc, and γ (no unit, k_B = 1)", routes, refused)]

@@ -11,7 +11,8 @@ def histogram_figure(result: Histogram) -> Figure:
     """Picture of the measured density with its error band and of the laws; one panel for each species."""
     figure, axes = panels(len(result.distributions))
     for ax, found in zip(axes, result.distributions, strict=True):
-        ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=found.name)
+        name = f"{found.name} (no law)" if result.no_law else found.name
+        ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=name)
         middle = (found.edges[1:] + found.edges[:-1]) / 2
         ax.errorbar(middle, found.density, found.error, fmt="none", ecolor=GREY, elinewidth=0.8)
         x = np.linspace(found.edges[0], found.edges[-1], 600)

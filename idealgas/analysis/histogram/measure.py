@@ -13,13 +13,15 @@ import numpy as np
 from scipy import stats
 
 from idealgas.analysis.core.collisions import expected_rates, theory_of
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import ensemble
-from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
+from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, mean_of_flux, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
+from idealgas.analysis.histogram.laws import premise
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
@@ -29,6 +31,7 @@ from idealgas.log import Log
 BINS = 120
 SAMPLED = 256  # largest number of discs of a species whose velocities are tested
 INTERVALS = 10_000  # approximate number of intervals that are tested
+FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
 TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
 
@@ -83,20 +86,25 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Histogram:
-    """Distributions of one quantity (with its unit) in a window of time, one for each species."""
+class Histogram(Result):
+    """Distributions of one quantity (with its unit) in a window of time, one for each species.
+
+    no_law: why no law holds, as part of a sentence; empty if one does.
+    """
 
     quantity: str
     unit: str
     window: Window
     distributions: tuple[Distribution, ...]
+    no_law: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "quantity": self.quantity,
             "unit": self.unit,
             "window": self.window.as_dict(),
+            "no_law": self.no_law or None,
             "distributions": [distribution.as_dict() for distribution in self.distributions],
         }
 
@@ -112,73 +120,71 @@ def histogram(
     quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
     wait, the time between two successive events of the gas. The laws of velocities are Maxwell and Boltzmann's and that
     at fixed energy of N discs; of free flights that of a dilute gas; of waits the exponential one. The p-values are
-    those of Kolmogorov and Smirnov's test of decorrelated samples.
+    those of Kolmogorov and Smirnov's test of decorrelated samples. Under gravity or a piston the temperature of the law
+    is the measured one. A gas that never comes to equilibrium has no law, and its window is the whole log by default.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
-    events are read. Raises UserError if no disc moves, if there are too few events in the window, or for a gas with
-    effects for which there is no such law.
+    events are read. Raises UserError if no disc moves or if there are too few events in the window.
     """
-    if not log.discs.temperature > 0:
-        raise UserError(f"{log.path}: no disc moves")
+    if start is None and why_never_stationary(log):
+        start = log.start_time
     if quantity in VELOCITY_QUANTITIES:
-        window, found = _velocities(log, quantity, start, end, progress)
+        window, found, no_law = _velocities(log, quantity, start, end, progress)
     elif quantity == "wait":
-        window, found = _waits(log, start, end, progress)
+        window, found, no_law = _waits(log, start, end, progress)
     else:
-        window, found = _flights(log, quantity, start, end, progress)
-    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found))
+        window, found, no_law = _flights(log, quantity, start, end, progress)
+    few = [
+        f"The tests of {each.name} have {each.samples} decorrelated samples; with fewer than {FEWEST_SAMPLES} they can "
+        "hardly fail."
+        for each in found
+        if each.tests and each.samples < FEWEST_SAMPLES
+    ]
+    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law, premises=tuple(few))
 
 
-Found = tuple[Window, list[Distribution]]
+Found = tuple[Window, list[Distribution], str]
+"""Window, distributions, and why no law holds, empty if one does."""
 
 
 # ── velocities ──
 
 
-def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
-    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom."""
-
-    def law(dof: float) -> distributions.Law:
-        if quantity == "energy":
-            return distributions.EnergyLaw(temperature, dof)
-        if quantity == "speed":
-            return distributions.SpeedLaw(temperature, mass, dof)
-        return distributions.ComponentLaw(temperature, mass, dof)
-
-    finite = {f"fixed energy, D = {dof}": law(dof)} if dof > 3 else {}
-    return {"Maxwell-Boltzmann": law(np.inf), **finite}
-
-
 def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
-    gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
-    thermal = np.sqrt(equilibrium.temperature / discs.mass)
-    high = np.full(len(thermal), 12 * equilibrium.temperature) if quantity == "energy" else 5 * thermal
+    gas, discs, known = log.discs, composition(log.discs), premise(log, start, end)
+    thermal = np.sqrt(known.scale / discs.mass)
+    high = np.full(len(thermal), 12 * known.scale) if quantity == "energy" else 5 * thermal
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [_some_discs(gas, s) for s in range(len(thermal))]
-    tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members))
-    window = measure(log, [tally], start, end, progress, ("conserves_energy",))
+    tally, moments = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members), log.gravity), []
+    if known.needs_temperature:
+        moments.append(Moments(log.gravity))
+    window = measure(log, [tally, *moments], start, end, progress)
+    measured = None
+    if moments:
+        measured = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean()) / (2 * len(gas))
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
-        possible = velocity_laws(quantity, equilibrium.of_species[s], discs.mass[s], equilibrium.dof)
+        possible = known.laws(quantity, discs, s, measured)
         spacing = int(np.ceil(ensemble_inefficiency(snapshots)))
-        last_law = list(possible.values())[-1]
+        expected = list(possible.values())[-1].mean if possible and measured is None else None
         found.append(
             _distribution(
                 name,
                 np.linspace(low[s], high[s], BINS + 1),
                 window.of(tally.counts)[:, s],
-                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], last_law.mean, confined),
+                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], expected, confined),
                 snapshots[::spacing].ravel(),
                 spacing * window.width,
                 possible,
             )
         )
-    return window, found
+    return window, found, known.why_not
 
 
-def _mean(series: np.ndarray, scale: float, expected: float, confined: bool) -> Estimate:
+def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:
     """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error.
 
     confined: whether the quantity is a velocity between walls, whose integral over time is a place in the box.
@@ -200,26 +206,47 @@ def _some_discs(gas: Gas, species: int) -> np.ndarray:
 
 
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
-    gas, discs, equilibrium = log.discs, composition(log.discs), ensemble(log)
-    temperature = equilibrium.temperature
-    rates = expected_rates(discs, gas.box, equilibrium, theory_of(log, discs) if log.has_positions else None).rate
+    discs, path = composition(log.discs), quantity == "free-path"
+    temperature, rates, why_not = _free_flight_rates(log, discs, start, end)
     rate = rates.sum(axis=1)
-    if not (rate > 0).all():
-        raise UserError(f"{log.path}: no law of free flights for this gas")
-    path = quantity == "free-path"
     high = 10 / rate
     if path:
         high *= mean_speed(temperature, discs.mass)
-    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress, ("uniform",))
+    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
+    window = measure(log, [tally], start, end, progress)
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
-    dilute = [law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s])) for s in range(len(rate))]
-    return window, [
-        _intervals(name, tally, s, blocks, high[s], {"dilute gas": dilute[s]}, dilute[s].mean)
-        for s, name in enumerate(discs.name)
-    ]
+    found = []
+    for s, name in enumerate(discs.name):
+        dilute = law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
+        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, dilute.mean)
+        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected))
+    return window, found, why_not
+
+
+def _free_flight_rates(
+    log: Log, discs: Composition, start: float | None, end: float | None
+) -> tuple[float, np.ndarray, str]:
+    """Temperature and collision rates (S, S) of free flights, and why no law holds; empty if one does.
+
+    Without a law they are means over the gas that only set the range of the histogram.
+    """
+    known = premise(log, start, end)
+    why_not = known.why_not
+    if uneven := log.scene.lacking("uniform"):
+        why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"
+    if known.ensemble and not why_not:
+        theory = theory_of(log, discs) if log.has_positions else None
+        rates = expected_rates(discs, log.box, known.ensemble, theory).rate
+        if (rates.sum(axis=1) > 0).all():
+            return known.ensemble.temperature, rates, ""
+        why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
+    time, collisions = log.observables["disc_collisions"]
+    if not len(time) or not collisions[-1] > collisions[0]:
+        raise UserError(f"{log.path}: too few collisions of discs for a distribution")
+    rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
+    return known.scale, np.diag(np.full(len(discs.name), rate)), why_not
 
 
 def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
@@ -227,9 +254,11 @@ def _waits(log: Log, start: float | None, end: float | None, progress: Progress)
     tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
+    why_not = why_never_stationary(log)
     with np.errstate(invalid="ignore"):
         law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
-    return window, [_intervals("all discs", tally, 0, blocks, longest, {"exponential": law}, None)]
+    possible = {} if why_not else {"exponential": law}
+    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None)], why_not
 
 
 def _intervals(

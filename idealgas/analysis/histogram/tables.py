@@ -19,7 +19,9 @@ def histogram_tables(result: Histogram) -> list[Table]:
         for test in found.tests
     ]
     means = [(found.name, found.mean) for found in result.distributions]
-    return [
-        estimates(f"Mean {result.quantity} ({result.unit})", means, (describe(result.window),)),
-        Table("Kolmogorov-Smirnov tests (no unit)", ("", "law", "distance", "p", "samples", "spacing (time)"), tests),
-    ]
+    notes = (describe(result.window), *([f"No law here: {result.no_law}."] if result.no_law else []))
+    average = estimates(f"Mean {result.quantity} ({result.unit})", means, notes)
+    if not tests:
+        return [average]
+    heads = ("", "law", "distance", "p", "samples", "spacing (time)")
+    return [average, Table("Kolmogorov-Smirnov tests (no unit)", heads, tests)]

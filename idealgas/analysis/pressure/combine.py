@@ -6,13 +6,15 @@ from typing import Any
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample, equation_of_state, sample_of
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
+from idealgas.errors import UserError
 
 
 def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | EquationOfState:
     """Pressure of a single log, or the equation of state of several logs or of a sweep.
 
     Raises:
-        UserError: if theory does not know Z for one of several gases.
+        NotApplicableError: if theory knows Z for none of several gases.
+        UserError: if theory does not know Z for some of them.
     """
     if len(results) == 1 and isinstance(results[0], Pressure):
         return results[0]
@@ -20,6 +22,12 @@ def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | Equatio
 
 
 def restore_pressure(found: dict[str, Any], label: str) -> Sample:
-    """Compressibility factor of one point of a sweep; `label`, the name of the point, is not needed."""
+    """Compressibility factor of one point of a sweep, whose name is `label`.
+
+    Raises:
+        UserError: if the gas has no equation of state.
+    """
+    if not found["routes"]:
+        raise UserError(f"{label}: {found['no_theory']}")
     pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
     return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

@@ -2,26 +2,29 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import NoTheoryError, fluid
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""
 
 FREE_TERMS = 3
-"""Number of fitted virial coefficients, from B2 on; higher coefficients have their known values."""
+"""Number of fitted virial coefficients, from B2 on; higher coefficients have their known values.
+
+The fit takes one packing fraction more than that.
+"""
 
 
 @dataclass(frozen=True)
-class Sample:
+class Sample(Result):
     """Compressibility factor of one run; its theory is that of the same number of discs in the same box."""
 
     packing_fraction: float
@@ -33,13 +36,15 @@ class Sample:
 class State:
     """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
-    packing_fraction: φ. number: of discs. runs: number of runs. compressibility: mean of Z over the runs; its theory is
-    that of the same number of discs in the same box. infinite: Z extrapolated to an infinite gas, by the ratio of the
-    theories; its theory is the resummed virial series. virial: virial series to B10. henderson: Henderson (1975).
+    packing_fraction: φ. number: of discs. kind: kind of gas in words; empty if unknown. runs: number of runs.
+    compressibility: mean of Z over the runs; its theory is that of the same number of discs in the same box. infinite:
+    Z extrapolated to an infinite gas, by the ratio of the theories; its theory is the resummed virial series. virial:
+    virial series to B10. henderson: Henderson (1975).
     """
 
     packing_fraction: float
     number: int
+    kind: str
     runs: int
     compressibility: Estimate
     infinite: Estimate
@@ -51,6 +56,7 @@ class State:
         return {
             "packing_fraction": self.packing_fraction,
             "number": self.number,
+            "gas": self.kind,
             "runs": self.runs,
             "compressibility": self.compressibility.as_dict(),
             "infinite": self.infinite.as_dict(),
@@ -60,7 +66,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class EquationOfState:
+class EquationOfState(Result):
     """Equation of state: states in order of φ, and fitted virial coefficients (no unit).
 
     b2: B2 over the area of a disc; theory gives 2. b3: B3/B2². Both are None if there are too few states for the fit.
@@ -76,11 +82,18 @@ class EquationOfState:
         Raises:
             UserError: if a state has no error bar.
         """
-        return judge((f"φ = {s.packing_fraction:.5g}, N = {s.number}", s.infinite) for s in self.states)
+        several = len(self.kinds) > 1
+        names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
+        return judge(zip(names, (s.infinite for s in self.states), strict=True))
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of gas of the states, in words."""
+        return tuple(dict.fromkeys(state.kind for state in self.states))
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "states": [state.as_dict() for state in self.states],
             "B2": self.b2.as_dict() if self.b2 else None,
             "B3": self.b3.as_dict() if self.b3 else None,
@@ -88,40 +101,54 @@ class EquationOfState:
 
 
 def sample_of(measured: Pressure) -> Sample:
-    """Compressibility factor of a run from the virial of its pair collisions."""
+    """Compressibility factor of a run from the virial of its pair collisions.
+
+    Raises:
+        UserError: if the gas has no equation of state.
+    """
+    if not measured.routes:
+        raise UserError(measured.no_theory)
     pairs = next(route.compressibility for route in measured.routes if route.name == PAIRS)
-    return Sample(measured.packing_fraction, measured.number, pairs)
+    return Sample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
 
 
 def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
-    """Equation of state of many runs; runs of the same number of discs and packing fraction are averaged.
+    """Equation of state of many runs; runs of one kind of gas, number of discs and packing fraction are averaged.
 
     Raises:
-        UserError: if theory does not know Z for one of the runs.
+        NotApplicableError: if theory knows Z for none of the runs.
+        UserError: if theory does not know Z for some of the runs, or if one is of a mixture.
     """
-    together: dict[tuple[float, int], list[Sample]] = {}
+    if mixed := next((s.origin for s in samples if s.origin and s.origin.mixture), None):
+        raise UserError(
+            f"{mixed.path}: no equation of state of a {mixed.kind}: its Z does not follow from φ alone; `idealgas "
+            "pressure` of the single log has its theory"
+        )
+    phis = [(s.packing_fraction, s.compressibility.theory) for s in samples]
+    if unknown := [phi for phi, theory in phis if theory is None or phi > hard_discs.HIGHEST]:
+        error = NotApplicableError if len(unknown) == len(samples) else UserError
+        raise error(f"no equation of state: no theory for a gas of packing fraction {min(unknown):g}")
+    together: dict[tuple[float, int, str], list[Sample]] = {}
     for sample in samples:
-        if sample.compressibility.theory is None:
-            raise UserError(
-                f"no equation of state: no theory for a gas of packing fraction {sample.packing_fraction:g}"
-            )
-        together.setdefault((round(sample.packing_fraction, 9), sample.number), []).append(sample)
-    states = tuple(_state(runs) for _, runs in sorted(together.items()))
+        kind = sample.origin.kind if sample.origin else ""
+        together.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
+    states = tuple(_state(kind, runs) for (_, _, kind), runs in sorted(together.items()))
     b2, b3 = _virial_coefficients(states)
-    return EquationOfState(states, b2, b3)
+    found = EquationOfState(states, b2, b3)
+    if len(found.kinds) == 1:
+        return found
+    sentence = f"The states are of different gases, each in a row of its own: {'; '.join(found.kinds)}."
+    return replace(found, premises=(sentence,))
 
 
-def _state(runs: Sequence[Sample]) -> State:
+def _state(kind: str, runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
     together = mean_of_replicates([run.compressibility for run in runs])
-    try:
-        endless = fluid(phi)
-    except NoTheoryError as reason:
-        raise UserError(f"no equation of state: {reason} (got {phi:g})") from None
-    part = endless.value / (together.theory or math.nan)
+    part = float(hard_discs.compressibility(phi)) / (together.theory or math.nan)
     return State(
         phi,
         runs[0].number,
+        kind,
         n,
         together,
         infinite=together.times(part),
@@ -133,7 +160,7 @@ def _state(runs: Sequence[Sample]) -> State:
 def _virial_coefficients(states: Sequence[State]) -> tuple[Estimate | None, Estimate | None]:
     """Virial coefficients B2 and B3 by a weighted least-squares fit of (Z - 1)/2φ = Σ b_k (2φ)^(k - 2)."""
     used = [s for s in states if 0 < s.packing_fraction <= FITTED and s.infinite.standard_error > 0]
-    if len(used) <= FREE_TERMS:
+    if len({round(s.packing_fraction, 6) for s in used}) <= FREE_TERMS:
         return None, None
     density = np.array([2 * s.packing_fraction for s in used])
     known = np.array(hard_discs.VIRIAL[1 + FREE_TERMS :])

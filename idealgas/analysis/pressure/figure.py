@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from idealgas.analysis.core.style import COLOURS, GREY, _repeated, panels
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
+from idealgas.analysis.pressure.mechanical import Mechanical
 from idealgas.analysis.theory import hard_discs
 
 
@@ -14,8 +15,27 @@ def pressure_figure(result: Pressure | EquationOfState) -> Figure:
     return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
 
 
+def _of_walls(result: Pressure, found: Mechanical) -> Figure:
+    """Picture of the mechanical pressure of every wall, and of the outer pressure on a piston."""
+    figure, (ax,) = panels(1)
+    walls = found.walls[::-1]
+    values, errors = [w.pressure.value for w in walls], [w.pressure.standard_error for w in walls]
+    ax.errorbar(values, range(len(walls)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
+    held = [(k, wall.pressure.theory) for k, wall in enumerate(walls) if wall.pressure.theory is not None]
+    for k, theory in held:
+        ax.plot(theory, k, "|", ms=18, color=COLOURS[1], label="outer pressure")
+    ax.set_yticks(range(len(walls)), [wall.name for wall in walls])
+    ax.set_xlabel("P on the wall (energy/length²)")
+    ax.set_ylabel("wall")
+    if held:
+        ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(0, -0.2))
+    return figure
+
+
 def _of_log(result: Pressure) -> Figure:
     """Picture of Z of one log: every route with its error bar, theories as lines."""
+    if result.mechanical:
+        return _of_walls(result, result.mechanical)
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
     values = [route.compressibility.value for route in routes]

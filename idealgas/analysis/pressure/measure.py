@@ -22,11 +22,17 @@ from idealgas.analysis.core.collisions import (
     theory_of,
 )
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.samples import SampledImpacts, sampled
+from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
+from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.pressure.bulk import momentum_in_bulk
+from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
 from idealgas.errors import NotApplicableError, UserError
@@ -53,13 +59,15 @@ class Route:
 
 
 @dataclass(frozen=True)
-class Pressure:
+class Pressure(Result):
     """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
 
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
     packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
-    that applies. collision_rates: of each pair of species. free_paths: of each species. no_theory: why there is no
-    theory of this gas in its box, as part of a sentence; empty if there is.
+    that applies. collision_rates: of each pair of species. free_paths: of each species; empty without events.
+    no_theory: why there is no theory of this gas in its box, as part of a sentence; empty if there is. mechanical:
+    pressure of every wall of a gas without an equation of state; None for others. For such a gas area is what it has on
+    average, temperature the mean of m v²/2 over discs and time, and there are no routes, theories, rates and paths.
     """
 
     window: Window
@@ -72,6 +80,7 @@ class Pressure:
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
     no_theory: str = ""
+    mechanical: Mechanical | None = None
 
     def check(self) -> Verdict:
         """Check that Z by the virial of the walls and of the pairs agrees with theory.
@@ -84,7 +93,7 @@ class Pressure:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "window": self.window.as_dict(),
             "number": self.number,
             "area": self.area,
@@ -96,6 +105,7 @@ class Pressure:
             "no_theory": self.no_theory or None,
             "collision_rates": [rate.as_dict() for rate in self.collision_rates],
             "free_paths": [path.as_dict() for path in self.free_paths],
+            **(self.mechanical.as_dict() if self.mechanical else {}),
         }
 
 
@@ -109,24 +119,36 @@ def pressure(
 
     The routes: momentum given to each wall per time and length, and by Clausius's virial theorem that given to all
     walls and that passed on in collisions of discs. Theory is that of hard discs in this box, see `hard_disc_theories`;
-    collision rates and free paths come from the same events.
+    collision rates and free paths come from the same events. Without events the sums of `log.pressure = true` give the
+    same from sample to sample, but no free paths.
+
+    Where the virial theorem needs further terms, or no temperature is known, there is no such Z: with gravity, wall
+    segments, a piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical
+    pressure of every wall, the momentum that it gets per time and length.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read.
 
-    Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects for which the
-    virial theorem needs further terms: gravity, wall segments, a piston, collisions that lose energy.
+    Raises UserError if no disc moves, or if there are no events or too few samples in the window.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
-    equilibrium = ensemble(log)
+    equilibrium = known_ensemble(log)
+    if equilibrium is None or not log.scene.properties.uniform:
+        return _without_theory(log, start, end, progress)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
-    window = measure(log, [moments, impacts], start, end, progress, ("uniform",))
-    gas, discs = log.discs, composition(log.discs)
+    gas, discs, needs = log.discs, composition(log.discs), ("uniform",)
     theory = theory_of(log, discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory)
+    impacts: Impacts | SampledImpacts
+    moments: Moments | None = None
+    if log.has_events:
+        moments, events = Moments(), Impacts(len(log.walls), log.periodic)
+        window, impacts = measure(log, [moments, events], start, end, progress, needs), events
+        paths = free_paths(discs, expected, equilibrium, window, moments, events)
+    else:
+        (window, impacts), paths = sampled(log, start, end, needs), ()
     return Pressure(
         window=window,
         number=len(gas),
@@ -136,8 +158,34 @@ def pressure(
         routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, moments, impacts),
         theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
-        free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
+        free_paths=paths,
         no_theory=theory.why_not,
+    )
+
+
+def _without_theory(
+    log: Log, start: float | None, end: float | None, progress: Callable[[int, int], None] | None
+) -> Pressure:
+    """Mechanical pressure of a gas without an equation of state; one that never settles is averaged from its start."""
+    gauge, moments, gas = WallGauge(log), Moments(log.gravity), log.discs
+    if start is None and why_never_stationary(log):
+        start = log.start_time
+    window = measure(log, [moments, *gauge.tallies], start, end, progress)
+    found = mechanical(log, gauge, window)
+    energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
+    causes = log.scene.lacking("uniform", "conserves_energy")
+    return Pressure(
+        window=window,
+        number=len(gas),
+        area=found.area,
+        temperature=float(energies.mean()) / (2 * len(gas)),
+        packing_fraction=gas.packing_fraction * gas.area / found.area,
+        routes=(),
+        theories={},
+        collision_rates=(),
+        free_paths=(),
+        no_theory=f"no equation of state holds under {', '.join(causes) or 'walls of several temperatures'}",
+        mechanical=found,
     )
 
 
@@ -168,13 +216,13 @@ def _routes(
     periodic: tuple[bool, bool],
     theory: BoxTheory,
     window: Window,
-    moments: Moments,
-    impacts: Impacts,
+    moments: Moments | None,
+    impacts: Impacts | SampledImpacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
-    bulk = _bulk_flux(gas, sides, window, moments, impacts)
+    flow, bulk = momentum_in_bulk(gas, window, moments, impacts)
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall = {k: theory.sides[axis_of(k)] for k in sides}
     routes = [
@@ -184,10 +232,10 @@ def _routes(
     if sides:
         perimeter = sum(length[k] for k in sides)
         at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
-        together = [sum(series[k] for k in sides) / perimeter / ideal for series in (push, bulk)]
-        routes.append(_route("all walls", *together, ideal, at_walls))
+        pushed, carried = (series[sides].sum(axis=0) / perimeter / ideal for series in (push, bulk))
+        routes.append(_route("all walls", pushed, carried, ideal, at_walls))
         unit = len(sides) / 2 * gas.area * ideal
-        kinetic = sum(window.of(moments.flights)[:, :, 1 + axis].sum(axis=1) for axis in {axis_of(k) for k in sides})
+        kinetic = sum(flow[:, axis] for axis in {axis_of(k) for k in sides})
         inner = (kinetic + window.of(impacts.inner_virial)) / unit
         routes.append(_route(WALLS, window.of(impacts.wall_virial) / unit, inner, ideal, theory.walls))
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
@@ -198,20 +246,6 @@ def _route(name: str, flux: np.ndarray, bulk: np.ndarray, ideal: float, theory: 
     """Pressure by the momentum flux to walls in units of the `ideal` pressure, beside that of the bulk of the gas."""
     z = mean_of_flux(flux, bulk, theory)
     return Route(name, replace(z, theory=None, theory_error=0.0).times(ideal), z)
-
-
-def _bulk_flux(
-    gas: Gas, sides: Sequence[int], window: Window, moments: Moments, impacts: Impacts
-) -> dict[int, np.ndarray]:
-    """Force (B,) on each side of the box by the mean momentum flux in the gas: it flies, and collisions pass it on."""
-    _, first = np.unique(gas.species, return_index=True)
-    flights, passed_on = window.of(moments.flights), window.of(impacts.passed_on)
-
-    def of(k: int) -> np.ndarray:
-        reach = gas.box[axis_of(k)] - 2 * gas.radius[first]
-        return np.asarray((flights[:, :, 1 + axis_of(k)] / reach).sum(axis=1) + passed_on[:, k])
-
-    return {k: of(k) for k in sides}
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:

@@ -1,8 +1,9 @@
 """Tables of the pressure and of the equation of state."""
 
-from idealgas.analysis.core.tables import Number, Table, collision_tables, describe, estimates
-from idealgas.analysis.pressure.equation_of_state import EquationOfState
+from idealgas.analysis.core.tables import Cell, Number, Table, collision_tables, describe, estimates
+from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
+from idealgas.analysis.pressure.mechanical import Mechanical
 
 
 def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
@@ -10,7 +11,28 @@ def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
     return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
 
 
+def _of_walls(result: Pressure, found: Mechanical) -> list[Table]:
+    """Tables of the mechanical pressure of every wall, and of the forces on walls."""
+    notes = [
+        describe(result.window),
+        f"N = {result.number}, A = {result.area:.6g}, φ = {result.packing_fraction:.5g}, m v²/2 = "
+        f"{result.temperature:.6g} a disc (means over the window)",
+        f"No theory here: {result.no_theory}.",
+    ]
+    if found.unsteady:
+        notes.append(f"Never stationary, as {found.unsteady}: means over the window; `evolution` shows P(t).")
+    forces = [(f"{force.name}, {axis}", value) for force in found.forces for axis, value in force.large.items()]
+    along = [(wall.name, wall.stress) for wall in found.walls if wall.stress]
+    return [
+        estimates("P on each wall (energy/length²)", [(wall.name, wall.pressure) for wall in found.walls], notes),
+        estimates("Force of the discs (energy/length)", forces),
+        *([estimates("Stress along walls (energy/length²)", along)] if along else []),
+    ]
+
+
 def _of_log(result: Pressure) -> list[Table]:
+    if result.mechanical:
+        return _of_walls(result, result.mechanical)
     gas = (
         f"N = {result.number}, A = {result.area:g}, φ = {result.packing_fraction:.5g}, T = {result.temperature:.6g}",
     )
@@ -29,21 +51,24 @@ def _of_log(result: Pressure) -> list[Table]:
 
 
 def _of_states(result: EquationOfState) -> list[Table]:
-    heads = ("φ", "runs", "Z", "± s.e.", "dev./s.e.", "resummed", "to B10", "Henderson")
-    rows = [
+    several = len(result.kinds) > 1
+    heads = (*["gas"] * several, "φ", "N", "runs", "Z", "± s.e.", "dev./s.e.", "resummed", "to B10", "Henderson")
+    rows: list[tuple[Cell, ...]] = [
         (
+            *((state.kind,) if several else ()),
             Number(state.packing_fraction, ".5g"),
+            Number(state.number, "d"),
             Number(state.runs, "d"),
             Number(state.infinite.value, ".5f"),
             Number(state.infinite.standard_error, ".1g"),
-            Number(state.infinite.deviation or 0.0, "+.2f"),
+            Number(state.infinite.deviation, "+.2f"),
             *(Number(value, ".5f") for value in (state.infinite.theory, state.virial, state.henderson)),
         )
         for state in result.states
     ]
     states = Table("Z = PA/NT for N → ∞; deviations are from the resummed virial series", heads, rows)
     if result.b2 is None or result.b3 is None:
-        notes = ("Too few states at low density for a fit of virial coefficients.",)
+        notes = (f"No virial coefficients: a fit takes {FREE_TERMS + 1} packing fractions or more, up to {FITTED:g}.",)
         return [states, estimates("Virial coefficients, fitted", [], notes)]
     fitted = [("B2 in units of the disc's area", result.b2), ("B3/B2²", result.b3)]
     return [states, estimates("Virial coefficients, fitted", fitted)]

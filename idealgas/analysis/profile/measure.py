@@ -1,6 +1,6 @@
 """Density and temperature in strips along an axis, averaged over time, and the heat given by walls."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.profile import BINS
@@ -17,6 +18,9 @@ from idealgas.log import Log
 
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for an estimate of its temperature."""
+
+DILUTE = 0.02
+"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,7 @@ class SpeciesProfile:
 
 
 @dataclass(frozen=True)
-class Profile:
+class Profile(Result):
     """Profiles of all species in K strips along one axis.
 
     window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. frames: number
@@ -63,7 +67,7 @@ class Profile:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "window": self.window.as_dict(),
             "axis": "xy"[self.axis],
             "edges": self.edges.tolist(),
@@ -103,7 +107,29 @@ def profile(
     spinning = log.inertia is not None
     species = tuple(_of_species(name, sums[:, s], strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
-    return Profile(window, axis, edges, len(sums), law, species, _heat(log, window))
+    premises = (*_unknown_strips(species), *_not_dilute(log, species, expected))
+    return Profile(window, axis, edges, len(sums), law, species, _heat(log, window), premises=premises)
+
+
+def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
+    """Sentence for each species that is seen too seldom in some strips."""
+    for entry in species:
+        if missing := sum(np.isnan(found.value) for found in entry.temperature):
+            yield (
+                f"{missing} of {len(entry.temperature)} strips hold a disc of {entry.species} in fewer than "
+                f"{FEWEST_FRAMES} frames; they have no temperature."
+            )
+
+
+def _not_dilute(log: Log, species: Sequence[SpeciesProfile], expected: Expected | None) -> tuple[str, ...]:
+    """Sentence on a law for dilute gases beside a gas that is not dilute."""
+    if expected is None or not expected.dilute:
+        return ()
+    density = np.array([[found.value for found in entry.density] for entry in species])
+    densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
+    if densest <= DILUTE:
+        return ()
+    return (f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}.",)
 
 
 def _collect(
@@ -153,8 +179,8 @@ def _heat(log: Log, window: Window) -> dict[str, Estimate]:
         return {}
     time, given = log.observables["wall_energy"]
     inside = (time >= window.start) & (time <= window.end)
-    if inside.sum() < 2:
-        return {}
     steps, gains = np.diff(time[inside]), np.diff(given[inside], axis=0)
     some = steps > 0
+    if not some.any():
+        return {}
     return {wall.name: ratio(gains[some, k], steps[some]) for k, wall in enumerate(log.walls) if given[:, k].any()}

@@ -9,6 +9,9 @@ from idealgas.analysis.core.equilibrium import column_temperature, known_ensembl
 from idealgas.log import Log
 from idealgas.sides import sides_across
 
+UNIFORM = "uniform"
+"""Name of the law of a gas that is the same everywhere."""
+
 POINTS = 64
 """Number of points in a strip over which the theory is averaged."""
 
@@ -17,11 +20,12 @@ POINTS = 64
 class Expected:
     """Profiles by theory for S species and K strips.
 
-    law: name of the law. density: (S, K), mean number density of each strip, 1/length². temperature: (S, K), mean
-    temperature of each degree of freedom, energy.
+    law: name of the law. dilute: whether it holds in dilute gases only. density: (S, K), mean number density of each
+    strip, 1/length². temperature: (S, K), mean temperature of each degree of freedom, energy.
     """
 
     law: str
+    dilute: bool
     density: np.ndarray
     temperature: np.ndarray
 
@@ -52,7 +56,7 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     parts = weight.mean(axis=2) * size
     number = discs.number[:, None] * parts / parts.sum(axis=1, keepdims=True)
     strips = np.diff(edges) * log.box[1 - axis]
-    return Expected(law, number / strips, (weight * temperature).mean(axis=2) / weight.mean(axis=2))
+    return Expected(law, law != UNIFORM, number / strips, (weight * temperature).mean(axis=2) / weight.mean(axis=2))
 
 
 def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tuple[str, np.ndarray, np.ndarray] | None:
@@ -74,4 +78,4 @@ def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tupl
     equilibrium = known_ensemble(log)
     if equilibrium is None:
         return None
-    return "uniform", one, equilibrium.of_species[:, None, None] * one
+    return UNIFORM, one, equilibrium.of_species[:, None, None] * one

@@ -18,6 +18,9 @@ PUBLISHED = 6_552
 """Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970): 200 molecules, v_ref 5 times their
 speed. This number is 6.7 % below what theory expects."""
 
+V_REF = "v_ref"
+"""The observable of logs whose v_ref may rise."""
+
 MANY = 2000  # largest number of discs for which the mean over pairs takes all discs
 
 
@@ -28,7 +31,8 @@ class Acceptance:
     number: of trials. collisions: number of accepted trials. collisions_per_disc: their number per disc. acceptance:
     measured share; its theory is that of these discs in equilibrium. at_start: share expected for the velocities at the
     start. expected: share expected in equilibrium, by the name of the ensemble. published: published number of
-    collisions; None for other scenes.
+    collisions; None for other scenes. raises: of v_ref, in order of time, each as the number of trials before it and
+    the v_ref from then on (length/time); the first is that of the start.
     """
 
     number: int
@@ -38,6 +42,7 @@ class Acceptance:
     at_start: float
     expected: dict[str, float]
     published: int | None
+    raises: tuple[tuple[int, float], ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -49,6 +54,7 @@ class Acceptance:
             "acceptance_at_start": self.at_start,
             "acceptance_in_equilibrium": self.expected,
             "published_collisions": self.published,
+            "v_ref": [{"after_trials": trials, "v_ref": v_ref} for trials, v_ref in self.raises],
         }
 
 
@@ -60,15 +66,17 @@ def acceptance(log: Log) -> Acceptance | None:
     collisions, n = len(log) // 2, len(log.discs)
     share = collisions / max(number, 1)
     error = float(np.sqrt(share * (1 - share) / max(number, 1)))
-    equilibrium = ensemble(log)
-    fixed = equilibrium_acceptance(log, equilibrium.temperature, equilibrium.dof)
+    equilibrium, raises = ensemble(log), raises_of(log)
+    v_ref = mean_reference_speed(raises, number)
+    fixed = equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
     expected = {
-        "Maxwell-Boltzmann": equilibrium_acceptance(log, log.discs.temperature),
+        "Maxwell-Boltzmann": equilibrium_acceptance(log, v_ref, log.discs.temperature),
         f"fixed energy and momentum, D = {equilibrium.dof}": fixed,
     }
     acceptance = Estimate(share, error, float(number), theory=fixed)
     published = PUBLISHED if is_published(log.scene) else None
-    return Acceptance(number, collisions, 2 * collisions / n, acceptance, start_acceptance(log), expected, published)
+    at_start = start_acceptance(log, raises[0][1])
+    return Acceptance(number, collisions, 2 * collisions / n, acceptance, at_start, expected, published, raises)
 
 
 def last_trial(log: Log) -> int:
@@ -76,14 +84,34 @@ def last_trial(log: Log) -> int:
     return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
 
 
-def largest_product(log: Log) -> float:
+def raises_of(log: Log) -> tuple[tuple[int, float], ...]:
+    """Each v_ref of a log (length/time) with the number of trials made before it: that of the start, then the raised.
+
+    A v_ref that the scene gives, or that of a log from before it could rise, is the only one.
+    """
+    if V_REF not in log.observables:
+        return ((0, reference_speed(log.scene.run, float(np.hypot(*log.discs.velocity.T).max()))),)
+    values = log.observables[V_REF][1]
+    trials = log.observables["trials"][1][: len(values)]
+    first = np.flatnonzero(np.diff(values, prepend=0.0))
+    return tuple(zip(trials[first].tolist(), values[first].tolist(), strict=True))
+
+
+def mean_reference_speed(raises: tuple[tuple[int, float], ...], number: int) -> float:
+    """The v_ref, length/time, that would accept as many of all trials as those of a run did: their harmonic mean.
+
+    number: of all trials.
+    """
+    starts = np.array([trials for trials, _ in raises] + [max(number, raises[-1][0] + 1)])
+    return float(np.diff(starts).sum() / (np.diff(starts) / [v_ref for _, v_ref in raises]).sum())
+
+
+def largest_product(log: Log, v_ref: float) -> float:
     """Sum of radii times relative speed of a pair at which a trial is always accepted, length²/time."""
-    gas = log.discs
-    v_ref = reference_speed(log.scene.run, float(np.hypot(*gas.velocity.T).max()))
-    return float(np.sort(gas.radius)[-2:].sum()) * v_ref
+    return float(np.sort(log.discs.radius)[-2:].sum()) * v_ref
 
 
-def equilibrium_acceptance(log: Log, temperature: float, dof: float = math.inf) -> float:
+def equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: float = math.inf) -> float:
     """Acceptance in equilibrium: mean of the sum of radii times relative speed over its largest value.
 
     It is √(π/2)/5 for equal discs if v_ref is 5 times the root-mean-square speed.
@@ -92,16 +120,16 @@ def equilibrium_acceptance(log: Log, temperature: float, dof: float = math.inf) 
     sigma = discs.radius[:, None] + discs.radius
     speed = hard_discs.mean_relative_speeds(temperature, discs.mass, dof)
     pairs = discs.number[:, None] * (discs.number - np.eye(len(discs.number)))
-    return float((pairs * sigma * speed).sum() / pairs.sum() / largest_product(log))
+    return float((pairs * sigma * speed).sum() / pairs.sum() / largest_product(log, v_ref))
 
 
-def start_acceptance(log: Log) -> float:
+def start_acceptance(log: Log, v_ref: float) -> float:
     """Acceptance for the velocities at the start: (4/π)/5 for equal speeds in random directions."""
     gas = log.discs
     some = slice(None, None, -(-len(gas) // MANY))
     v, r = gas.velocity[some], gas.radius[some]
     product = (r[:, None] + r) * np.hypot(*(v[:, None] - v).T)
-    return float(product.sum() / (len(r) * (len(r) - 1)) / largest_product(log))
+    return float(product.sum() / (len(r) * (len(r) - 1)) / largest_product(log, v_ref))
 
 
 def is_published(scene: Scene) -> bool:

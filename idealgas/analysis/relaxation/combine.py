@@ -4,18 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.relaxation.measure import Relaxation
 
 
 @dataclass(frozen=True)
-class Relaxations:
+class Relaxations(Result):
     """Relaxation of the gas of each log."""
 
     logs: tuple[Relaxation, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {"logs": [found.as_dict() for found in self.logs]}
+        return super().as_dict() | {"logs": [found.as_dict() for found in self.logs]}
 
 
 def combine_relaxation(results: Sequence[Relaxation]) -> Relaxations:

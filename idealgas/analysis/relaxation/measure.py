@@ -6,7 +6,7 @@ conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value, which is the 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 from scipy import optimize
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
@@ -49,8 +50,12 @@ MEMORY = 2 / 3
 """Time for which fluctuations of the kurtosis last, in units of the relaxation time on the whole way: 2 over 3."""
 
 
+FEW = 100
+"""Number of discs below which the error of the relaxation time is not known well."""
+
+
 @dataclass(frozen=True)
-class Relaxation:
+class Relaxation(Result):
     """Relaxation of the gas of one log at K instants.
 
     path: of the log. number: of discs. time: (K,), times. collisions: (K,), collisions per disc since the first
@@ -81,7 +86,7 @@ class Relaxation:
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         k = self.first_indistinguishable
-        return {
+        return super().as_dict() | {
             "path": self.path,
             "number": self.number,
             "relaxation_time": self.in_time and self.in_time.as_dict(),
@@ -129,9 +134,10 @@ def relaxation(
         if progress is not None:
             progress(k + 1, len(time))
     collisions = collisions_per_disc(log, time)
-    target = 2 * equilibrium.dof / (equilibrium.dof + 2)
+    target = 2 / (1 + 2 / equilibrium.dof)
     critical = critical_distance(number)
     indistinguishable = np.flatnonzero(distance < critical)
+    in_collisions = _fit(collisions, kurtosis, number, target)
     return Relaxation(
         path=str(log.path),
         number=number,
@@ -143,11 +149,25 @@ def relaxation(
         equilibrium_kurtosis=target,
         critical_distance=critical,
         in_time=_fit(time - first, kurtosis, number, target),
-        in_collisions=_fit(collisions, kurtosis, number, target),
+        in_collisions=in_collisions,
         first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
+        premises=tuple(_doubts(in_collisions, float(collisions[-1]), number)),
     )
+
+
+def _doubts(fit: Estimate | None, seen: float, number: int) -> Iterator[str]:
+    """Sentences on a relaxation time, in collisions per disc, fitted to `number` discs followed for `seen` of these."""
+    if fit is None:
+        return
+    if seen < fit.value:
+        yield (
+            f"The log is followed for {seen:.2g} collisions per disc, less than the relaxation time that was fitted, "
+            f"{fit.value:.2g}: that is an extrapolation."
+        )
+    if number < FEW:
+        yield f"The error of the relaxation time was calibrated with 200 and 500 discs; here are {number}."
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

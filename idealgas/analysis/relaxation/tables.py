@@ -53,10 +53,16 @@ def _trials(tried: dict[str, Acceptance]) -> list[Table]:
         for path, found in tried.items()
     ]
     expected = [row for path, found in tried.items() for row in _expected(path, found)]
+    raised = [
+        (path, Number(trials, ","), Number(v_ref, ".6g"))
+        for path, found in tried.items()
+        for trials, v_ref in found.raises
+    ]
     return [
         Table("Trials of pairs", ("", "trials", "collisions", "collisions per disc"), counts),
         estimates("Acceptance of trials", [(path, found.acceptance) for path, found in tried.items()]),
         Table("Acceptance expected", ("", "value", "collisions"), expected),
+        Table("Reference speed", ("", "after trials", "v_ref"), raised),
     ]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.settling import why_no_equilibrium
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
@@ -38,7 +39,7 @@ class SpeciesTemperature:
 
 
 @dataclass(frozen=True)
-class Temperature:
+class Temperature(Result):
     """Temperatures of each species, and last of all discs.
 
     window: the time that was used. expected: E/N in equilibrium, energy; None if it is not known beforehand. species:
@@ -56,7 +57,7 @@ class Temperature:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {
+        return super().as_dict() | {
             "window": self.window.as_dict(),
             "expected": self.expected,
             "block_edges": self.window.edges.tolist(),

@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory import conserved, hard_discs
+from idealgas.analysis.theory.column import DENSEST, barometric_temperature, column_rates
 from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
-from idealgas.scene import Scene
+from idealgas.scene import Rest, Scene
 from idealgas.scene.defaults import reference_speed
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
@@ -27,8 +28,9 @@ class SpeciesForecast:
     """One species: its discs at the start, and its collision rate in equilibrium.
 
     name: of the species. number: of its discs. radius: length. mass: mass. packing_fraction: area of its discs over the
-    area of the box. temperature: mean kinetic energy of its discs at the start, energy. collision_rate: collisions of
-    one disc with other discs per time, 1/time; None if theory does not know it.
+    area of the box. temperature: mean kinetic energy of its discs at the start, energy, without the motion of the gas
+    as a whole. collision_rate: collisions of one disc with other discs per time, 1/time; None if theory does not know
+    it.
     """
 
     name: str
@@ -44,14 +46,16 @@ class SpeciesForecast:
 class Forecast:
     """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    Values are None if the theory, which is that of a uniform gas of constant energy, does not know them.
+    Values are None if the theory does not know them: it is that of a uniform gas of constant energy, or of a dilute
+    column under gravity.
 
     number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
     the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
     discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
     duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
     bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
-    approximate; empty if their error is below 2 %.
+    approximate; empty if their error is below 2 %. premises: sentences on what the start of the gas takes from averages
+    over time, and on its motion as a whole. rest: what discs do that have come to rest; None if none can.
     """
 
     number: int
@@ -67,6 +71,8 @@ class Forecast:
     bytes: float | None
     species: tuple[SpeciesForecast, ...]
     rough: str = ""
+    premises: tuple[str, ...] = ()
+    rest: Rest | None = None
 
 
 KNOWN = ("uniform", "conserves_energy", "isolated")
@@ -93,9 +99,12 @@ class _Rates(NamedTuple):
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
-    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule."""
+    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule.
+
+    Of a gas under gravity they are those of a dilute column.
+    """
     beyond = scene.lacking(*KNOWN)
-    rates = None if beyond else _rates(scene, gas)
+    rates = _column(scene, gas) if beyond else _rates(scene, gas)
     duration = _duration(scene, len(gas), rates)
     events = rows = None
     if rates and duration is not None:
@@ -108,7 +117,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     return Forecast(
         number=len(gas),
         packing_fraction=gas.packing_fraction * gas.area / area,
-        beyond=beyond,
+        beyond=() if rates else beyond,
         temperature=rates.temperature if rates else None,
         collision_rate=2 * rates.pairs / len(gas) if rates else None,
         pair_collision_rate=rates.pairs if rates else None,
@@ -117,8 +126,10 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         events=events,
         rows=rows,
         bytes=None if rows is None else rows * _bytes_a_row(scene),
-        species=tuple(_species(gas, k, area, rates) for k in range(len(gas.species_names))),
+        species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
+        premises=(*conserved.premises(scene, gas), *conserved.lost_motion(scene, gas)),
+        rest=scene.rest,
     )
 
 
@@ -142,7 +153,9 @@ def _spin_energy(scene: Scene) -> float:
 
 def _rates(scene: Scene, gas: Gas) -> _Rates:
     freedom = 2 + scene.properties.spins
-    temperature = 2 * (gas.kinetic_energy + _spin_energy(scene)) / (freedom * len(gas))
+    frame = conserved.common_motion(scene, gas)
+    kinetic = gas.kinetic_energy - float(gas.mass.sum() * (frame @ frame)) / 2
+    temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / (freedom * len(gas))
     number = np.bincount(gas.species)
     _, first = np.unique(gas.species, return_index=True)
     radius, mass = gas.radius[first], gas.mass[first]
@@ -153,6 +166,31 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
     return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, rough=rough)
+
+
+def _column(scene: Scene, gas: Gas) -> _Rates | None:
+    """Rates of a dilute gas in a closed box under gravity along one axis; None for others."""
+    properties, pull = scene.properties, np.abs(scene.properties.acceleration)
+    closed = properties.empty and properties.fixed_walls and not any(properties.periodic)
+    settles = properties.lossless and properties.isolated and len(gas) > 1
+    if not closed or not settles or np.count_nonzero(pull) != 1 or not gas.radius.all():
+        return None
+    axis = int(pull[1] > 0)
+    falls_to_zero = properties.acceleration[axis] < 0
+    above = gas.position[:, axis] if falls_to_zero else gas.box[axis] - gas.position[:, axis]
+    energy = gas.kinetic_energy + _spin_energy(scene) + float(pull[axis] * (gas.mass @ (above - gas.radius)))
+    if not energy > 0:
+        return None
+    number = np.bincount(gas.species)
+    _, first = np.unique(gas.species, return_index=True)
+    radius, mass, length, across = gas.radius[first], gas.mass[first], gas.box[axis], gas.box[1 - axis]
+    freedom = (2 + properties.spins) * len(gas)
+    t = barometric_temperature(energy, freedom, mass, number, float(pull[axis]), length - 2 * radius)
+    found = column_rates(t, mass, radius, number, float(pull[axis]), length, across)
+    if found.densest > DENSEST:
+        return None
+    rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {found.densest:.2g}"
+    return _Rates(t, found.per_disc, found.pairs, found.hits, rough=rough)
 
 
 def _why_rough(
@@ -184,11 +222,16 @@ def _rates_without_positions(
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials)
+    speeds = len(gas) + (scene.run.trials or 0)  # that discs have in a run, each of which may be the largest
+    fastest = math.sqrt(2 * temperature * math.log(speeds) / mass.min())
+    rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
+    rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough)
 
 
-def _species(gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
+def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
     members = gas.species == k
+    velocity = gas.velocity[members] - conserved.motion_at_start(scene, gas)
     mass, radius, number = gas.mass[members][0], gas.radius[members][0], int(members.sum())
     return SpeciesForecast(
         name=gas.species_names[k],
@@ -196,7 +239,7 @@ def _species(gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesFore
         radius=float(radius),
         mass=float(mass),
         packing_fraction=float(np.pi * radius**2 * number / area),
-        temperature=float(mass * (gas.velocity[members] ** 2).sum() / (2 * number)),
+        temperature=float(mass * (velocity**2).sum() / (2 * number)),
         collision_rate=float(rates.per_disc[k]) if rates else None,
     )
 

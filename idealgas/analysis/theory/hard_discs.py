@@ -16,8 +16,8 @@ from idealgas.physics.contact_value import contact_value
 VIRIAL = (1.0, 1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114873, 0.064993, 0.036219, 0.019954)
 """Virial coefficients B_k/B_2^(k-1) for k = 1 to 10 (no unit): Clisby & McCoy, J. Stat. Phys. 122, 15 (2006)."""
 
-FREEZING = 0.70
-"""Packing fraction above which the gas is no longer a fluid: Engel et al., Phys. Rev. E 87, 042134 (2013)."""
+HIGHEST = 0.62
+"""Packing fraction up to which the resummed virial series holds; the fluid freezes at 0.70."""
 
 _SERIES = Polynomial([b * 2.0**k for k, b in enumerate(VIRIAL)])
 _RESUMMED = Polynomial((_SERIES * Polynomial([1.0, -2.0, 1.0])).coef[: len(VIRIAL)])
@@ -114,12 +114,12 @@ def box_contacts(
     """Collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of a disc of species i with species j, 1/length.
 
     A disc does not collide with itself, and walls confine the discs (`confinement`). Equal discs have the contact value
-    (Z - 1)/2φ of the resummed virial series, mixtures that of Jenkins & Mancini (1987). Not a number above freezing.
+    (Z - 1)/2φ of the resummed virial series, mixtures that of Jenkins & Mancini (1987). Not a number above φ = 0.62.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     area = box[0] * box[1]
     phi = math.pi * (number * radius**2).sum() / area
-    if phi > FREEZING:
+    if phi > HIGHEST:
         return np.full((len(radius), len(radius)), math.nan)
     sigma = radius[:, None] + radius
     if len(radius) == 1:

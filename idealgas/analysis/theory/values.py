@@ -22,9 +22,6 @@ import numpy as np
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.two_discs import two_discs
 
-HIGHEST = 0.62
-"""Packing fraction up to which the resummed series is used."""
-
 LARGEST_ERROR = 0.1
 """Largest relative error of Z - 1 with which a formula counts as a theory."""
 
@@ -42,7 +39,7 @@ with larger N. Above 0.45 it decreases again, to 0.13 at 0.55 and 0.04 at 0.62."
 FRACTIONS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 NUMBERS = (3, 4, 6, 10, 20, 50, 100)
 ERRORS = {
-    "periodic": (
+    "without walls": (
         (0.005, 0.010, 0.015, 0.035, 0.150, 0.300, 0.900),
         (0.003, 0.005, 0.006, 0.015, 0.200, 0.400, 0.600),
         (0.0015, 0.003, 0.003, 0.006, 0.050, 0.150, 0.250),
@@ -51,7 +48,7 @@ ERRORS = {
         (0.0005, 0.0005, 0.0008, 0.0008, 0.001, 0.0025, 0.005),
         (0.0005, 0.0005, 0.0005, 0.0005, 0.0005, 0.0008, 0.0008),
     ),
-    "walls": (
+    "with walls": (
         (0.008, 0.032, 0.085, 0.120, 0.300, 0.650, 1.000),
         (0.006, 0.020, 0.060, 0.110, 0.200, 0.350, 0.400),
         (0.004, 0.012, 0.030, 0.060, 0.200, 0.350, 0.600),
@@ -115,8 +112,10 @@ def fluid(packing_fraction: float) -> Theory:
     Raises:
         NoTheoryError: above φ = 0.62.
     """
-    if packing_fraction > HIGHEST:
-        raise NoTheoryError(f"the packing fraction is above {HIGHEST:g}, where the virial series ends to hold")
+    if packing_fraction > hard_discs.HIGHEST:
+        raise NoTheoryError(
+            f"the packing fraction is above {hard_discs.HIGHEST:g}, where the virial series no longer holds"
+        )
     z = float(hard_discs.compressibility(packing_fraction))
     return Theory(z, _series_error(packing_fraction) * (z - 1), "virial series to B10, resummed")
 
@@ -185,7 +184,7 @@ def _equal_discs(
         relative = math.hypot(series.error / (series.value - 1), _finite_error(kind, n, r, phi, box))
         return Theory(1 + excess, relative * excess, f"{series.source}, for this N and box")
 
-    pairs = published or of(None, "periodic" if all(periodic) else "walls")
+    pairs = published or of(None, "without walls" if all(periodic) else "with walls")
     open_axes = [axis for axis in (0, 1) if not periodic[axis]]
     by_axis: list[Theory | None] = [None, None]
     for axis in open_axes:
@@ -213,7 +212,7 @@ def _mixture(
     exact = fluid(phi).value - 1
     z = hard_discs.box_compressibility(radius, number, box, periodic)
     first_order = abs((float(hard_discs.compressibility(phi, n)) - 1) / exact - (1 - 1 / n))
-    kind = "periodic" if all(periodic) else "walls"
+    kind = "without walls" if all(periodic) else "with walls"
     finite = _finite_error(kind, n, float(radius.max()), phi, box)
     relative = 1.5 * math.hypot(mixture_error(phi) + first_order, finite)  # 1.5: what simulations ask for
     if relative > LARGEST_ERROR:

@@ -5,7 +5,7 @@ velocities of discs at evenly spaced instants.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,10 +23,11 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import Ensemble, drift, ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import HIGHEST, Theory, diffusion_error
+from idealgas.analysis.theory.values import Theory, diffusion_error
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import UserError
@@ -37,6 +38,8 @@ LONGEST_LAG = 20.0  # mean free times; a step is a tenth of a mean free time
 FEWEST_SEGMENTS, MOST_SEGMENTS = 8, 64
 MOST_SAMPLES = 2**21  # largest number of discs times instants
 FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
+LEAST_LAG = 10.0  # mean free times; D from shorter lags is too small, as velocities still remember where they came from
+FREE_SHARE = 0.05  # largest displacement, relative to the box between two walls, that walls hardly change
 
 
 @dataclass(frozen=True)
@@ -86,7 +89,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Transport:
+class Transport(Result):
     """Transport in the gas of one log.
 
     window: the time that was used. walled: whether walls reflect diffusing discs. collision_rates, contacts,
@@ -107,7 +110,7 @@ class Transport:
             name: [entry.as_dict() for entry in getattr(self, name)]
             for name in ("collision_rates", "free_paths", "contacts", "diffusion", "pair_distributions")
         }
-        return {"window": self.window.as_dict(), "walled": self.walled, **values}
+        return super().as_dict() | {"window": self.window.as_dict(), "walled": self.walled, **values}
 
 
 def transport(
@@ -133,15 +136,40 @@ def transport(
     gas, discs = log.discs, composition(log.discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory_of(log, discs))
     rates = collision_rates(discs, expected, window, impacts)
+    diffusion = _diffusion(log, discs, window, equilibrium, rates)
     return Transport(
         window=window,
         walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
         contacts=_contacts(discs, gas.area, equilibrium, rates),
-        diffusion=_diffusion(log, discs, window, equilibrium, rates),
+        diffusion=diffusion,
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
+        premises=(*_short_lags(rates, diffusion), *_reflected(log, diffusion)),
     )
+
+
+def _short_lags(rates: Sequence[CollisionRate], diffusion: Sequence[Diffusion]) -> Iterator[str]:
+    """Sentence for each species whose displacement is followed for too short a time."""
+    for entry in diffusion:
+        free_times = float(entry.lag[-1]) * sum(found.rate.value for found in rates if found.species == entry.species)
+        if free_times < LEAST_LAG:
+            yield (
+                f"The window is short: {entry.species} is followed for {free_times:.2g} mean free times at most; its "
+                f"diffusion coefficient and velocity correlation time take {LEAST_LAG:g}."
+            )
+
+
+def _reflected(log: Log, diffusion: Sequence[Diffusion]) -> Iterator[str]:
+    """Sentence for each species whose displacement walls make smaller."""
+    widths = [size for size, is_periodic in zip(log.box, log.periodic, strict=True) if not is_periodic]
+    for entry in diffusion:
+        far = math.sqrt(entry.displacement[-1])
+        if widths and far > FREE_SHARE * min(widths):
+            yield (
+                f"Walls reflect discs of {entry.species}, which move {far:.3g} in a box of {min(widths):.3g} while "
+                "followed; in an infinite gas D is larger."
+            )
 
 
 def _contacts(
@@ -188,7 +216,7 @@ def _diffusion(
 def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float, float, float] | None:
     """Number density, Enskog's diffusion coefficient and kinematic viscosity of equal discs; None above φ = 0.62."""
     gas = log.discs
-    if gas.packing_fraction > HIGHEST:
+    if gas.packing_fraction > hard_discs.HIGHEST:
         return None
     density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)

@@ -36,12 +36,12 @@ class PairDistribution:
 
 
 def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:
-    """Pair distribution of every pair of species between two times.
+    """Pair distribution of every pair of species between two times; a species of one disc has none with itself.
 
     In a box with walls the numbers of pairs are divided by those of discs at random positions in the same box.
     """
     sigma = discs.radius[:, None] + discs.radius
-    pairs = [(i, j) for i in range(len(discs.name)) for j in range(i, len(discs.name))]
+    pairs = [(i, j) for i in range(len(discs.name)) for j in range(i, len(discs.name)) if i != j or discs.number[i] > 1]
     edges = {}
     for i, j in pairs:
         reach = min(REACH * sigma[i, j], min(log.box) / 2)

@@ -5,8 +5,6 @@ from dataclasses import replace
 from idealgas.analysis.core.tables import Table, collision_tables, describe, estimates
 from idealgas.analysis.transport.measure import Transport
 
-WALLED = "Walls reflect discs: D is that of an infinite gas only if the box is much wider than their displacement."
-
 
 def transport_tables(result: Transport) -> list[Table]:
     """Tables of collisions, pair distribution at contact, and diffusion of each species."""
@@ -24,5 +22,5 @@ def transport_tables(result: Transport) -> list[Table]:
         replace(rates, notes=(describe(result.window),)),
         paths,
         estimates("g(r) at contact (no unit)", contacts),
-        estimates("Diffusion, theory Enskog's", diffusion, (WALLED,) if result.walled else ()),
+        estimates("Diffusion, theory Enskog's", diffusion),
     ]

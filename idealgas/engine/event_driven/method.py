@@ -24,7 +24,7 @@ from idealgas.engine.event_driven.scheduler import (
 )
 from idealgas.engine.event_driven.state import make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
-from idealgas.engine.records import Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.records import NOTHING_KEPT, Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
 from idealgas.events import EventBatch
@@ -146,6 +146,7 @@ class EventDriven:
 
     without_positions = False
     single_epoch = False
+    kept = NOTHING_KEPT
 
     def __init__(self, filling: float | None = None) -> None:
         """Set the mean number of discs per cell, by default chosen by packing fraction; it changes the speed only."""

@@ -3,16 +3,13 @@
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
-from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint
 from idealgas.physics.effects import Effects
 from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, wall
 from idealgas.run.effects.slice import Arrays, Slice, Values
+from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
-from idealgas.sides import FIRST_SEGMENT
 
 SLICES = tuple(effect.SLICE for effect in (gravity, periodic, wall, rotation, restitution, thermal, piston))
 
@@ -20,9 +17,9 @@ SLICES = tuple(effect.SLICE for effect in (gravity, periodic, wall, rotation, re
 def make_effects(scene: Scene, gas: Gas) -> Effects:
     """The effects of a scene at time 0; None for those that it does not call for. gas: its discs at time 0."""
     effects = Effects(**{effect.field: effect.make(scene, gas) for effect in SLICES})
-    if any(effect.gives_energy(state) for effect, state in present(effects)):
-        return effects._replace(wall_energy=np.zeros(FIRST_SEGMENT + len(scene.wall)))
-    return effects
+    gives = any(effect.gives_energy(state) for effect, state in present(effects))
+    loses = any(effect.loses_energy(state) for effect, state in present(effects))
+    return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses)
 
 
 def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
@@ -44,14 +41,11 @@ def disc_constants(effects: Effects) -> Arrays:
 
 def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
     """What checkpoints and samples keep of the effects as a whole; local_time: from the start of the epoch."""
-    values = {
+    return {
         column: value
         for effect, state in present(effects)
         for column, value in effect.values(state, local_time).items()
     }
-    if effects.wall_energy is not None:
-        values[Column("wall_energy", "f8", effects.wall_energy.shape, "energy")] = effects.wall_energy.copy()
-    return values
 
 
 def restore_effects(effects: Effects, checkpoint: Checkpoint) -> None:
@@ -60,5 +54,3 @@ def restore_effects(effects: Effects, checkpoint: Checkpoint) -> None:
         values[:] = checkpoint.arrays[column.name]
     for effect, state in present(effects):
         effect.restore(state, checkpoint.values)
-    if effects.wall_energy is not None:
-        effects.wall_energy[:] = checkpoint.arrays["wall_energy"]

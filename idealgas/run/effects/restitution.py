@@ -10,7 +10,6 @@ from idealgas.physics.effects import Effects
 from idealgas.physics.restitution import Restitution
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
-from idealgas.scene.tables.restitution import contact_duration
 
 LAST_COLLISION = Column("last_collision", "f8", (), "time")
 """Counted from the checkpoint."""
@@ -20,8 +19,7 @@ def _make(scene: Scene, gas: Gas) -> Restitution | None:
     table = scene.restitution
     if table is None or table.elastic:
         return None
-    duration = contact_duration(table, scene.species, scene.disc)
-    return Restitution(table.normal, table.wall, duration, np.full(len(gas), -math.inf))
+    return Restitution(table.normal, table.wall, scene.contact_duration, np.full(len(gas), -math.inf))
 
 
 def _conserves(effects: Effects) -> bool:
@@ -37,5 +35,6 @@ SLICE = Slice(
     _make,
     disc_state=lambda restitution: {LAST_COLLISION: restitution.last},
     gives_energy=lambda restitution: restitution.wall < 1,
+    loses_energy=lambda restitution: True,
     conserves=_conserves,
 )

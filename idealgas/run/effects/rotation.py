@@ -50,5 +50,6 @@ SLICE = Slice(
     constants=_constants,
     energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy")),
     gives_energy=lambda rotation: abs(rotation.wall_roughness) < 1,
+    loses_energy=lambda rotation: abs(rotation.roughness) < 1 or abs(rotation.wall_roughness) < 1,
     conserves=_conserves,
 )

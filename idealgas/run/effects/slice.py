@@ -50,8 +50,9 @@ class Slice:
     those of them that are columns of events are in rows and snapshots too. constants: what the log keeps of each disc
     at the start. values: what checkpoints and samples keep of the effect as a whole, at a local time. restore: give the
     state the values of a checkpoint, by name; arrays by disc are restored without it. gives_energy: whether walls give
-    energy to discs, or take some, by this effect. own_wall: number of a wall whose energy is counted as its own, so
-    that what it gives is not from outside. conserves: whether no energy is lost by this effect, among all.
+    energy to discs, or take some, by this effect. loses_energy: whether energy is lost in collisions by it. own_wall:
+    number of a wall whose energy is counted as its own, so that what it gives is not from outside. conserves: whether
+    the account of the walls has all energy that is lost by this effect, among all; logs of before have no other.
     """
 
     field: str
@@ -62,5 +63,6 @@ class Slice:
     restore: Callable[[Any, Mapping[str, Any]], None] = keep
     energy: EnergyPart | None = None
     gives_energy: Callable[[Any], bool] = lambda state: False
+    loses_energy: Callable[[Any], bool] = lambda state: False
     own_wall: Callable[[Any], int | None] = lambda state: None
     conserves: Callable[[Effects], bool] = lambda effects: True

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document
     from idealgas.scene.tables.piston import Piston
 
+WAY = ", as one with a mass comes as near to the other side as the discs let it"
+
 CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
@@ -115,5 +117,6 @@ def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
         reach = max(_depth(scene, piston, wall.start[piston.axis]), _depth(scene, piston, wall.end[piston.axis]))
         if reach > depth:
             keys: tuple[Key, ...] = (("wall", i), ("piston", "position"), ("piston", "velocity"), ("run", "until"))
-            allowed = f"no farther than {depth:.6g}, where it cannot come"
+            why = ", where it cannot come" if piston.mass is None else WAY
+            allowed = f"no farther than {depth:.6g}{why}"
             yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {_facing(piston)} side", allowed)

@@ -8,7 +8,6 @@ from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue, Key
-from idealgas.scene.tables.restitution import contact_duration
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document
@@ -17,8 +16,9 @@ if TYPE_CHECKING:
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """A contact duration that has no default."""
     restitution = scene.restitution
-    if restitution is None or restitution.elastic or {"restitution", "species", "disc"} & invalid:
+    needed = {"restitution", "species", "disc", "box", "gravity", "piston"}
+    if restitution is None or restitution.elastic or needed & invalid or not (scene.species or scene.disc):
         return
-    if math.isinf(contact_duration(restitution, scene.species, scene.disc)):
+    if math.isinf(scene.contact_duration):
         keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
         yield Issue(keys, "no default where nothing moves at the start", "nothing", "a time > 0")

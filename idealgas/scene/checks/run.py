@@ -39,6 +39,8 @@ def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
         yield from _step_issues(scene)
     elif run.method == BRUTE_FORCE and run.precision not in (None, PLAIN):
         yield from _precision_issues(scene)
+    if "log" not in invalid and scene.log.pressure:
+        yield from _pressure_issues(scene)
 
 
 def _step_issues(scene: Document) -> Iterator[Issue]:
@@ -54,6 +56,15 @@ def _precision_issues(scene: Document) -> Iterator[Issue]:
     for place in _keys(scene):
         wrong = "smooth elastic discs in a reflecting box are all there is"
         yield Issue((place, ("run", "precision")), wrong, f'precision = "{scene.run.precision}"', f'"{PLAIN}"')
+
+
+def _pressure_issues(scene: Document) -> Iterator[Issue]:
+    """Methods whose discs are nowhere, or do not fly from event to event in plain numbers."""
+    run = scene.run
+    got = f'method = "{run.method}"' if run.precision in (None, PLAIN) else f'precision = "{run.precision}"'
+    if run.method in (MONTE_CARLO, TIME_DRIVEN) or run.precision not in (None, PLAIN):
+        keys = ("log", "pressure"), ("run", "precision" if run.precision else "method")
+        yield Issue(keys, "not recorded by this method", got, f'event_driven, {BRUTE_FORCE} with "{PLAIN}"')
 
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:

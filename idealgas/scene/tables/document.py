@@ -9,14 +9,15 @@ from typing import Annotated
 
 from pydantic import Field
 
-from idealgas.document.table import Rectangle, Table
+from idealgas.document.table import Rectangle, Table, Vector
+from idealgas.scene.defaults import mean_free_time
 from idealgas.scene.properties import Effect, Properties, combine, lacking
 from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, wall
 from idealgas.scene.tables.box import Box
 from idealgas.scene.tables.discs import Disc, Species
 from idealgas.scene.tables.gravity import Gravity
 from idealgas.scene.tables.piston import Piston
-from idealgas.scene.tables.restitution import Restitution
+from idealgas.scene.tables.restitution import Rest, Restitution
 from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
 from idealgas.scene.tables.wall import Wall
@@ -60,6 +61,36 @@ class Document(Table):
     def room(self) -> Rectangle:
         """What the gas has at the start."""
         return self.piston.room(self.box.size) if self.piston else (0.0, 0.0, *self.box.size)
+
+    @property
+    def press(self) -> Vector:
+        """Constant acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
+        press = list(self.properties.acceleration)
+        if self.piston:
+            axis = self.piston.axis
+            press[axis] = max(press[axis], self.piston.acceleration(self.box.size, self.gravity), key=abs)
+        return press[0], press[1]
+
+    @property
+    def free_time(self) -> float:
+        """Expected time between two collisions of a disc at the start, see `mean_free_time`, time."""
+        return mean_free_time(self.species, self.disc, self.room, self.box.periodic, self.press)
+
+    @property
+    def contact_duration(self) -> float:
+        """Time after a collision in which a disc loses nothing, time; 0 if discs never lose anything."""
+        if self.restitution is None or self.restitution.elastic:
+            return 0.0
+        return restitution.contact_duration(
+            self.restitution, self.species, self.disc, self.room, self.box.periodic, self.press
+        )
+
+    @property
+    def rest(self) -> Rest | None:
+        """What discs do that have come to rest; None if no constant force presses them, or nothing is lost."""
+        if self.restitution is None:
+            return None
+        return restitution.rest(self.restitution, self.contact_duration, self.free_time, self.press)
 
 
 CALLS: dict[str, Callable[[Document], Effect | None]] = {

@@ -2,13 +2,20 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from pydantic import Field
 
-from idealgas.document.table import Positive, Table
-from idealgas.scene.defaults import mean_speed
+from idealgas.document.table import Positive, Rectangle, Table, Vector
+from idealgas.scene.defaults import mean_free_time, mean_speed, number_of_discs, sum_of_diameters
 from idealgas.scene.properties import Effect, Properties
 from idealgas.scene.tables.discs import Disc, Species
+
+SHARE = 0.05
+"""Default contact duration in units of the mean free time, where a constant force presses discs together."""
+
+SHORTEST = 1e-6
+"""Default contact duration in units of the time for a mean diameter at the mean speed, where no force does."""
 
 NAME = "restitution"
 
@@ -23,7 +30,7 @@ class Restitution(Table):
     normal: float = Field(default=1.0, ge=0, le=1, description="of two discs, 0 to 1")
     wall: float = Field(default=1.0, ge=0, le=1, description="of a disc with a wall or piston, 0 to 1")
     contact_duration: Positive | None = Field(
-        default=None, description="time > 0; if absent 1e-6 * mean diameter / mean speed at the start"
+        default=None, description="time > 0; if absent 0.05 of the mean free time, or without a force far less"
     )
 
     @property
@@ -32,14 +39,64 @@ class Restitution(Table):
         return self.normal == 1 and self.wall == 1
 
 
-def contact_duration(restitution: Restitution, species: Sequence[Species], disc: Sequence[Disc]) -> float:
-    """As given, or a millionth of the mean diameter over the mean speed at the start; infinite if nothing moves."""
+@dataclass(frozen=True)
+class Rest:
+    """What discs do that have come to rest on something to which a constant force presses them.
+
+    Such a disc goes on bouncing without loss, as each of its hits comes less than a contact duration t after the one
+    before: with the acceleration a its speed is a t/2 at most.
+
+    hits: (least, most) hits of one disc per time, 1/t and 1/(et), 1/time. height: largest height of its bounces,
+    a t²/8, length. energy: their largest energy divided by the disc's mass, a² t²/8, (length/time)². per_free_time:
+    most hits of it in a mean free time of the gas at the start. The most is None for a coefficient e = 0: the disc then
+    collides without end at one instant.
+    """
+
+    hits: tuple[float, float | None]
+    height: float
+    energy: float
+    per_free_time: float | None
+
+
+def rest(restitution: Restitution, duration: float, free_time: float, press: Vector) -> Rest | None:
+    """What discs do at rest; None if no constant force presses them, or nothing is lost.
+
+    duration: contact duration, time. free_time: mean free time at the start, time. press: acceleration, length/time².
+    """
+    force = math.hypot(*press)
+    if force == 0 or restitution.elastic:
+        return None
+    e = min(restitution.normal, restitution.wall)
+    most = 1 / (e * duration) if e > 0 else None
+    height, energy = force * duration**2 / 8, (force * duration) ** 2 / 8
+    return Rest((1 / duration, most), height, energy, None if most is None else most * free_time)
+
+
+def contact_duration(
+    restitution: Restitution,
+    species: Sequence[Species],
+    disc: Sequence[Disc],
+    room: Rectangle,
+    periodic: tuple[bool, bool],
+    press: Vector,
+) -> float:
+    """As given, or by default, time; infinite if nothing ever moves.
+
+    A constant force presses a disc that has come to rest on the wall below it for ever, so the default bounds its hits
+    by a multiple of those of the gas: it is a twentieth of the mean free time. Without such a force the discs of a
+    cluster part as soon as their collisions are elastic, and the default only has to end the collapse: it is a
+    millionth of the time in which a disc moves by its diameter, which no average can tell from zero.
+
+    room, periodic, press: see `mean_free_time`.
+    """
     if restitution.contact_duration is not None:
         return restitution.contact_duration
-    diameters = sum(2 * s.radius * s.count for s in species) + sum(2 * d.radius for d in disc)
+    if any(press):
+        return SHARE * mean_free_time(species, disc, room, periodic, press)
     speed = mean_speed(species, disc)
-    number = sum(s.count for s in species) + len(disc)
-    return 1e-6 * diameters / number / speed if speed > 0 else math.inf
+    if speed == 0:
+        return math.inf
+    return SHORTEST * sum_of_diameters(species, disc) / number_of_discs(species, disc) / speed
 
 
 def effect(restitution: Restitution | None) -> Effect | None:

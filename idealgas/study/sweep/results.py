@@ -8,7 +8,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from idealgas.analysis.core.premises import origin_of
+from idealgas.analysis.core.result import Origin
 from idealgas.errors import UserError
+from idealgas.scene import parse_scene
 from idealgas.study.sweep.point import points_folder
 
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
@@ -29,8 +32,8 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
         raise UserError(f"{folder}: damaged results ({error})") from None
 
 
-def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the label (the values of the axes) and the stored result of an analysis for each point of a sweep.
+def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:
+    """Yield the label (the values of the axes), the stored result of an analysis and the run of each point of a sweep.
 
     Raises:
         UserError: if the sweep does not have this analysis.
@@ -39,7 +42,8 @@ def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str,
         if analysis not in point["analyses"]:
             raise UserError(f'{folder}: a sweep without the analysis "{analysis}"')
         label = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
-        yield label, point["analyses"][analysis]
+        run = origin_of(parse_scene(point["scene"]), f"{folder}, point {point['point']}")
+        yield label, point["analyses"][analysis], run
 
 
 def write_tables(folder: str | os.PathLike[str]) -> list[Path]:

@@ -22,6 +22,7 @@ from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature.figure import temperature_figure
 from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.transport.measure import transport
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -106,7 +107,10 @@ def test_log_without_events_is_refused(tmp_path):
 def test_effects_are_not_ignored(log, monkeypatch):
     monkeypatch.setattr(Scene, "called", (Effect("magnets", (), Properties(uniform=False)),))
     with pytest.raises(UserError, match="no answer for a gas with magnets"):
-        pressure(log)
+        transport(log)
+    found = pressure(log)
+    assert (found.routes, found.no_theory) == ((), "no equation of state holds under magnets")
+    assert histogram(log, "free-time").no_law == "the gas is not the same everywhere (magnets)"
 
 
 def test_gas_at_rest_is_refused(tmp_path):

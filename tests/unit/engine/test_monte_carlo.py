@@ -110,6 +110,86 @@ def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
     assert needed > 2.0
 
 
+# ── a reference speed that rises ──
+
+
+def uneven_gas(seed):
+    """Six discs of two kinds, whose light ones get faster than any disc was at the start."""
+    draw = np.random.default_rng(seed)
+    velocity = draw.normal(size=(6, 2)) * 0.5
+    return gas_of(
+        BOX, np.full((6, 2), 5.0), velocity, [0.1, 0.1, 0.1, 0.3, 0.3, 0.3], [0.02, 0.02, 0.02, 5.0, 5.0, 5.0]
+    )
+
+
+def rising(gas, seed, share=5.0):
+    fastest = float(np.hypot(*gas.velocity.T).max())
+    return Simulation(gas, MonteCarlo(seed, share * fastest, rises=True))
+
+
+def test_no_pair_is_ever_faster_than_a_reference_speed_that_rises():
+    raises = 0
+    for seed in range(20):
+        made = rising(uneven_gas(seed), seed)
+        before = made.method.v_ref
+        for _ in made.slices(Stop(trials=3000), events=1):
+            speeds = np.hypot(*made.state()[0].velocity.T)
+            assert np.sort(speeds)[-2:].sum() < made.method.v_ref
+            raises += made.method.v_ref > before
+            assert made.method.v_ref >= before
+            before = made.method.v_ref
+    assert raises > 20
+
+
+def test_while_it_rises_every_pair_collides_at_its_own_rate():
+    """Waits times the rate of all pairs are exponential with mean 1, and the pairs come in proportion to their rates.
+
+    Both for the first eight collisions of 500 gases, nearly all of which raise v_ref among them: Kolmogorov's bound for
+    p = 0.001, and 4 standard errors of the mean share of the pair that collides (its variance is bounded by 1/4).
+    """
+    waits, excess, raised = [], [], 0
+    for seed in range(500):
+        gas = uneven_gas(seed)
+        made = rising(gas, seed, 2.05)
+        start = made.method.v_ref
+        rows = record(made, Stop(events=8))
+        raised += made.method.v_ref > start
+        chi = (1 - 7 * gas.packing_fraction / 16) / (1 - gas.packing_fraction) ** 2
+        velocity, last = gas.velocity.copy(), 0.0
+        i, j = np.triu_indices(6, 1)
+        for k in range(0, 16, 2):
+            rate = 2 * chi * (gas.radius[i] + gas.radius[j]) * np.hypot(*(velocity[i] - velocity[j]).T) / gas.area
+            waits.append((rows.time[k] - last) * rate.sum())
+            taken = (i == rows.disc[k]) & (j == rows.partner[k])
+            excess.append(rate[taken].sum() / rate.sum() - (rate**2).sum() / rate.sum() ** 2)
+            last = rows.time[k]
+            velocity[rows.disc[k : k + 2]] = rows.velocity[k : k + 2]
+    assert raised > 400
+    place = np.sort(1 - np.exp(-np.array(waits)))
+    distance = np.abs(place - np.arange(1, len(place) + 1) / len(place)).max()
+    assert distance < 1.95 / math.sqrt(len(place))
+    assert abs(np.mean(waits) - 1) < 4 / math.sqrt(len(waits))
+    assert abs(np.mean(excess)) < 4 * 0.5 / math.sqrt(len(excess))
+
+
+def test_a_rising_reference_speed_goes_on_from_the_start_of_any_epoch():
+    gas, stop = uneven_gas(3), Stop(trials=8000)
+    whole = record(rising(gas, 3), stop)
+    made = rising(gas, 3)
+    while made.epoch < 2:
+        made.advance(stop, None)
+        if made.epoch_over:
+            made.next_epoch()
+    method = MonteCarlo(3, made.method.v_ref, rises=True)
+    again = Simulation(made.gas, method, time=made.time, epoch=made.epoch, totals=made.totals)
+    rest = record(again, stop)
+    for name in ("time", "disc", "velocity", "trial"):
+        assert np.array_equal(getattr(whole, name)[-len(rest.time) :], getattr(rest, name)), name
+    for size in (3, 17):
+        parts = record(rising(gas, 3), stop, size)
+        assert np.array_equal(whole.time, parts.time)
+
+
 def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
     def boundary_crossings(one_sided):
         gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)

@@ -133,6 +133,7 @@ def test_a_wrong_end(finished):
 
 
 def test_other_laws_by_their_version(finished, monkeypatch):
+    monkeypatch.setattr(going_on, "GOES_ON", {99})
     monkeypatch.setattr(going_on, "TRAJECTORY", 99)
     with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion, this program has vers"):
         resume(finished, ["run.events=9000"])
@@ -142,9 +143,9 @@ def test_other_laws_by_what_they_do(finished, monkeypatch):
     restore = going_on.restore
 
     def displaced(*arguments):
-        gas = restore(*arguments)
+        gas, effects = restore(*arguments)
         gas.velocity[:] *= 1 + 1e-15
-        return gas
+        return gas, effects
 
     monkeypatch.setattr(going_on, "restore", displaced)
     before = finished.read_bytes()

@@ -6,7 +6,9 @@ import math
 import numpy as np
 import pytest
 
+from idealgas.analysis.evolution.figure import evolution_figure
 from idealgas.analysis.evolution.measure import evolution
+from idealgas.analysis.evolution.tables import evolution_tables
 from idealgas.errors import UserError
 
 GAS = """
@@ -55,7 +57,8 @@ def test_haff(make):
     t = found.law.temperature
     assert t[0] == pytest.approx(1.5)
     assert 20 / (math.sqrt(t[0] / t[-1]) - 1) == pytest.approx(tau, rel=0.05)
-    assert found.balance[-1] < -0.1
+    assert found.dissipated["discs"][-1] > 0.1 * found.parts["motion"][0]
+    assert np.abs(found.balance).max() < 1e-12
 
 
 def test_adiabat(make):
@@ -95,3 +98,57 @@ def test_equilibrium(make, overrides, t):
 def test_times_that_are_not_there(make):
     with pytest.raises(UserError, match="no window"):
         evolution(make(), 5.0, 30.0)
+
+
+def test_pressure_in_bins_of_time(make):
+    """The bins together are the mean over the log, and the picture has one panel for P(t) and one for P(A)."""
+    log = make("piston={ velocity = -0.1 }", "species.radius=0.001")
+    found = evolution(log)
+    course, force = found.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
+    assert course.pressure["right wall"].mean() * 8 == pytest.approx(force, rel=1e-9)
+    assert course.area[[0, -1]] == pytest.approx(
+        96 - 0.8 * 20 * np.array([0.5, len(course.area) - 0.5]) / len(course.area)
+    )
+    assert set(course.pressure) == {"left wall", "right wall", "bottom wall", "top wall"}
+    titles = [table.title for table in evolution_tables(found)]
+    assert titles[1] == "Pressure on walls, means over bins of time"
+    axes = [ax.get_ylabel() for ax in evolution_figure(found).axes]
+    assert axes.count("pressure (energy/length²)") == 2
+    labels = [text.get_text() for text in evolution_figure(found).axes[-1].get_legend().get_texts()]
+    assert labels == ["isotherm through the start", "adiabat through the start", "P on right wall"]
+
+
+def test_pressure_of_a_uniform_gas_is_that_of_all_sides(make):
+    course = evolution(make()).pressure
+    assert course.shown == ("all sides",)
+    assert course.lines is None
+    assert (course.area == 96).all()
+    sides = np.mean([course.pressure[f"{side} wall"] for side in ("left", "right")], axis=0) * 16
+    ends = np.mean([course.pressure[f"{side} wall"] for side in ("bottom", "top")], axis=0) * 24
+    assert course.pressure["all sides"] == pytest.approx((sides + ends) / 40)
+
+
+def test_without_hits_there_is_no_pressure(make):
+    assert evolution(make("log.events=false")).pressure is None
+    assert evolution(make(*PERIODIC)).pressure is None
+
+
+@pytest.mark.parametrize(
+    ("overrides", "isotherm", "adiabat"),
+    [
+        (("piston={ velocity = -0.1 }",), True, True),
+        (("piston={ velocity = -0.1 }", "box={ size = [12, 8], left = { thermal = 1.5 } }"), True, False),
+        (("piston={ velocity = -0.1 }", "gravity.acceleration=[0, -0.1]"), False, False),
+        (("piston={ velocity = -0.1 }", "species.radius=0.7"), False, False),  # above freezing at the end
+    ],
+)
+def test_lines_of_state_where_theory_has_them(overrides, isotherm, adiabat, make):
+    lines = evolution(make(*overrides)).pressure.lines
+    assert (lines is not None) == isotherm
+    if lines:
+        assert (lines.adiabat is not None) == adiabat
+        start = -1  # the largest area
+        assert lines.isotherm[start] == pytest.approx(40 * 1.5 / 96, rel=0.1)
+        if adiabat:
+            assert lines.adiabat[start] == pytest.approx(lines.isotherm[start])
+            assert lines.adiabat[0] > lines.isotherm[0]

@@ -1,4 +1,5 @@
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -6,8 +7,9 @@ from numpy.polynomial import Polynomial
 
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
+from idealgas.analysis.pressure.tables import pressure_tables
 from idealgas.analysis.theory import hard_discs
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 
 def samples(phis, error, number=1000, runs=4, seed=0):
@@ -50,12 +52,41 @@ def test_a_wrong_pressure_is_found():
     assert equation_of_state(wrong).check().agrees is False
 
 
-def test_few_states_give_no_coefficients_and_frozen_ones_nothing():
+def test_few_states_give_no_coefficients():
     few = equation_of_state(list(samples([0.1, 0.2], 1e-3)))
     assert few.b2 is None
     assert few.b3 is None
-    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75"):
-        equation_of_state([Sample(0.75, 100, Estimate(9.0, 0.1, 10.0))])
+
+
+@pytest.mark.parametrize("theory", [None, 9.36])
+def test_no_equation_of_state_where_there_is_no_theory(theory):
+    dense, published = Sample(0.75, 100, Estimate(9.0, 0.1, 10.0)), Sample(0.67, 870, Estimate(9.36, 0.1, 10.0, theory))
+    with pytest.raises(NotApplicableError, match=r"no theory for a gas of packing fraction 0\.67"):
+        equation_of_state([dense, published])
+    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75") as refused:
+        equation_of_state([*samples([0.1, 0.2], 1e-3), dense])
+    assert not isinstance(refused.value, NotApplicableError)  # others of these gases have a theory
+
+
+@pytest.mark.parametrize(("phis", "numbers"), [((0.05, 0.1), (100, 400)), ((0.05, 0.1, 0.2), (100, 200, 400))])
+def test_few_packing_fractions_give_states_however_many_they_are(phis, numbers):
+    """Four free parameters or more need as many packing fractions; other numbers of discs do not help."""
+    found = equation_of_state([s for n in numbers for s in samples(phis, 1e-3, n, runs=1)])
+    assert [(state.packing_fraction, state.number) for state in found.states] == list(product(phis, numbers))
+    assert (found.b2, found.b3) == (None, None)
+    states, coefficients = pressure_tables(found)
+    assert len(states.rows) == len(phis) * len(numbers)
+    assert states.heads[:2] == ("φ", "N")
+    assert coefficients.notes == ("No virial coefficients: a fit takes 4 packing fractions or more, up to 0.25.",)
+    assert found.check().agrees is True
+    enough = equation_of_state(list(samples((0.05, 0.1, 0.15, 0.2), 1e-3, runs=1)))
+    assert enough.b2 is not None
+
+
+def test_a_state_without_an_error_bar_has_no_deviation():
+    state = equation_of_state([Sample(0.1, 100, Estimate(1.2, math.nan, 1.0, 1.2))])
+    row = pressure_tables(state)[0].shown[0]
+    assert row[4:6] == ["nan", ""]
 
 
 def test_resummed_series_beside_pade_approximants():

@@ -138,7 +138,7 @@ def test_what_was_seen_of_equal_speeds(make_log):
     assert found.distance[0] == pytest.approx(1 - math.exp(-1), abs=1e-12)
     square = (late**2).sum(axis=1)
     assert found.kurtosis[40] == pytest.approx((square**2).mean() / square.mean() ** 2)
-    assert found.equilibrium_kurtosis == 2 * 160 / 162
+    assert found.equilibrium_kurtosis == pytest.approx(2 * 160 / 162, rel=1e-15)
     assert found.collisions[-1] == pytest.approx(40, abs=2 / 80)
     k = found.first_indistinguishable
     assert found.distance[k] < found.critical_distance <= found.distance[:k].min()

@@ -92,9 +92,10 @@ def test_only_walls_are_hit():
     tall = forecast_of("species.radius=1e-4")
     periodic = forecast_of("species.radius=1e-4", "box.left=periodic", "box.right=periodic")
     assert periodic.wall_hit_rate == pytest.approx(tall.wall_hit_rate * 20 / 60, rel=1e-4)
-    endless = forecast_of(*(f"box.{side}=periodic" for side in ("left", "right", "bottom", "top")))
+    at_rest_as_a_whole = ("species.speed=", "species.temperature=1")
+    endless = forecast_of(*(f"box.{side}=periodic" for side in ("left", "right", "bottom", "top")), *at_rest_as_a_whole)
     assert endless.wall_hit_rate == 0
-    assert endless.collision_rate == pytest.approx(forecast_of().collision_rate, rel=1e-12)
+    assert endless.collision_rate == pytest.approx(forecast_of(*at_rest_as_a_whole).collision_rate, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -121,3 +122,66 @@ def test_what_is_beyond_theory_is_not_known(override, beyond):
 def test_the_packing_fraction_is_that_of_the_space_before_a_piston():
     expected = forecast_of("piston={ position = 8, mass = 1, pressure = 10 }")
     assert expected.packing_fraction == pytest.approx(math.pi * 0.1**2 * 1000 / 160, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "why"),
+    [
+        ((), ""),
+        (("species.count=10",), "off by up to"),
+        (
+            ("species.count=4000", "species.radius=0.1001", "box.size=[10, 19]", "species.placement=lattice"),
+            "above 0.62",
+        ),
+        (("species.count=1",), "holds less than 3"),
+    ],
+)
+def test_rates_of_a_rough_theory_are_marked(overrides, why):
+    rough = forecast_of(*overrides).rough
+    assert why in rough
+    assert bool(why) == bool(rough)
+
+
+def test_a_column_under_gravity():
+    """Temperature and rates of equal discs by the barometric law in a box so high that its lid does not count.
+
+    The energy of motion and height is 2NT; a pair meets at the rate 2σ ∫n² √(πT/m) per disc, with ∫n² of the law
+    N/W mg/2T. The floor is hit as if it carried the weight: n(0) ⟨v⟩/π W.
+    """
+    tall = ("box.size=[20, 400]", "species.radius=0.005", "species.count=400", "species.region=[0, 0, 20, 40]")
+    expected = forecast_of(*tall, "gravity.acceleration=[0, -0.2]")
+    m, g, n = 0.5, 0.2, 400
+    gas = make_gas(parse_scene(GAS, overrides=(*tall, "gravity.acceleration=[0, -0.2]")))
+    t = (gas.kinetic_energy + m * g * float((gas.position[:, 1] - 0.005).sum())) / (2 * n)
+    assert expected.temperature == pytest.approx(t, rel=1e-9)
+    rate = 2 * 0.01 * (n - 1) / 20 * m * g / (2 * t) * math.sqrt(math.pi * t / m)
+    assert expected.collision_rate == pytest.approx(rate, rel=2e-3)
+    flux = math.sqrt(math.pi * t / (2 * m)) / math.pi
+    assert expected.wall_hit_rate == pytest.approx(flux * n * (m * g / t + 2 / (20 - 0.01)), rel=2e-2)
+    assert expected.beyond == ()
+    assert "dilute column" in expected.rough
+    sideways = forecast_of(
+        "box.size=[400, 20]", *tall[1:3], "species.region=[360, 0, 400, 20]", "gravity.acceleration=[0.2, 0]"
+    )
+    assert sideways.collision_rate == pytest.approx(expected.collision_rate, rel=0.05)
+
+
+def test_other_columns_are_not_known():
+    dilute = ("species.radius=0.005", "species.count=100")
+    assert forecast_of(*dilute, "gravity.acceleration=[0, -0.2]").temperature
+    for override in (
+        "gravity.acceleration=[0.1, -0.2]",
+        "box={ size = [10, 20], left = 'periodic', right = 'periodic' }",
+    ):
+        assert forecast_of(*dilute, "gravity.acceleration=[0, -0.2]", override).beyond == ("gravity",)
+
+
+def test_trials_are_about_right_where_the_reference_speed_rises():
+    text = """
+        box.size = [10, 10]
+        species = [{ name = "gas", count = 300, radius = 0.05, speed = 1 }]
+        run = { method = "monte_carlo", trials = 9000 }
+    """
+    assert "v_ref rises" in forecast_of(text=text).rough
+    assert forecast_of(text=text.replace("trials = 9000", "trials = 9000, v_ref = 5")).rough == ""
+    assert forecast_of(text=text.replace("trials = 9000", "events = 9000")).rough == ""

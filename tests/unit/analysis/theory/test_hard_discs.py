@@ -131,5 +131,6 @@ def test_box_of_equals_given_as_two_species():
     assert two - 1 == pytest.approx(one - 1, rel=2e-3)  # Henderson's χ against the virial series, and 1/N
 
 
-def test_no_theory_beyond_freezing():
-    assert math.isnan(hard_discs.box_compressibility([0.5], [100], (10.0, 11.0)))
+def test_no_theory_beyond_its_range():
+    for width, known in ((12.6, True), (12.5, False), (11.0, False)):
+        assert math.isfinite(hard_discs.box_compressibility([0.5], [99], (10.0, width))) == known

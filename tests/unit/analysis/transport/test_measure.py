@@ -1,5 +1,7 @@
 """Transport against slow and obvious computations, and against cases whose answer is known."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -79,3 +81,14 @@ def test_a_single_result_holds_together(log):
     assert g.edges[0] == 0.6
     assert result.walled == (not all(log.periodic))
     assert all(abs(estimate.deviation) < 4 for estimate in (rate.rate, contact.value))
+
+
+def test_a_species_of_one_disc_has_no_pair_with_itself(tmp_path):
+    species = '{name = "gas", count = 11, radius = 0.3, temperature = 1.0}, {name = "lone", count = 1, radius = 0.4}'
+    scene = f"box.size = [6, 5]\nspecies = [{species}]\nrun.collisions_per_disc = 60\n"
+    simulate(parse_scene(scene.replace("radius = 0.4", "radius = 0.4, temperature = 1.0")), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = transport(log)
+    pairs = [(one.species, one.other) for one in found.pair_distributions]
+    assert pairs == [("gas", "gas"), ("gas", "lone")]
+    assert json.dumps(found.as_dict(), allow_nan=False)

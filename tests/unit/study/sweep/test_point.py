@@ -62,7 +62,7 @@ def test_the_table_is_tidy(task, tmp_path):
     by_name = {(row["analysis"], row["quantity"]): row for row in rows}
     assert len(by_name) == len(rows)
     pairs = by_name["pressure", "routes/pairs, virial/compressibility"]
-    ((label, result),) = stored(tmp_path, "pressure")
+    ((label, result, _),) = stored(tmp_path, "pressure")
     assert label == "phi = 0.1, species.x = [1, 2]"
     sample = restore_pressure(result, label)
     assert float(pairs["value"]) == sample.compressibility.value

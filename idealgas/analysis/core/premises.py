@@ -1,0 +1,72 @@
+"""Premises of analyses: what must hold so that a number means what its name says.
+
+An analysis tests its own premises and puts a sentence for each one that does not hold into its result (`Result`). Here
+are those that all analyses share, and those of several logs together.
+"""
+
+from collections.abc import Sequence
+
+from idealgas.analysis.core.result import Origin, Result
+from idealgas.analysis.theory import conserved
+from idealgas.errors import UserError
+from idealgas.log import Log
+from idealgas.scene import Scene
+from idealgas.scene.identity import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
+
+MOST = 6
+"""Largest number of sentences that are taken over from single logs where many are combined."""
+
+NAMED = 3
+"""Largest number of logs that one sentence names."""
+
+
+def of_log(log: Log) -> tuple[str, ...]:
+    """Sentences on premises of every average over time that the gas of a log takes away."""
+    return conserved.premises(log.scene, log.discs)
+
+
+def origin_of(scene: Scene, path: str) -> Origin:
+    """Run of a scene; path: of its log, or another name for it."""
+    seed = scene.scene.seed if draws_random_numbers(scene) else None
+    return Origin(
+        path, run_digest(scene), gas_digest(scene), describe_gas(scene), gas_kind(scene), is_mixture(scene), seed
+    )
+
+
+def of_several(results: Sequence[Result]) -> tuple[str, ...]:
+    """Sentences of single logs, with their paths if there are several logs, at most MOST of them."""
+    if len(results) == 1:
+        return results[0].premises
+    said = [(f"{r.origin.path}: " if r.origin else "") + sentence for r in results for sentence in r.premises]
+    if len(said) > MOST:
+        said[MOST:] = [f"{len(said) - MOST} more sentences on premises come with the single logs."]
+    return tuple(said)
+
+
+def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
+    """Sentences on the independence of runs that are averaged.
+
+    Raises:
+        UserError: if a run is there twice: the same log, a copy of it, or another log of the same scene and seed.
+    """
+    runs: dict[str, Origin] = {}
+    seeds: dict[int, list[str]] = {}
+    for origin in (r.origin for r in results if r.origin is not None):
+        if (first := runs.setdefault(origin.run, origin)) is not origin:
+            if origin.path == first.path:
+                raise UserError(f"{origin.path}: given twice, but a run counts once")
+            raise UserError(f"{origin.path}: the run of {first.path} again, of the same scene and seed; it counts once")
+        if origin.seed is not None:
+            seeds.setdefault(origin.seed, []).append(origin.path)
+    return tuple(
+        f"Runs of one seed ({seed}) may start alike, and their errors are then not independent: {named(paths)}. "
+        "Give each run a seed of its own."
+        for seed, paths in seeds.items()
+        if len(paths) > 1
+    )
+
+
+def named(paths: Sequence[str]) -> str:
+    """Paths in one line; of many the first few and the number of the others."""
+    rest = len(paths) - NAMED
+    return ", ".join(paths[:NAMED]) + (f" and {rest} more" if rest > 0 else "")

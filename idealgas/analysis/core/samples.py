@@ -1,0 +1,95 @@
+"""Impacts in blocks of time from the sums in the samples of a run, for logs without events."""
+
+import numpy as np
+
+from idealgas.analysis.core.window import MOST_BLOCKS, Window, first_steady, span
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.log import Log
+from idealgas.sides import FIRST_SEGMENT, OUTWARD
+
+FEWEST_SAMPLES = 17
+"""Least number of samples in a window; error bars from fewer blocks mean nothing."""
+
+SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_push", "face_drag", "face_hits", "pair_collisions")
+
+
+class SampledImpacts:
+    """Sums over the events in B blocks of time, as those of `Impacts`, for W walls and S species.
+
+    kinetic_flow: (B, 3), ∫ Σ m v_a v_b dt for xx, xy and yy, energy·time. collision_flow: (B, 4), Σ Δp_a r_b over pair
+    collisions for xx, xy, yy and yx, energy·time. pair_virial: (B,), its trace. inner_virial, wall_virial, collisions,
+    impulse, hits: as there. dragged: whether walls take momentum along themselves.
+    """
+
+    def __init__(self, log: Log, edges: np.ndarray) -> None:
+        """Take a log with such sums, and the times (B + 1,) between the blocks.
+
+        Where these are not times of samples, the sums grow evenly from one sample to the next.
+        """
+        self.edges = edges
+        found = {name: _in_blocks(*log.observables[name], edges) for name in SUMS if name in log.observables}
+        species = len(log.discs.species_names)
+        if "pair_collisions" not in found:  # those of a single species are all there are
+            found["pair_collisions"] = _in_blocks(*log.observables["disc_collisions"], edges)
+        self.kinetic_flow, self.collision_flow = found["kinetic_flow"], found["collision_flow"]
+        self.pair_virial = self.collision_flow[:, 0] + self.collision_flow[:, 2]
+        self.inner_virial = self.collision_flow[:, :3:2][:, [not wrapped for wrapped in log.periodic]].sum(axis=1)
+        self.wall_virial = found["wall_virial"]
+        self.collisions = found["pair_collisions"].reshape(-1, species, species)
+        push, drag = found["face_push"][..., None], found["face_drag"][..., None]
+        self.dragged = bool(drag.any())
+        into, along = face_directions(log)
+        self.impulse = _by_wall(push * into + drag * along)
+        self.hits = _by_wall(found["face_hits"])
+
+
+def face_directions(log: Log) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors (F, 2) into every face and along it, in the directions in which push and drag count."""
+    ends = np.array([(wall.start, wall.end) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2, 2)
+    way = ends[:, 1] - ends[:, 0]
+    tangent = way / np.hypot(*way.T)[:, None]
+    right = np.column_stack((tangent[:, 1], -tangent[:, 0]))  # into the face on the left
+    into = np.concatenate((OUTWARD, np.stack((right, -right), axis=1).reshape(-1, 2)))
+    along = np.concatenate((np.abs(OUTWARD)[:, ::-1], np.repeat(tangent, 2, axis=0)))
+    return into, along
+
+
+def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, ...]) -> tuple[Window, SampledImpacts]:
+    """Sums of a log between two times, from the samples nearest to them within, and the window of time to use.
+
+    Without `start` the window begins where momentum flow, virial and collision rates are stationary. needs: properties
+    of a scene that the analysis relies on.
+
+    Raises:
+        UserError: if the log has neither events nor such sums, if it does not cover the window, if there are too few
+            samples in it, or if an effect of the scene takes one of the needed properties away.
+    """
+    if strange := log.scene.lacking(*needs):
+        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+    if SUMS[0] not in log.observables:
+        raise UserError(f"{log.path}: has no events (made with log.events = false), and no sums (log.pressure = true)")
+    first, last = span(log, start, end)
+    time = log.observables[SUMS[0]][0]
+    time = time[(time >= first) & (time <= last)]
+    if len(time) < FEWEST_SAMPLES:
+        few = f"only {len(time)} samples between t = {first:g} and {last:g}, one for each epoch or snapshot"
+        raise UserError(f"{log.path}: {few} (allowed >= {FEWEST_SAMPLES})")
+    edges = np.linspace(time[0], time[-1], min(len(time) - 1, MOST_BLOCKS) + 1)
+    impacts = SampledImpacts(log, edges)
+    if start is not None:
+        return Window(edges, 0, detected=False), impacts
+    series = (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
+    return Window(edges, first_steady(log, series), detected=True), impacts
+
+
+def _in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Growth (B, …) in blocks of time of a sum (P, …) that was sampled at times (P,)."""
+    columns = total.reshape(len(time), -1).T
+    grown = np.array([np.diff(np.interp(edges, time, column)) for column in columns])
+    return grown.T.reshape(-1, *total.shape[1:])
+
+
+def _by_wall(faces: np.ndarray) -> np.ndarray:
+    """Sums (B, W, …) by wall from those (B, F, …) by face."""
+    sides, segments = np.split(faces, [FIRST_SEGMENT], axis=1)
+    return np.concatenate((sides, segments[:, ::2] + segments[:, 1::2]), axis=1)

@@ -1,0 +1,116 @@
+"""Mechanical pressure on walls in bins of time, the area that the gas has, and its isotherm and adiabat."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.statistics import ratio
+from idealgas.analysis.core.stream import stream
+from idealgas.analysis.core.wall_pressure import WallGauge
+from idealgas.analysis.evolution.theory import StateLines, state_lines
+from idealgas.log import Log
+from idealgas.sides import FIRST_SEGMENT
+
+BLOCKS = 2048
+"""Number of blocks of time that are counted; a bin is a number of them, whose spread gives its error bar."""
+
+MOST_BINS = 64
+HITS = 32
+"""Mean number of hits of walls in a bin, at least, if there is more than one bin."""
+
+GROUP = 16
+"""Number of bins whose scatter about a straight line corrects their error bars."""
+
+ALL_SIDES = "all sides"
+
+
+@dataclass(frozen=True)
+class PressureCourse:
+    """Mechanical pressure on walls in B bins of time.
+
+    edges: (B + 1,), times between the bins. area: (B,), mean area that the gas has, length². pressure, error: (B,),
+    momentum given per time and length and its standard error, energy/length², by the name of the wall; nan as the error
+    of a wall that was not hit. shown: names of the walls in table and picture: a piston, all sides of a uniform gas
+    together, or each of them. lines: isotherm and adiabat through the start; None without a theory or a piston.
+    """
+
+    edges: np.ndarray
+    area: np.ndarray
+    pressure: dict[str, np.ndarray]
+    error: dict[str, np.ndarray]
+    shown: tuple[str, ...]
+    lines: StateLines | None
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Times (B,) of the middles of the bins."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON; None as the error of a wall that was not hit."""
+        return {
+            "edges": self.edges.tolist(),
+            "area": self.area.tolist(),
+            "pressure": {name: values.tolist() for name, values in self.pressure.items()},
+            "standard_error": {name: list(map(_finite, values.tolist())) for name, values in self.error.items()},
+            "lines": self.lines.as_dict() if self.lines else None,
+        }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def pressure_course(log: Log, first: float, last: float) -> PressureCourse | None:
+    """Mechanical pressure on the walls of a log between two times; None without events or without hits of walls."""
+    if not log.has_events or not log.has_positions:
+        return None
+    gauge, blocks = WallGauge(log), np.linspace(first, last, BLOCKS + 1)
+    stream(log, blocks, gauge.tallies)
+    faces = gauge.faces(blocks)
+    hits = sum({face.wall: face.hits for face in faces}.values())
+    if not hits:
+        return None
+    bins = 2 ** int(np.clip(math.log2(hits / HITS), 0, math.log2(MOST_BINS)))
+    given = {face.name: (face.push, face.exposed) for face in faces}
+    sides = [face for face in faces if face.wall < FIRST_SEGMENT]
+    if log.scene.properties.uniform:
+        given[ALL_SIDES] = np.sum([face.push for face in sides], axis=0), np.sum([f.exposed for f in sides], axis=0)
+        shown = [ALL_SIDES]
+    else:
+        moving = gauge.moving.wall if gauge.moving else None
+        shown = [face.name for face in sides if moving in (None, face.wall)]
+    found = {name: _in_bins(*series, bins) for name, series in given.items()}
+    return PressureCourse(
+        blocks[:: BLOCKS // bins],
+        gauge.area(blocks).reshape(bins, -1).mean(axis=1),
+        {name: values for name, (values, _) in found.items()},
+        {name: errors for name, (_, errors) in found.items()},
+        tuple(shown),
+        state_lines(log, gauge.area(blocks)) if gauge.moving else None,
+    )
+
+
+def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure (bins,) and its standard error from momentum and exposed length (BLOCKS,)."""
+    values, errors = np.zeros(bins), np.full(bins, np.nan)
+    for k, (given, there) in enumerate(zip(push.reshape(bins, -1), exposed.reshape(bins, -1), strict=True)):
+        if given.any():
+            found = ratio(given[there > 0], there[there > 0])
+            values[k], errors[k] = found.value, found.standard_error
+    return values, errors * _scatter(values, errors)
+
+
+def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
+    """Scatter of bins about straight lines through GROUP of them, over what independent blocks in them let expect.
+
+    Sound and pistons push a wall to and fro within a bin, so that the mean of a bin varies less than its blocks tell.
+    """
+    if len(values) < GROUP or not np.isfinite(errors).all():
+        return 1.0
+    lines, _ = np.linalg.qr(np.vander(np.arange(GROUP), 2))
+    groups = values.reshape(-1, GROUP)
+    off = groups - groups @ lines @ lines.T
+    return float(np.sqrt((off**2).sum() / (errors**2).sum() / (1 - 2 / GROUP)))

@@ -1,0 +1,95 @@
+"""Laws of velocities and energies that a gas has to follow, and why there are none for others."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.analysis.core.composition import Composition
+from idealgas.analysis.core.equilibrium import Ensemble, drift, known_ensemble
+from idealgas.analysis.core.settling import why_no_equilibrium
+from idealgas.analysis.theory import distributions
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+MAXWELL = "Maxwell-Boltzmann"
+
+
+@dataclass(frozen=True)
+class Premise:
+    """What is known before the events of a log are read: its ensemble, or whether it comes to an equilibrium.
+
+    ensemble: of a gas whose energy of motion is conserved or set by walls; None for others. temperature: of the walls
+    that set it, energy; None if it must be measured. scale: temperature that sets the range of histograms, energy.
+    why_not: why no law holds, as part of a sentence; empty if one does.
+    """
+
+    ensemble: Ensemble | None
+    temperature: float | None
+    scale: float
+    why_not: str
+
+    @property
+    def needs_temperature(self) -> bool:
+        """Whether a law holds at a temperature that must be measured."""
+        return not self.why_not and self.temperature is None
+
+    def laws(
+        self, quantity: str, discs: Composition, species: int, measured: float | None
+    ) -> dict[str, distributions.Law]:
+        """Laws of a quantity of one species by name; measured: temperature, if it was measured."""
+        if self.why_not:
+            return {}
+        mass = discs.mass[species]
+        if self.ensemble:
+            return velocity_laws(quantity, self.ensemble.of_species[species], mass, self.ensemble.dof)
+        temperature, name = (self.temperature, MAXWELL) if measured is None else (measured, f"{MAXWELL}, measured T")
+        return {name: velocity_laws(quantity, temperature or 0.0, mass, np.inf)[MAXWELL]}
+
+
+def premise(log: Log, start: float | None, end: float | None) -> Premise:
+    """What is known of the gas of a log between two times before its events are read.
+
+    Raises:
+        UserError: if no disc moves.
+    """
+    ensemble = known_ensemble(log)
+    if ensemble:
+        if not ensemble.temperature > 0:
+            raise UserError(f"{log.path}: no disc moves")
+        return Premise(ensemble, ensemble.temperature, ensemble.temperature, "")
+    why_not = why_no_equilibrium(log)
+    if len(log.discs) == 1 and not why_not:
+        why_not = "a single disc shares its energy with no other"
+    temperature = None if why_not else min(log.scene.properties.temperatures, default=None)
+    return Premise(None, temperature, _highest(log, start, end), why_not)
+
+
+def _highest(log: Log, start: float | None, end: float | None) -> float:
+    """Highest kinetic energy per disc among the samples between two times, relative to the centre of mass."""
+    time, kinetic = log.observables["kinetic_energy"]
+    first, last = log.start_time if start is None else start, log.end_time if end is None else end
+    inside = (time >= first) & (time <= last)
+    frame = drift(log)
+    common = log.discs.mass.sum() * (frame @ frame) / 2
+    highest = (float(kinetic[inside].max(initial=0.0)) - common) / len(log.discs)
+    highest = max(highest, log.discs.temperature) if not inside.any() else highest
+    if not highest > 0:
+        raise UserError(f"{log.path}: no disc moves")
+    return highest
+
+
+def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
+    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom.
+
+    dof: D; infinite in a heat bath, where both are one.
+    """
+
+    def law(dof: float) -> distributions.Law:
+        if quantity == "energy":
+            return distributions.EnergyLaw(temperature, dof)
+        if quantity == "speed":
+            return distributions.SpeedLaw(temperature, mass, dof)
+        return distributions.ComponentLaw(temperature, mass, dof)
+
+    finite = {f"fixed energy, D = {dof}": law(dof)} if 3 < dof < np.inf else {}
+    return {MAXWELL: law(np.inf), **finite}

@@ -1,0 +1,160 @@
+"""Mechanical pressure of every wall, for gases whose pressure follows from no equation of state."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.settling import why_never_stationary
+from idealgas.analysis.core.statistics import Estimate, inefficiency, mean_of_replicates, ratio
+from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
+from idealgas.analysis.core.window import Window
+from idealgas.log import Log
+
+PIECES = 8
+"""Number of pieces of the window that are averaged one by one if the state of the gas changes all the time."""
+
+SMOOTH = 1e-9
+"""Largest stress along a wall, relative to the pressure, that is rounding."""
+
+
+@dataclass(frozen=True)
+class WallPressure:
+    """What discs press on one face of a wall, per length.
+
+    name: of the wall, and for a wall segment of the direction in which the face looks. pressure: force per length of
+    discs that touch the body of the wall, while it is there; its theory is what holds a piston from outside. stress:
+    force along the face per length, its direction the outward normal turned by 90°; None for a smooth face.
+    """
+
+    name: str
+    pressure: Estimate
+    stress: Estimate | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        stress = None if self.stress is None else self.stress.as_dict()
+        return {"wall": self.name, "pressure": self.pressure.as_dict(), "stress": stress}
+
+
+@dataclass(frozen=True)
+class WallForce:
+    """Force of the discs on one wall or on all, with their ends, mass·length/time².
+
+    name: of the wall. x, y: along each axis; the theory of the force on all walls is the weight of the discs.
+    """
+
+    name: str
+    x: Estimate
+    y: Estimate
+
+    @property
+    def large(self) -> dict[str, Estimate]:
+        """Components by their axis that are more than rounding, or that have a theory."""
+        both = {"x": self.x, "y": self.y}
+        size = {axis: abs(one.value) + one.standard_error for axis, one in both.items()}
+        return {axis: one for axis, one in both.items() if size[axis] > SMOOTH * max(size.values()) or one.theory}
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        return {"wall": self.name, "x": self.x.as_dict(), "y": self.y.as_dict()}
+
+
+@dataclass(frozen=True)
+class Mechanical:
+    """Mechanical pressure of every face and force on every wall of a gas.
+
+    area: mean area that the gas has, length². walls: pressure on every face. forces: on every wall, then on all
+    together. unsteady: why the gas never comes to a stationary state, as part of a sentence; empty if it may. Then
+    the numbers are means over a changing state.
+    """
+
+    area: float
+    walls: tuple[WallPressure, ...]
+    forces: tuple[WallForce, ...]
+    unsteady: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        return {
+            "walls": [wall.as_dict() for wall in self.walls],
+            "forces": [force.as_dict() for force in self.forces],
+            "unsteady": self.unsteady or None,
+        }
+
+
+def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
+    """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
+    some, why = slice(window.first, None), why_never_stationary(log)
+    faces = [(face, _holding(gauge, face, window)) for face in gauge.faces(window.edges)]
+    return Mechanical(
+        area=float(gauge.area(window.edges)[some].mean()),
+        walls=tuple(_pressure(face, some, bool(why), holding) for face, holding in faces),
+        forces=_forces(log, gauge, window, bool(why)),
+        unsteady=why,
+    )
+
+
+def _holding(gauge: WallGauge, face: Face, window: Window) -> float | None:
+    """Pressure that holds a piston from outside; None for other walls."""
+    moving = gauge.moving
+    return moving.balance(window.start, window.end) if moving is not None and face.wall == moving.wall else None
+
+
+def _pressure(face: Face, some: slice, unsteady: bool, holding: float | None) -> WallPressure:
+    push, along, exposed = face.push[some], face.along[some], face.exposed[some]
+    if not push.any():  # a wall that was never hit tells nothing of its error
+        return WallPressure(face.name, Estimate(0.0, np.nan, 0.0, holding), None)
+    rough = np.abs(along).sum() > SMOOTH * push.sum()
+    return WallPressure(
+        face.name,
+        _average(push, exposed, unsteady) if holding is None else _balanced(push / exposed, holding),
+        _average(along, exposed, unsteady) if rough else None,
+    )
+
+
+def _average(given: np.ndarray, exposed: np.ndarray, unsteady: bool) -> Estimate:
+    """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error."""
+    there = exposed > 0
+    given, exposed = given[there], exposed[there]
+    if not unsteady:
+        return ratio(given, exposed)
+    pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
+    return mean_of_replicates([ratio(*piece) for piece in pieces])
+
+
+def _balanced(rates: np.ndarray, theory: float) -> Estimate:
+    """Mean of the rate at which momentum is given that `theory` gives back, so that what is stored stays bounded.
+
+    The mean is off by the change of the stored momentum from start to end over the time, with the variance of two
+    independent values of it.
+    """
+    stored = np.cumsum(rates - theory)
+    return Estimate(
+        float(rates.mean()),
+        float(math.sqrt(2) * stored.std() / len(rates)),
+        len(rates) / inefficiency(stored),
+        theory,
+    )
+
+
+def _forces(log: Log, gauge: WallGauge, window: Window, unsteady: bool) -> tuple[WallForce, ...]:
+    """Force on every wall that was hit, and on all walls, which carry the weight of a gas in a stationary state."""
+    given = window.of(gauge.impulses.given)
+    hits = gauge.impulses.hits[window.first :].sum(axis=0)
+    by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
+    all_time, total, weight = np.ones(len(given)), given.sum(axis=1), log.discs.mass.sum() * np.array(log.gravity)
+
+    def component(series: np.ndarray) -> Estimate:
+        return _average(series, all_time, unsteady)
+
+    known = ~kept_momentum(log) & (not unsteady)
+    return (
+        *(WallForce(name, *map(component, series.T)) for name, series in by_wall),
+        WallForce(
+            "all walls",
+            *(_balanced(total[:, k], float(weight[k])) if known[k] else component(total[:, k]) for k in range(2)),
+        ),
+    )

@@ -1,0 +1,92 @@
+"""Conserved motion of a gas: total momentum, the motion as a whole that goes with it, and states that are not reached.
+
+What does not hold here is a premise of every analysis; `premises` says it in sentences.
+"""
+
+import numpy as np
+
+from idealgas.gas.state import Gas
+from idealgas.scene import Scene
+
+CHANCE = 12.0
+"""Largest share of the kinetic energy, times the number of discs, that the centre of mass of a gas has by chance.
+
+Its energy along one axis is T/2 on average, so that a share s occurs with a probability of about exp(-s N).
+"""
+
+SAID_FROM = 0.01
+"""Least share of the kinetic energy from which on a conserved motion of the whole gas is mentioned."""
+
+
+def kept_momentum(scene: Scene) -> np.ndarray:
+    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool.
+
+    Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
+    conserve both components.
+    """
+    without_positions = scene.run.method == "monte_carlo"
+    return np.array((True, True) if without_positions else scene.properties.conserves_momentum)
+
+
+def common_motion(scene: Scene, gas: Gas) -> np.ndarray:
+    """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
+    return np.where(kept_momentum(scene), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
+
+
+def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
+    """Velocity (2,) of the whole gas at its start that is no heat, length/time.
+
+    That is its conserved motion and, along the other axes, a motion of the centre of mass that is too large for chance.
+    """
+    velocity = gas.mass @ gas.velocity / gas.mass.sum()
+    chance = [share_of_motion(gas, velocity * axis) * len(gas) <= CHANCE for axis in np.eye(2)]
+    return np.where(chance, common_motion(scene, gas), velocity)
+
+
+def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
+    """Sentence on the part of `motion_at_start` that walls take away; empty if there is none."""
+    lost = motion_at_start(scene, gas) - common_motion(scene, gas)
+    if not lost.any():
+        return ()
+    return (
+        f"The gas starts with a common motion ({lost[0]:.4g}, {lost[1]:.4g}), {share_of_motion(gas, lost):.1%} of its "
+        "kinetic energy; it is not in the temperatures at the start, and becomes heat at the walls.",
+    )
+
+
+def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
+    """Share of the kinetic energy of a gas that is a motion of all discs at `velocity` (2,); 0 for a gas at rest."""
+    energy = gas.kinetic_energy
+    return float(gas.mass.sum() * (velocity @ velocity) / 2 / energy) if energy > 0 else 0.0
+
+
+def is_ergodic(scene: Scene, gas: Gas) -> bool:
+    """Whether a gas reaches all states of its energy. False only for two equal discs that start without momentum.
+
+    Between walls their velocities then remain equal in every component except for signs. As long as they meet with
+    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
+    """
+    properties, walled = scene.properties, ~np.array(scene.properties.periodic)
+    if len(gas) != 2 or not walled.any() or np.ptp(gas.mass) > 0:
+        return True
+    if not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
+        return True
+    speeds = np.abs(gas.velocity[:, walled])
+    return bool(np.abs(speeds[0] - speeds[1]).max() > 1e-9 * speeds.max())
+
+
+def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
+    """Sentences on what the start of a gas, `gas`, takes from every average over time."""
+    found = []
+    if not is_ergodic(scene, gas):
+        found.append(
+            "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
+            "temperatures along x and y may differ for ever. Give them velocities of their own."
+        )
+    velocity = common_motion(scene, gas)
+    if (share := share_of_motion(gas, velocity)) > SAID_FROM:
+        found.append(
+            f"The gas moves as a whole with the velocity ({velocity[0]:.4g}, {velocity[1]:.4g}), {share:.1%} of its "
+            "kinetic energy; temperatures and speeds are relative to this motion, which nothing stops."
+        )
+    return tuple(found)

@@ -1,0 +1,138 @@
+"""Sums that do not depend on the order of their terms: each term is rounded to a whole number of units, 2^k.
+
+Whole numbers below 2^100 are added with 128 bits, which is associative: any order of the terms, any grouping of them
+and any number of runs in which they are added give the same bits.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from idealgas._jit import aligned, inline, njit
+
+SUM = np.dtype(
+    [
+        ("low", "u8"), ("high", "i8"),  # the sum in units is high * 2^64 + low
+        ("per_unit", "f8"),  # 2^-k, by which a term is multiplied
+    ],
+    align=True,
+)  # fmt: skip
+
+WORD = 63
+"""Bits of the lower one of the two words that are stored, so that both have a sign: high * 2^63 + low."""
+
+DIGITS = 52
+"""Bits of a term of the typical size: as many as a float has."""
+
+FARTHEST = 1000
+"""Largest exponent k of a unit, in size: 2^k and 2^-k are floats."""
+
+U = np.uintp
+HALF = np.int64(32)
+LOW_HALF = np.int64((1 << 32) - 1)
+SMALL = 2.0**62  # terms that are one word
+LARGEST = 2.0**100
+FULL = 1 << 61  # of the upper word of a sum, so that it can be stored
+
+
+class SumRangeError(Exception):
+    """A term of a sum is not a number or too large, or so many terms are that the sum may not go on."""
+
+
+@inline
+def add(total, term):
+    """Add a term, rounded to a whole number of units (ties to even), to a SUM; SumRangeError from 2^100 units on."""
+    units = term * total.per_unit
+    if abs(units) < SMALL:
+        whole = np.int64(round(units))
+        add_words(total, whole >> np.int64(63), np.uint64(whole))
+    else:
+        add_large(total, units)
+
+
+@inline
+def add_words(total, high, low):
+    """Add high * 2^64 + low to a SUM; high: i8, low: u8."""
+    lower = total.low + low
+    total.high += high + np.int64(lower < low)
+    total.low = lower
+
+
+@njit
+def add_large(total, units):
+    """Add a number of units of 2^62 or more, which is whole, to a SUM."""
+    if not abs(units) < LARGEST:
+        raise SumRangeError("a term of a sum is too large or not a number")
+    if abs(total.high) > FULL:
+        raise SumRangeError("a sum is too large")
+    high = math.floor(units * 2.0**-64)
+    add_words(total, np.int64(high), np.uint64(units - high * 2.0**64))
+
+
+@njit
+def add_all(total, terms):
+    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n < 2^30."""
+    low = np.int64(0)
+    high = np.int64(0)
+    large = 0
+    for i in range(terms.shape[0]):
+        units = terms[U(i)] * total.per_unit
+        fits = abs(units) < SMALL
+        one = np.int64(round(units if fits else 0.0))
+        low += one & LOW_HALF
+        high += one >> HALF
+        large += not fits
+    if large == 0:
+        add_words(total, high >> HALF, np.uint64(high) << np.uint64(HALF))
+        add_words(total, np.int64(0), np.uint64(low))
+    else:
+        for i in range(terms.shape[0]):
+            add(total, terms[U(i)])
+
+
+def unit_exponent(typical: float) -> int:
+    """Exponent k of a unit 2^k for terms of a typical size: at most 2^-51 of it."""
+    return max(-FARTHEST, min(math.frexp(typical)[1] - 1 - DIGITS, FARTHEST)) if 0 < typical < math.inf else 0
+
+
+def make_sums(typical: Sequence[float]) -> np.recarray:
+    """(n,) SUM, all 0. typical: sizes of their terms at the start of a run, in the unit of each sum."""
+    sums = aligned(len(typical), SUM)
+    sums.per_unit = [math.ldexp(1.0, -unit_exponent(size)) for size in typical]
+    return sums
+
+
+def whole(sums: np.ndarray) -> list[int]:
+    """The sums in their units."""
+    return [(int(one["high"]) << 64) + int(one["low"]) for one in sums]
+
+
+def values(sums: np.ndarray) -> np.ndarray:
+    """(n,) f8, the sums rounded to floats, in the unit of each sum."""
+    return np.array([math.ldexp(number, k) for number, k in zip(whole(sums), _exponents(sums), strict=True)])
+
+
+def stored(sums: np.ndarray) -> np.ndarray:
+    """(n, 3) i8, the sums as they are stored: (high, low, k) for (high * 2^63 + low) * 2^k, with 0 <= low < 2^63."""
+    numbers = zip(whole(sums), _exponents(sums), strict=True)
+    return np.array([(number >> WORD, number & (1 << WORD) - 1, k) for number, k in numbers], np.int64).reshape(-1, 3)
+
+
+def restore(sums: np.ndarray, entry: np.ndarray) -> None:
+    """Set sums to what `stored` gave, units included; or to floats (n,), rounded to their own units."""
+    if entry.dtype.kind == "f":
+        exponents = _exponents(sums)
+        numbers: Iterable[int] = [
+            round(math.ldexp(value, -k)) for value, k in zip(entry.tolist(), exponents, strict=True)
+        ]
+    else:
+        high, low, exponents = entry.T.tolist()
+        numbers = [(upper << WORD) + lower for upper, lower in zip(high, low, strict=True)]
+    for one, number, k in zip(sums, numbers, exponents, strict=True):
+        one["high"], one["low"], one["per_unit"] = number >> 64, number & (1 << 64) - 1, math.ldexp(1.0, -k)
+
+
+def _exponents(sums: np.ndarray) -> list[int]:
+    """Exponents k of the units 2^k."""
+    return [1 - math.frexp(size)[1] for size in sums["per_unit"].tolist()]

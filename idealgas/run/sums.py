@@ -1,0 +1,131 @@
+"""Exact sums of a run: which there are, their units, what checkpoints keep of them and what samples tell."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from idealgas._jit import aligned
+from idealgas.engine.epoch import encounters_per_length, speed_beyond
+from idealgas.events import Column
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
+from idealgas.physics.exact_sum import make_sums, restore, stored, values
+from idealgas.physics.momentum_flow import COLLISION, KINETIC, TERMS, MomentumFlow
+from idealgas.run.effects.slice import Values
+from idealgas.scene import Scene
+from idealgas.scene.walls import number_walls, walls_inside
+from idealgas.sides import FIRST_SEGMENT
+
+ENERGY, ACTION, MOMENTUM = "energy", "energy time", "mass length/time"
+TENSOR = ("xx", "xy", "yy", "yx")
+LEAST_SHARE = 2.0**-40
+"""Smallest energy taken as typical, over the largest that effects bring: that stays far below 2^100 units."""
+
+
+def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool) -> Effects:
+    """The effects with all sums that a run needs, at time 0. gas: its discs at time 0.
+
+    gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any.
+    """
+    speed, walls = _speed(scene, gas, effects), len(number_walls(scene))
+    energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * 0.5 * float(gas.mass.mean()) * speed**2)
+    return effects._replace(
+        wall_energy=make_sums([energy] * walls) if gives_energy else None,
+        dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
+        flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
+    )
+
+
+def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
+    """Sums of the momentum flow. speed: typical one of the discs, length/time."""
+    momentum = float(gas.mass.mean()) * speed
+    encounters = encounters_per_length(gas, scene.properties.periodic)
+    flight = len(gas) / encounters if encounters > 0 else max(gas.box)
+    apart = 2.0 * float(gas.radius.mean())
+    tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)
+    faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
+    push, drag = (make_sums([momentum] * faces) for _ in range(2))
+    return MomentumFlow(
+        tensor=make_sums(tensor),
+        terms=aligned(len(tensor), TERMS),
+        waiting=np.zeros(1, np.int64),
+        walls=make_sums([momentum * max(gas.box)]),
+        push=push,
+        drag=drag,
+        hits=np.zeros(faces, np.int64),
+        pairs=np.zeros((species, species), np.int64) if species > 1 else None,
+        species=gas.species.copy() if species > 1 else None,
+        x=gas.box[0] / 2,
+        y=gas.box[1] / 2,
+    )
+
+
+def _speed(scene: Scene, gas: Gas, effects: Effects) -> float:
+    """A typical speed of the discs, length/time: at the start or, if that is more, once effects have moved them."""
+    mass = float(gas.mass.mean())
+    hottest = max(scene.properties.temperatures, default=0.0)
+    start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
+    return max(start, speed_beyond(gas, effects), math.sqrt(hottest / mass)) or 1.0
+
+
+def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
+    """The sums that there are: the columns of their samples, and the arrays."""
+    if (given := effects.wall_energy) is not None:
+        yield Column("wall_energy", "f8", given.shape, ENERGY), given
+    if (lost := effects.dissipated) is not None:
+        yield Column("dissipated_energy", "f8", lost.shape, ENERGY), lost
+    if (flow := effects.flow) is not None:
+        yield Column("kinetic_flow", "f8", (3,), ACTION), flow.tensor[KINETIC]
+        yield Column("collision_flow", "f8", (4,), ACTION), flow.tensor[COLLISION]
+        yield Column("wall_virial", "f8", (), ACTION), flow.walls
+        yield Column("face_push", "f8", flow.push.shape, MOMENTUM), flow.push
+        yield Column("face_drag", "f8", flow.drag.shape, MOMENTUM), flow.drag
+
+
+def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
+    """The numbers of collisions that there are."""
+    if (flow := effects.flow) is not None:
+        yield Column("face_hits", "i8", flow.hits.shape), flow.hits
+        if flow.pairs is not None:
+            yield Column("pair_collisions", "i8", flow.pairs.shape), flow.pairs
+
+
+def _kept(column: Column, sums: np.ndarray) -> Column:
+    """The column of checkpoints: three whole numbers for each sum, see `stored`."""
+    return Column(f"{column.name}_sum", "i8", (len(sums), 3), column.unit)
+
+
+def kept_sums(effects: Effects) -> Values:
+    """What a checkpoint keeps: every bit."""
+    exact = {_kept(column, sums): stored(sums) for column, sums in _sums(effects)}
+    return exact | {column: counts.copy() for column, counts in _counts(effects)}
+
+
+def observed_sums(effects: Effects) -> Values:
+    """What a sample tells: the sums rounded to floats."""
+    rounded = {column: _shaped(values(sums), column) for column, sums in _sums(effects)}
+    return rounded | {column: counts.copy() for column, counts in _counts(effects)}
+
+
+def _shaped(found: np.ndarray, column: Column) -> np.ndarray:
+    """Values as an entry of a column. A collision flow without a sum of its own for yx has that of xy there."""
+    if column.shape and len(found) < column.shape[0]:
+        found = np.append(found, found[TENSOR.index("xy")])
+    return found.reshape(column.shape)
+
+
+def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> Effects:
+    """Give the sums what a checkpoint kept of them; the effects without those of which it kept nothing.
+
+    entries: by name. A log of before has what walls gave as floats, which go on rounded to the sum's units, and nothing
+    of what collisions lose.
+    """
+    for column, sums in _sums(effects):
+        if (entry := entries.get(_kept(column, sums).name, entries.get(column.name))) is not None:
+            restore(sums, entry)
+        else:
+            effects = effects._replace(dissipated=None)
+    for column, counts in _counts(effects):
+        counts[:] = entries[column.name]
+    return effects

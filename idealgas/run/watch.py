@@ -1,0 +1,107 @@
+"""What a run looks at as it goes: epochs in which nothing happens, and discs that keep it busy."""
+
+import math
+
+import numpy as np
+
+from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import next_change
+from idealgas.physics.encounters import pair_encounters
+
+EMPTY_EPOCHS = 10_000
+"""A run that has no end in time ends after so many epochs in a row without an event, if that cannot be chance."""
+
+EXPECTED = 10_000
+"""It cannot be chance where so many collisions of two discs were to be expected, by kinetic theory.
+
+The same number, and not one collision among all events, ends a run that only such collisions can end.
+"""
+
+HOPELESS = 1e-9
+"""Where no more collisions than these are to be expected in an epoch, nobody can wait for one: no disc moves past
+another."""
+
+QUIET_SAMPLES = 64
+"""So many epochs in a row without an event have a sample; those after them have none."""
+
+OVERDUE = 8
+"""So many times the most events that an epoch is made for, and the run looks whose they are."""
+
+
+class Watch:
+    """What of a run has not come: events, or collisions of two discs where only they can end it.
+
+    A run that is resumed begins to count anew.
+    """
+
+    def __init__(self, simulation: Simulation, stop: Stop, begun: bool) -> None:
+        """Begin at the start of an epoch of a run to a stop; begun: whether a checkpoint of it is there already."""
+        self._simulation = simulation
+        self._events_at_checkpoint = simulation.totals.events if begun else -1
+        never = Stop()
+        self._endless = stop.time == never.time and stop.trials == never.trials
+        self._needs_pairs = self._endless and stop.events == never.events
+        self._empty = 0  # epochs in a row without an event
+        self._expected = 0.0  # collisions of two discs to be expected in these
+        self._missed = 0.0  # the same since two discs collided, where only they end the run
+        self._overdue: float = OVERDUE
+
+    def end_epoch(self) -> None:
+        """Take note of the epoch that is over, before the next one begins."""
+        simulation = self._simulation
+        before, now = simulation.totals, simulation.counters
+        empty, apart = now.events == before.events, now.disc_collisions == before.disc_collisions
+        expected = 0.0
+        if self._endless and (empty or (apart and self._needs_pairs)):
+            expected = _expected_collisions(simulation.gas, simulation.length)
+        self._empty, self._expected = (self._empty + 1, self._expected + expected) if empty else (0, 0.0)
+        self._missed = self._missed + expected if apart and self._needs_pairs else 0.0
+        if math.isfinite(next_change(simulation.effects, simulation.time)):  # all may be otherwise then
+            self._empty, self._expected, self._missed = min(self._empty, QUIET_SAMPLES), 0.0, 0.0
+
+    def checkpoint_due(self, every: int) -> bool:
+        """Whether the start of this epoch is to be kept: every so many epochs, if anything has happened since."""
+        simulation = self._simulation
+        due = simulation.epoch % every == 0 and simulation.totals.events > self._events_at_checkpoint
+        if due:
+            self._events_at_checkpoint, self._empty, self._expected = simulation.totals.events, 0, 0.0
+        return due
+
+    @property
+    def sample_due(self) -> bool:
+        """Whether the start of this epoch is to have a sample."""
+        return self._empty < QUIET_SAMPLES
+
+    def in_vain(self) -> str:
+        """What has not come, if the run cannot be expected to reach its stop; else empty."""
+        if not self._endless:
+            return ""
+        hopeless = self._expected < HOPELESS * self._empty
+        if self._empty >= EMPTY_EPOCHS and (self._expected >= EXPECTED or hopeless):
+            return f"no event in {self._empty} epochs"
+        if self._missed >= EXPECTED:
+            return f"no two discs have met where {EXPECTED} collisions were to be expected"
+        return ""
+
+    def busy(self) -> str:
+        """One line, once, if few discs make most of the events of an epoch that has far too many; else empty."""
+        simulation, n = self._simulation, len(self._simulation.gas)
+        events = simulation.counters.events - simulation.totals.events
+        if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, FEWEST_EVENTS):
+            return ""
+        share = np.cumsum(np.sort(simulation.method.discs.record.count)[::-1], dtype=float)
+        few = int(share.searchsorted(share[-1] / 2, "right")) + 1
+        if share[-1] == 0 or n == 1 or few > math.ceil(n / 4):
+            self._overdue *= 2
+            return ""
+        self._overdue = math.inf
+        span = f"from t = {simulation.time:g} to t = {simulation.last_event_time:g}"
+        return f"{few} of {n} discs make{'s' * (few == 1)} most of the events {span}"
+
+
+def _expected_collisions(gas: Gas, duration: float) -> float:
+    """Collisions of two discs to be expected in a time, by kinetic theory; a common motion brings none."""
+    n, speed = len(gas), float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
+    return n / 2 * pair_encounters(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box) * speed * duration

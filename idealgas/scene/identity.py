@@ -1,0 +1,87 @@
+"""Whether two scenes are the same run, or the same gas in another state."""
+
+import hashlib
+import json
+from collections import Counter
+from typing import Any
+
+from idealgas.scene.model import Scene
+
+STATE = ("temperature", "position", "velocity")
+"""Keys of tables other than those of discs that say how a gas starts or how hot it is, not which gas it is."""
+
+
+def draws_random_numbers(scene: Scene) -> bool:
+    """Whether the seed of a scene matters: to place its discs, to set them in motion, or during the run."""
+    return bool(scene.species) or not scene.properties.isolated or scene.run.method == "monte_carlo"
+
+
+def run_digest(scene: Scene) -> str:
+    """Digest of all that determines the motion: two logs with the same digest hold the same run, or a part of it.
+
+    The title, the way the run is computed, where it ends, and what it writes are left out.
+    """
+    tables = _tables(scene)
+    seed = scene.scene.seed if draws_random_numbers(scene) else None
+    return _digest({name: value for name, value in tables.items() if name not in ("scene", "run", "log")} | {"": seed})
+
+
+def gas_digest(scene: Scene) -> str:
+    """Digest of the discs, the box and the effects of a scene, at whatever temperature and from whatever start."""
+    left_out = ("scene", "run", "log", "species", "disc")
+    rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
+    box = {side: list(value) if isinstance(value, dict) else value for side, value in rest["box"].items()}
+    return _digest([sorted(_discs(scene).items()), rest | {"box": box}])
+
+
+def gas_kind(scene: Scene) -> str:
+    """Kind of gas in words: sizes of discs, and effects, whatever the number of discs and the size of the box."""
+    sizes = _sizes(scene)
+    smallest, number = min(sizes), sizes.total()
+    parts = [f"{count / number:.3g} of radius {radius / smallest:.3g}" for radius, count in sorted(sizes.items())]
+    discs = f"mixture ({', '.join(parts)})" if len(parts) > 1 else "equal discs"
+    return ", ".join((discs, *(scene.effects or ("reflecting box",))))
+
+
+def is_mixture(scene: Scene) -> bool:
+    """Whether the discs of a scene differ in radius."""
+    return len(_sizes(scene)) > 1
+
+
+def describe_gas(scene: Scene) -> str:
+    """Gas of a scene in words: number of discs, box and effects."""
+    width, height = scene.box.size
+    number = _discs(scene).total()
+    return f"N = {number} in {width:.6g} × {height:.6g}, {gas_kind(scene)}"
+
+
+def _discs(scene: Scene) -> Counter[tuple[float, float]]:
+    """Number of discs by their radius and mass."""
+    discs: Counter[tuple[float, float]] = Counter()
+    for species in scene.species:
+        discs[species.radius, species.mass] += species.count
+    for disc in scene.disc:
+        discs[disc.radius, disc.mass] += 1
+    return discs
+
+
+def _sizes(scene: Scene) -> Counter[float]:
+    """Number of discs by their radius."""
+    sizes: Counter[float] = Counter()
+    for (radius, _), count in _discs(scene).items():
+        sizes[radius] += count
+    return sizes
+
+
+def _tables(scene: Scene) -> dict[str, Any]:
+    return scene.resolved().model_dump(mode="json", by_alias=True, exclude_none=True)
+
+
+def _without_state(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_state(part) for key, part in value.items() if key not in STATE}
+    return [_without_state(part) for part in value] if isinstance(value, list) else value
+
+
+def _digest(value: Any) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:32]

@@ -1,0 +1,111 @@
+"""Premises that do not hold, as commands say them: on the terminal, beside CSV, in JSON and in reports."""
+
+import json
+
+import pytest
+from support import ROOT, called
+
+TWO = """
+box.size = [1, 1]
+species = [{name = "gas", count = 2, radius = 0.1, temperature = 1}]
+run.events = 2000
+"""
+FLOW = """
+box = {size = [10, 10], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic"}
+species = [{name = "gas", count = 4, radius = 0.5, velocities = [[3.1, 0], [2.9, 0.1], [3.1, 0], [2.9, -0.1]]}]
+run.until = 200
+"""
+SWEEP = """
+[sweep]
+analyses = ["pressure"]
+[[axis]]
+key = "phi"
+values = [0.05, 0.1]
+[[axis]]
+key = "species.count"
+values = [100, 400]
+[base]
+box.size = [40, 40]
+species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
+run.events = 20000
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with the logs two.h5 and flow.h5."""
+    folder = tmp_path_factory.mktemp("premises")
+    for name, text in (("two", TWO), ("flow", FLOW)):
+        (folder / f"{name}.toml").write_text(text)
+        assert called("run", f"{name}.toml", "-o", f"{name}.h5", folder=folder).returncode == 0
+    return folder
+
+
+def shown(*arguments, folder):
+    result = called(*arguments, folder=folder)
+    assert result.returncode == 0, result.stderr
+    return result
+
+
+@pytest.mark.slow
+def test_two_discs_that_do_not_reach_all_states(folder, tmp_path):
+    line = "premise: Two equal discs that start without total momentum between walls do not reach all states"
+    for command in (("check", "two.toml"), ("pressure", "two.h5"), ("temperature", "two.h5")):
+        said = [each for each in shown(*command, folder=folder).stdout.splitlines() if each.startswith("premise: ")]
+        assert len(said) == 1
+        assert said[0].startswith(line)
+    assert "premise: Two equal discs" in shown("follow", "two.h5", "--once", folder=folder).stdout
+    csv = shown("pressure", "two.h5", "--csv", folder=folder)
+    assert csv.stderr.startswith(line)
+    assert "premise" not in csv.stdout
+    for command in (("check", "two.toml", "--json"), ("pressure", "two.h5", "--json")):
+        (sentence,) = json.loads(shown(*command, folder=folder).stdout)["premises"]
+        assert f"premise: {sentence}".startswith(line)
+    shown("report", "two.h5", "-o", tmp_path / "page.html", folder=folder)
+    assert f'<p class="note">{line}' in (tmp_path / "page.html").read_text(encoding="utf-8")
+    for command in (
+        ("check", ROOT / "configs" / "quickstart.toml"),
+        ("check", "two.toml", "--set", "species.gas.count=3"),
+    ):
+        assert "premise" not in shown(*command, folder=folder).stdout
+
+
+def test_a_flow_is_no_temperature(folder):
+    """The discs differ from (3, 0) by 0.1 along x, and two of them by 0.1 along y."""
+    found = json.loads(shown("check", "flow.toml", "--json", folder=folder).stdout)
+    assert found["temperature"] == pytest.approx((4 * 0.01 + 2 * 0.01) / 8, rel=1e-9)
+    line = "premise: The gas moves as a whole with the velocity (3, 0), 99.8% of its kinetic energy"
+    assert line in shown("check", "flow.toml", folder=folder).stdout
+    said = " ".join(shown("follow", "flow.h5", "--once", folder=folder).stdout.split())
+    assert line in said
+    assert "temperature │ 0.0075 │" in said
+
+
+@pytest.mark.parametrize("command", ["pressure", "heat-capacity"])
+def test_one_log_twice_is_one_line(command, folder):
+    twice = called(command, "two.h5", "two.h5", folder=folder)
+    assert (twice.returncode, twice.stdout) == (2, "")
+    lines = twice.stderr.splitlines()
+    assert len(lines) == 1
+
+
+def test_a_free_expansion_is_no_effusion(folder):
+    scene = ROOT / "configs" / "free-expansion.toml"
+    shown("run", scene, "-o", "wide.h5", "--set", "run.until=15", folder=folder)
+    refused = called("effusion", "wide.h5", folder=folder)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr.startswith("wide.h5: no effusion: the gate opens the box from side to side")
+    shown("run", ROOT / "configs" / "effusion.toml", "-o", "narrow.h5", "--set", "run.until=15", folder=folder)
+    assert "premise" not in shown("effusion", "narrow.h5", folder=folder).stdout
+
+
+@pytest.mark.slow
+def test_a_sweep_of_few_states_gives_its_table(tmp_path):
+    (tmp_path / "sweep.toml").write_text(SWEEP)
+    shown("sweep", "sweep.toml", "-o", "out", "--workers", 1, folder=tmp_path)
+    said = shown("pressure", "out", "--check", folder=tmp_path).stdout
+    assert "No virial coefficients: a fit takes 4 packing fractions or more" in said
+    assert sum(f" {number} " in line for line in said.splitlines() for number in (100, 400)) == 4
+    twice = called("pressure", "out", "out", folder=tmp_path)
+    assert twice.returncode == 2
+    assert twice.stderr == "out, point 0: given twice, but a run counts once\n"

@@ -1,0 +1,186 @@
+"""Mechanical pressure against what must hold without an equation of state: balances of forces, and exact ideal gases.
+
+The seeds are fixed. Every comparison is within STANDARD_ERRORS of the estimate's own, which must be small enough that
+the comparison can fail. Discs of radius 0.001 to 0.02 are nearly points; what their size adds is said where it counts.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.evolution.measure import evolution
+from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+STANDARD_ERRORS = 4
+LEAST_P = 0.001
+
+
+@pytest.fixture
+def run(tmp_path):
+    """The log of a scene with these overrides."""
+    logs = []
+
+    def make(*overrides):
+        simulate(
+            parse_scene("scene.seed = 11\nbox.size = [10, 10]\nrun.until = 1", overrides=overrides), tmp_path / "run.h5"
+        )
+        logs.append(open_log(tmp_path / "run.h5"))
+        return logs[-1]
+
+    yield make
+    for log in logs:
+        log.close()
+
+
+def species(count, radius, more=""):
+    return f'species=[{{ name = "gas", count = {count}, radius = {radius}, temperature = 1{more} }}]'
+
+
+def walls(result):
+    return {wall.name: wall.pressure for wall in result.mechanical.walls}
+
+
+def agrees(found, expected, resolution):
+    """Whether an estimate is what is expected, and its error bar at most a part `resolution` of that."""
+    assert found.standard_error < resolution * abs(expected)
+    return abs(found.value - expected) < STANDARD_ERRORS * found.standard_error
+
+
+def test_between_walls_of_one_temperature(run):
+    """P on each wall is N T Z/A with A the area that centres reach, within 4 s.e. of 3 %."""
+    sides = "box={ size = [10, 10], " + ", ".join(
+        f"{s} = {{ thermal = 1.5 }}" for s in ("left", "right", "bottom", "top")
+    )
+    log = run(sides + " }", species(100, 0.02), "run.until=1200")
+    result = pressure(log)
+    assert result.temperature == 1.5
+    z = 1 + 2 * math.pi * 0.02**2  # B2 of 100 discs in 100
+    for route in result.routes[:4]:
+        assert agrees(route.pressure, 100 * 1.5 * z / (10 * 9.96), 0.03), route.name
+
+
+def test_the_floor_carries_the_column(run):
+    """P_bottom - P_top = N m g/L, and left and right are alike: momentum balance, whatever the density profile."""
+    log = run("box.size=[10, 15]", species(200, 0.1), "gravity.acceleration=[0, -0.3]", "run.until=1500")
+    result = pressure(log)
+    found, forces = walls(result), result.mechanical.forces[-1]
+    below, above = found["bottom wall"], found["top wall"]
+    difference, error = below.value - above.value, math.hypot(below.standard_error, above.standard_error)
+    assert error < 0.02 * 6
+    assert abs(difference - 200 * 0.3 / 10) < STANDARD_ERRORS * error
+    assert above.value > 10 * above.standard_error  # the lid counts
+    assert forces.y.theory == pytest.approx(-60)
+    assert agrees(forces.y, -60, 0.002)
+    assert abs(forces.x.deviation) < STANDARD_ERRORS
+    assert agrees(found["left wall"], found["right wall"].value, 0.03)
+
+
+def test_a_piston_is_held_by_the_gas(run):
+    """Its mean force is P L, and in a dilute gas all other walls have the same pressure (Pascal)."""
+    log = run(
+        "box.size=[40, 10]", species(100, 0.005), "run.until=4000", "piston={ position = 10, mass = 5, pressure = 1 }"
+    )
+    found = walls(pressure(log))
+    assert found["right wall"].theory == 1.0
+    assert agrees(found["right wall"], 1.0, 0.001)  # its momentum is bounded, so that its mean force is exact in time
+    for name, value in found.items():
+        assert agrees(value, 1.0, 0.03), name
+
+
+def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run):
+    """A plate in an ideal gas: N T/A on each face, with A the area that centres reach; no net force."""
+    log = run("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=500")
+    result = pressure(log)
+    found = walls(result)
+    assert set(found) > {"plate, left", "plate, right"}
+    for name in ("plate, left", "plate, right", "left wall", "top wall"):
+        assert agrees(found[name], 4.0 / 0.9996**2, 0.03), name
+    plate = next(force for force in result.mechanical.forces if force.name == "plate")
+    for component in (plate.x, plate.y):
+        assert component.standard_error < 0.05 * 20  # of the force on one face
+        assert abs(component.value) < STANDARD_ERRORS * component.standard_error
+
+
+def test_a_gate_counts_while_it_is_there(run):
+    """Gas on the left alone: the gate has N T/A of that side while it is there, and nothing on its right."""
+    gate = "wall=[{ from = [5, 0], to = [5, 10], opens_at = 200, name = 'gate' }]"
+    log = run(gate, species(200, 0.002, ", region = [0, 0, 5, 10]"), "run.until=260")
+    found = walls(pressure(log, start=10.0))
+    assert agrees(found["gate, left"], 4.0 / (0.9996 * 0.9992), 0.03)
+    assert found["gate, right"].value == 0.0
+
+
+def test_heat_flows_but_forces_balance(run):
+    """Between walls of two temperatures the steady gas presses alike on both."""
+    sides = "left = { thermal = 2 }, right = { thermal = 1 }, top = 'periodic', bottom = 'periodic'"
+    log = run(f"box={{ size = [10, 10], {sides} }}", species(200, 0.05), "run.until=1500")
+    result = pressure(log, start=50.0)
+    found = walls(result)
+    assert set(found) == {"left wall", "right wall"}
+    assert found["left wall"].standard_error < 0.02 * found["left wall"].value
+    assert abs(result.mechanical.forces[-1].x.deviation) < STANDARD_ERRORS
+
+
+def test_a_slow_compression_follows_the_adiabat(run):
+    """P(A) of 200 nearly pointlike discs: N T₀ A₀/A² within 4 s.e. in 99 % of 64 bins, and chi² within its 4 s.d."""
+    log = run("box.size=[20, 10]", species(200, 0.02), "piston={ velocity = -0.0125 }", "run.until=800")
+    course = evolution(log).pressure
+    assert course.shown == ("right wall",)
+    p, error = course.pressure["right wall"], course.error["right wall"]
+    assert course.area[0] == pytest.approx(200 - 0.125 * 800 / len(p) / 2, rel=1e-12)
+    assert course.lines.adiabat == pytest.approx(200 * 200 / course.lines.area**2, rel=0.02)  # 2 φ and walls: 1.5 %
+    expected = np.interp(course.area, course.lines.area, course.lines.adiabat)
+    off = (p - expected) / error
+    assert np.median(error / p) < 0.1
+    assert (np.abs(off) < STANDARD_ERRORS).mean() > 0.99
+    assert (off**2).mean() < 1 + 4 * math.sqrt(2 / len(off))
+    isotherm = np.interp(course.area, course.lines.area, course.lines.isotherm)
+    assert (((p - isotherm) / error)[-8:] > 4).all()
+
+
+@pytest.mark.parametrize(
+    ("overrides", "wall"),
+    [
+        (("run.until=700",), "all sides"),
+        (("box.size=[40, 10]", "piston={ position = 10, mass = 5, pressure = 1 }", "run.until=700"), "right wall"),
+    ],
+    ids=["box", "piston"],
+)
+def test_error_bars_of_bins(overrides, wall, run):
+    """Bins of a stationary gas scatter about their mean by their error bars: rms 0.8 to 1.2 of 64 bins.
+
+    By chance alone the rms of 64 bins is within 1 ± 0.09 (one s.d.). On a piston bins are anticorrelated, as its
+    momentum is bounded, and the error bars 6 % too large.
+    """
+    course = evolution(run(species(100, 0.02), *overrides)).pressure
+    p, error = course.pressure[wall], course.error[wall]
+    assert len(p) == 64
+    some = slice(8, None)  # from equilibrium on
+    weighted = np.average(p[some], weights=error[some] ** -2)
+    assert 0.8 < math.sqrt((((p[some] - weighted) / error[some]) ** 2).mean()) < 1.2
+
+
+@pytest.mark.parametrize("quantity", ["speed", "vx", "vy", "energy"])
+def test_maxwell_holds_at_all_heights(quantity, run):
+    """Under gravity velocities follow Maxwell and Boltzmann's law: Kolmogorov-Smirnov, p > 0.001."""
+    log = run("box.size=[10, 30]", species(400, 0.05), "gravity.acceleration=[0, -0.2]", "run.until=150")
+    (gas,) = histogram(log, quantity, start=30.0).distributions
+    assert gas.samples > 3000
+    assert [test.p_value > LEAST_P for test in gas.tests] == [True]
+
+
+def test_a_cooling_gas_has_no_law_and_would_fail_one(run):
+    """What would be tested: speeds of the whole cooling are not Maxwell's at any one temperature."""
+    log = run(species(200, 0.1), "restitution.normal=0.9", "run.until=60")
+    found = histogram(log)
+    assert "loses energy" in found.no_law
+    speeds = found.distributions[0]
+    middle = (speeds.edges[1:] + speeds.edges[:-1]) / 2
+    weight = speeds.density * np.diff(speeds.edges)
+    kurtosis = (weight * middle**4).sum() / (weight * middle**2).sum() ** 2
+    assert kurtosis > 2.5  # 2 by Maxwell and Boltzmann

@@ -1,0 +1,90 @@
+"""Which gases have laws of their velocities and free flights, and what stands in their place."""
+
+import json
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.histogram.figure import histogram_figure
+from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.histogram.tables import histogram_tables
+from idealgas.errors import UserError
+
+GAS = """
+scene.seed = 3
+box.size = [8, 6]
+run.until = 30
+species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
+"""
+
+WITHOUT = {
+    "restitution.normal=0.9": "the gas loses energy (restitution)",
+    "piston={ velocity = -0.05 }": "the gas is driven (piston)",
+    "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "walls have 2 temperatures",
+}
+
+
+@pytest.mark.parametrize("override", WITHOUT)
+def test_no_law_and_why(override, make):
+    found = histogram(make(override))
+    assert found.no_law == WITHOUT[override]
+    (gas,) = found.distributions
+    assert gas.tests == ()
+    assert gas.mean.theory is None
+    assert (gas.density * np.diff(gas.edges)).sum() == pytest.approx(1, abs=0.02)  # nothing to speak of is beyond
+    assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["no_law"] == found.no_law
+    (table,) = histogram_tables(found)
+    assert f"No law here: {found.no_law}." in table.notes
+    assert histogram_figure(found).axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
+
+
+def test_without_a_stationary_state_the_window_is_the_whole_log(make):
+    cooling = make("restitution.normal=0.9")
+    assert histogram(cooling).window.as_dict() == {"start": 0.0, "end": 30.0, "equilibration_detected": False}
+    assert histogram(cooling, start=20.0).window.start == 20.0
+    assert histogram(cooling, "wait").no_law
+    conduction = make("box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }")
+    found = histogram(conduction, "wait")  # it is stationary, if not in equilibrium
+    assert found.window.detected
+    assert found.no_law == ""
+
+
+@pytest.mark.parametrize(
+    "override", ["gravity.acceleration=[0, -0.3]", "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }"]
+)
+def test_maxwell_at_the_measured_temperature(override, make):
+    log = make(override)
+    (gas,) = histogram(log, start=5.0).distributions
+    (test,) = gas.tests
+    assert test.law_name == "Maxwell-Boltzmann, measured T"
+    states = [(state.velocity**2).sum() / 80 for state in log.frames(np.linspace(5, 30, 2000))]
+    assert test.law.mean == pytest.approx(np.sqrt(np.pi * np.mean(states) / 2), rel=1e-3)
+    assert gas.mean.theory is None  # of the same velocities
+
+
+def test_maxwell_at_the_temperature_of_the_walls(make):
+    log = make("gravity.acceleration=[0, -0.3]", "box.bottom={ thermal = 2 }")
+    (gas,) = histogram(log, "energy").distributions
+    assert [(test.law_name, test.law.mean) for test in gas.tests] == [("Maxwell-Boltzmann", 2.0)]
+    assert gas.mean.theory == 2.0
+
+
+def test_discs_that_start_at_rest_fall(make):
+    log = make("species.temperature=", "species.speed=0", "gravity.acceleration=[0, -0.3]")
+    assert histogram(log, start=10.0).distributions[0].mean.value > 0.2
+    with pytest.raises(UserError, match="no disc moves"):
+        histogram(make("species.temperature=", "species.speed=0", "species.count=1"), start=0.0)
+
+
+def test_free_flights_in_a_gas_that_is_not_uniform(make):
+    found = histogram(make("gravity.acceleration=[0, -0.3]"), "free-time")
+    assert found.no_law == "the gas is not the same everywhere (gravity)"
+    assert found.distributions[0].tests == ()
+    assert 0.5 < found.distributions[0].mean.value < 10
+    with pytest.raises(UserError, match="too few collisions of discs"):
+        histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"), "free-path")
+
+
+def test_a_single_disc_has_no_law(make):
+    found = histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"))
+    assert found.no_law == "a single disc shares its energy with no other"

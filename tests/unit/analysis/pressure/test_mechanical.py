@@ -1,0 +1,104 @@
+"""The pressure of gases without an equation of state: what is said, shown and refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
+from idealgas.analysis.pressure.figure import pressure_figure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.tables import pressure_tables
+from idealgas.errors import UserError
+
+GAS = """
+scene.seed = 3
+box.size = [8, 6]
+run.until = 40
+species = [{ name = "gas", count = 30, radius = 0.1, temperature = 1.5 }]
+"""
+
+EFFECTS = {
+    "gravity.acceleration=[0, -0.3]": "gravity",
+    "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }": "piston",
+    "wall=[{ from = [4, 0], to = [4, 3] }]": "wall segments",
+    "restitution.normal=0.95": "restitution",
+    "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "walls of several temperatures",
+}
+
+
+@pytest.mark.parametrize("override", EFFECTS)
+def test_every_effect_has_a_pressure_of_its_walls(override, make):
+    found = pressure(make(override))
+    assert found.routes == ()
+    assert found.theories == {}
+    assert found.no_theory == f"no equation of state holds under {EFFECTS[override]}"
+    assert found.check().agrees is None
+    walls = {wall.name: wall.pressure for wall in found.mechanical.walls}
+    assert {"left wall", "right wall", "bottom wall", "top wall"} <= set(walls)
+    for name, value in walls.items():
+        assert 0 < value.value < 8, name
+        assert 0 < value.standard_error < value.value, name
+    known = json.loads(json.dumps(found.as_dict(), allow_nan=False))
+    assert [wall["wall"] for wall in known["walls"]] == list(walls)
+    assert known["forces"][-1]["wall"] == "all walls"
+    tables = pressure_tables(found)
+    assert f"No theory here: {found.no_theory}." in tables[0].notes
+    assert len(tables[0].rows) == len(walls)
+    assert [label.get_text() for label in pressure_figure(found).axes[0].get_yticklabels()] == list(walls)[::-1]
+
+
+def test_a_plain_box_has_routes_and_no_more(make):
+    found = pressure(make())
+    assert found.mechanical is None
+    assert {"walls", "forces"}.isdisjoint(found.as_dict())
+
+
+def test_the_outer_pressure_is_the_theory_of_a_piston_alone(make):
+    up = "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }"
+    walls = {wall.name: wall.pressure for wall in pressure(make(up)).mechanical.walls}
+    assert {name: value.theory for name, value in walls.items()} == {
+        "left wall": None,
+        "right wall": None,
+        "bottom wall": None,
+        "top wall": 2.0,
+    }
+    heavy = pressure(make(up, "gravity.acceleration=[0, -0.5]")).mechanical
+    assert {wall.name: wall.pressure.theory for wall in heavy.walls}["top wall"] == pytest.approx(2 + 8 * 0.5 / 8)
+    assert heavy.forces[-1].y.theory == pytest.approx(-15.0)  # the weight of 30 discs
+    at_its_stop = pressure(make("piston={ side = 'top', mass = 8, pressure = 0.2 }"))
+    assert {wall.name: wall.pressure.theory for wall in at_its_stop.mechanical.walls}["top wall"] is None
+
+
+def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
+    found = pressure(make("piston={ velocity = -0.05 }"))
+    assert (found.window.start, found.window.detected) == (0.0, False)
+    assert found.mechanical.unsteady == "the gas is driven (piston)"
+    assert any("`evolution` shows P(t)" in note for note in pressure_tables(found)[0].notes)
+    assert found.area == pytest.approx(6 * 7)
+    assert found.packing_fraction == pytest.approx(30 * np.pi * 0.01 / 42)
+    assert found.mechanical.forces[-1].x.theory is None
+    assert pressure(make("piston={ velocity = -0.05 }"), start=20.0).area == pytest.approx(6 * 6.5)
+
+
+def test_smooth_walls_have_no_stress_and_rough_ones_do(make):
+    gravity = "gravity.acceleration=[0, -0.3]"
+    assert all(wall.stress is None for wall in pressure(make(gravity)).mechanical.walls)
+    rough = pressure(make(gravity, "rotation={ wall_roughness = 0.5, roughness = 1 }"))
+    assert all(wall.stress is not None for wall in rough.mechanical.walls if wall.pressure.value > 0)
+    assert "Stress along walls (energy/length²)" in [table.title for table in pressure_tables(rough)]
+
+
+def test_a_wall_that_is_never_hit_has_no_error_bar(make):
+    found = pressure(make("gravity.acceleration=[0, -20]", "species.region=[0, 0, 8, 2]", "run.until=4"), start=1.0)
+    top = next(wall.pressure for wall in found.mechanical.walls if wall.name == "top wall")
+    assert (top.value, top.as_dict()["standard_error"]) == (0.0, None)
+
+
+def test_no_equation_of_state_of_such_gases(make):
+    found = pressure(make("gravity.acceleration=[0, -0.3]"))
+    assert combine_pressure([found]) is found
+    with pytest.raises(UserError, match="no equation of state holds under gravity"):
+        combine_pressure([found, found])
+    with pytest.raises(UserError, match="point 3: no equation of state holds under gravity"):
+        restore_pressure(found.as_dict(), "point 3")

@@ -1,0 +1,326 @@
+"""Premises of analyses: for each a log that violates it and one that does not; and where its sentence is shown."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from idealgas.analysis import registry
+from idealgas.analysis.core import premises
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.tables import estimates
+from idealgas.analysis.info import info
+from idealgas.analysis.report.sections import make_sections
+from idealgas.analysis.status import status
+from idealgas.errors import UserError
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+GAS = """
+box.size = [8, 8]
+species = [{name = "gas", count = 40, radius = 0.1, temperature = 1.0}]
+run.collisions_per_disc = 30
+"""
+PERIODIC = 'box = {size=[8, 8], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
+TWO = "species = [{name='gas', count=2, radius=0.5, temperature=1.0}]"
+SLIT = (
+    "species.gas.region=[0, 0, 4, 8]",
+    "species.gas.radius=0.03",
+    "wall=[{from=[4, 0], to=[4, 3]}, {from=[4, 5], to=[4, 8]}, {from=[4, 3], to=[4, 5], opens_at=1.0}]",
+    "run.collisions_per_disc=",
+    "run.until=20",
+)
+WHOLE = ("species.gas.region=[0, 0, 4, 8]", "wall=[{from=[4, 0], to=[4, 8], opens_at=1.0}]", *SLIT[3:])
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Logs of GAS with overrides, each made once, with a seed of its own unless one is given."""
+    folder, logs = tmp_path_factory.mktemp("premises"), {}
+
+    def run(*overrides):
+        if overrides not in logs:
+            path = folder / f"{len(logs)}.h5"
+            simulate(parse_scene(GAS, overrides=(f"scene.seed={100 + len(logs)}", *overrides)), path)
+            logs[overrides] = open_log(path)
+        return logs[overrides]
+
+    yield run
+    for log in logs.values():
+        log.close()
+
+
+def combined(name, *logs):
+    analysis = registry.find(name)
+    return analysis.combine([analysis.measure(log) for log in logs])
+
+
+def only(found, words):
+    """The sentence of a result that has these words; there is one."""
+    (sentence,) = (each for each in found.premises if words in each)
+    return sentence
+
+
+def silent(found, words):
+    return not any(words in each for each in found.premises)
+
+
+# ── where sentences are shown ──
+
+
+def test_a_sentence_is_in_tables_json_and_the_report(made):
+    analysis, log = registry.find("pressure"), made(TWO)
+    found = combined("pressure", log)
+    sentence = only(found, "do not reach all states")
+    assert analysis.tables(found)[0].notes[0] == f"premise: {sentence}"
+    assert sentence in json.loads(json.dumps(found.as_dict()))["premises"]
+    shown = [section.tables for section in make_sections(log) if section.title == "Pressure"]
+    assert shown[0][0].notes[0] == f"premise: {sentence}"
+    fine = combined("pressure", made())
+    assert (fine.premises, fine.as_dict()["premises"]) == ((), [])
+    assert not any(note.startswith("premise") for note in analysis.tables(fine)[0].notes)
+
+
+def test_every_result_has_premises(made):
+    for analysis in registry.analyses():
+        result = analysis.measure(made(*(SLIT if analysis.name == "effusion" else ())))
+        both = analysis.combine([result])
+        assert isinstance(result, Result)
+        assert isinstance(both, Result)
+        assert isinstance(both.as_dict()["premises"], list)
+
+
+def test_sentences_of_many_logs_have_their_paths_and_are_bounded(made):
+    results = [replace(combined("temperature", made()), premises=("a.", "b.")) for _ in range(9)]
+    said = premises.of_several(results)
+    assert said[0].endswith(".h5: a.")
+    assert len(said) == premises.MOST + 1
+    assert said[-1].startswith(f"{18 - premises.MOST} more sentences")
+    assert premises.of_several(results[:1]) == ("a.", "b.")
+
+
+# ── motion of the gas as a whole ──
+
+
+def test_common_motion_is_no_temperature(made):
+    discs = [f"[{3 + 0.1 * math.cos(k)}, {0.1 * math.sin(k)}]" for k in range(16)]
+    flow = f"species=[{{name='gas', count=16, radius=0.3, velocities=[{', '.join(discs)}]}}]"
+    log = made(PERIODIC, flow)
+    seen, said = status(log), info(log)["gas"]
+    velocity = log.discs.velocity
+    thermal = ((velocity - velocity.mean(axis=0)) ** 2).sum(axis=1).mean() / 2
+    assert log.discs.temperature > 4
+    assert seen.temperature == pytest.approx(thermal, rel=1e-9)
+    assert said["temperature"] == pytest.approx(thermal, rel=1e-9)
+    assert said["common_motion"] == pytest.approx(velocity.mean(axis=0))
+    assert seen.ks_distance < 0.5
+    assert "moves as a whole" in seen.premises[0]
+    found = registry.analyse(log, "temperature")
+    only(found, "moves as a whole")
+    assert found.species[-1].both.value == pytest.approx(thermal, rel=1e-9)
+    still = made(PERIODIC)
+    assert status(still).premises == ()
+    assert info(still)["gas"]["common_motion"] == [0, 0]
+    assert registry.analyse(still, "temperature").premises == ()
+
+
+# ── runs that count once ──
+
+
+@pytest.mark.parametrize("name", ["pressure", "heat-capacity", "effusion"])
+def test_a_run_counts_once(made, name):
+    own = SLIT if name == "effusion" else ()
+    log = made(*own)
+    with pytest.raises(UserError, match=r"\.h5: given twice, but a run counts once$"):
+        combined(name, log, log)
+    again = made(*own, f"scene.seed={log.scene.scene.seed}", "log.compression=none")
+    with pytest.raises(
+        UserError, match=r"\d\.h5: the run of .*\d\.h5 again, of the same scene and seed; it counts once"
+    ):
+        combined(name, log, again)
+    other = made(*own, "scene.seed=7")
+    assert silent(combined(name, log, other), "seed")
+
+
+def test_one_seed_in_different_scenes_is_said(made):
+    cold, hot = made("scene.seed=1"), made("scene.seed=1", "species.gas.temperature=2")
+    sentence = only(combined("heat-capacity", cold, hot), "one seed (1)")
+    assert str(cold.path) in sentence
+    assert str(hot.path) in sentence
+
+
+def test_one_log_in_one_picture_twice_is_no_average(made):
+    log = made("species.gas.temperature=", "species.gas.speed=1")
+    assert len(combined("relaxation", log, log).logs) == 2
+
+
+def test_a_sweep_counts_once(made, tmp_path):
+    """Points of a sweep know their runs from their scenes, and those stored before have no premises in them."""
+    analysis, log = registry.find("heat-capacity"), made()
+    found = analysis.measure(log)
+    before = {key: value for key, value in found.as_dict().items() if key != "premises"}
+    point = analysis.restore(before, "a point", premises.origin_of(log.scene, "sweep, point 0"))
+    assert (point.premises, point.energy) == ((), found.energy)
+    with pytest.raises(UserError, match=r"sweep, point 0: the run of .* again"):
+        analysis.combine([found, point])
+    stored = analysis.restore(found.as_dict() | {"premises": ["a sentence."]}, "a point")
+    assert stored.premises == ("a sentence.",)
+
+
+# ── different gases ──
+
+
+def test_heat_capacities_of_different_gases_are_kept_apart(made):
+    logs = [made(f"species.gas.temperature={t}", f"species.gas.count={n}") for n, t in ((40, 1), (40, 3), (60, 2))]
+    found = combined("heat-capacity", *logs)
+    sentence = only(found, "Different gases (closed box) are kept apart")
+    gases = ["N = 40 in 8 × 8, equal discs, reflecting box", "N = 60 in 8 × 8, equal discs, reflecting box"]
+    assert all(gas in sentence for gas in gases)
+    assert [(r.name, r.gas) for r in found.routes] == [("dE/dT", gases[0]), ("E/T", gases[0]), ("E/T", gases[1])]
+    slope = found.routes[0].value.value
+    cold, hot = (registry.analyse(log, "heat-capacity") for log in logs[:2])
+    by_hand = (hot.energy.value - cold.energy.value) / (hot.temperature.value - cold.temperature.value)
+    assert slope == pytest.approx(by_hand, rel=1e-9)
+    apart = combined("heat-capacity", logs[0], logs[2])
+    assert [r.name for r in apart.routes] == ["E/T", "E/T"]
+    assert apart.refused["dE/dT"] == "it takes logs of one gas at several energies"
+    alike = combined("heat-capacity", *logs[:2])
+    assert alike.premises == ()
+    assert [(r.name, r.gas) for r in alike.routes] == [("dE/dT", ""), ("E/T", "")]
+
+
+def test_the_equation_of_state_says_which_gases(made):
+    walls, periodic = made("species.gas.radius=0.2"), made(PERIODIC, "species.gas.radius=0.2")
+    found = combined("pressure", walls, periodic)
+    assert "equal discs, periodic sides; equal discs, reflecting box" in only(
+        found, "different gases, each in a row of its own"
+    )
+    assert len(found.states) == 2
+    heads = registry.find("pressure").tables(found)[0].heads
+    assert heads[:3] == ("gas", "φ", "N")
+    alike = combined("pressure", walls, made("species.gas.radius=0.2", "scene.seed=9"))
+    assert alike.premises == ()
+    assert [state.runs for state in alike.states] == [2]
+
+
+def test_no_equation_of_state_of_a_mixture(made):
+    two = "[{name='a', count=20, radius=0.2, temperature=1}, {name='b', count=20, radius=0.1, temperature=1}]"
+    with pytest.raises(UserError, match=r"no equation of state of a mixture \(0.5 of radius 1, 0.5 of radius 2\)"):
+        combined("pressure", made(), made(f"species={two}"))
+
+
+def test_effusion_of_different_gases_under_one_name(made):
+    analysis, log, other = registry.find("effusion"), made(*SLIT), made(*SLIT, "species.gas.count=50")
+    results = [replace(analysis.measure(each), name="base scene") for each in (log, other)]
+    with pytest.raises(UserError, match=r"base scene: different gases under one name \(N = 40 .*; N = 50 .*\)"):
+        analysis.combine(results)
+    third = replace(analysis.measure(made(*SLIT, "scene.seed=12")), name="base scene")
+    assert list(analysis.combine([results[0], third]).groups) == ["base scene"]
+
+
+# ── openings ──
+
+
+def test_effusion_takes_a_slit_in_a_wall(made):
+    with pytest.raises(UserError, match="opens the box from side to side, so that the gas expands freely"):
+        combined("effusion", made(*WHOLE))
+    assert combined("effusion", made(*SLIT)).premises == ()
+
+
+def test_effusion_takes_a_slit_narrower_than_a_mean_free_path(made):
+    """With 400 discs of diameter 0.1 on 32 units of area, λ = 1/(2√2 · 0.1 · 12.5 χ), about a seventh of the slit."""
+    wide = made(*SLIT, "species.gas.count=400", "species.gas.radius=0.05", "run.until=4")
+    found = combined("effusion", wide)
+    only(found, "mean free paths wide: discs stream out together")
+    (run,) = found.groups[str(wide.path)]
+    assert run.expected is None
+    assert (run.speed.theory, run.speed.deviation) == (None, None)
+    assert run.speed.value > 0
+    assert registry.find("effusion").figure(found).axes
+    assert registry.find("effusion").restore(run.as_dict(), "again").expected is None
+    (narrow,) = combined("effusion", made(*SLIT)).groups.values()
+    assert narrow[0].expected is not None
+    assert narrow[0].speed.theory_error > 0.0125 * narrow[0].speed.theory
+
+
+# ── samples ──
+
+
+def test_fluctuations_take_samples(made):
+    bath = ("box={size=[8, 8], left={thermal=1}, right={thermal=1}}", "run.collisions_per_disc=", "log.events=false")
+    short = made(*bath, "run.until=200", "log.snapshot_every=10")
+    found = combined("heat-capacity", short)
+    assert found.routes == ()
+    only(found, "No heat capacity from Var(E)/T²: ")
+    assert registry.find("heat-capacity").figure(found).axes
+    long = combined("heat-capacity", made(*bath, "run.until=4000", "log.snapshot_every=10"))
+    assert [route.name for route in long.routes] == ["Var(E)/T²"]
+    assert long.premises == ()
+    assert long.routes[0].value.independent_samples > 32
+
+
+def test_exact_numbers_are_shown_as_exact(made):
+    column = ("gravity.acceleration=[0, -0.2]", "log.snapshot_every=0.5", "run.collisions_per_disc=60")
+    isolated = registry.analyse(made(*column), "heat-capacity")
+    assert (isolated.energy.standard_error, isolated.energy.independent_samples) == (0.0, math.inf)
+    assert 0 < isolated.temperature.independent_samples < math.inf
+    table = estimates("t", [("walls", Estimate(1.0, 0.0, math.inf)), ("gas", Estimate(1.0, 0.1, 20.0))])
+    assert [row[1:4] for row in table.shown] == [["1", "exact", ""], ["1", "0.1", "20"]]
+
+
+def test_tests_of_laws_take_samples(made):
+    few = registry.analyse(made("run.collisions_per_disc=1"), "histogram", start=0.0)
+    only(few, "decorrelated samples")
+    assert silent(registry.analyse(made(), "histogram"), "decorrelated samples")
+
+
+# ── single analyses ──
+
+
+def test_diffusion_takes_time(made):
+    log = made(PERIODIC, "species.gas.radius=0.3", "run.collisions_per_disc=400")
+    assert registry.analyse(log, "transport").premises == ()
+    short = registry.analyse(log, "transport", start=0.0, end=log.end_time / 40)
+    only(short, "The window is short: gas is followed for")
+
+
+def test_diffusion_takes_a_wide_box(made):
+    assert "in an infinite gas D is larger" in only(registry.analyse(made(), "transport"), "Walls reflect discs of gas")
+    assert silent(registry.analyse(made(PERIODIC), "transport"), "Walls")
+
+
+def test_strips_take_frames(made):
+    column = ("gravity.acceleration=[0, -5]", "run.collisions_per_disc=60")
+    found = registry.analyse(made(*column), "profile", start=0.0)
+    only(found, "strips hold a disc of gas in fewer than 32 frames")
+    assert any(np.isnan(entry.value) for entry in found.species[0].temperature)
+    assert registry.analyse(made(), "profile", start=0.0).premises == ()
+
+
+def test_laws_of_dilute_gases_take_one(made):
+    column = ("gravity.acceleration=[0, -0.2]", "run.collisions_per_disc=60")
+    found = registry.analyse(made(*column, "species.gas.radius=0.2"), "profile", bins=4, start=0.0)
+    only(found, "The theory is that of a dilute gas; here the packing fraction of a strip reaches 0.")
+    dilute = ("species.gas.radius=0.02", "run.collisions_per_disc=5")
+    assert registry.analyse(made(*column, *dilute), "profile", bins=4, start=0.0).premises == ()
+
+
+def test_the_adiabat_takes_a_slow_piston(made):
+    piston = ("piston={side='right', position=8, velocity=%g}", "run.collisions_per_disc=")
+    fast = made(piston[0] % -0.5, piston[1], "run.until=6")
+    only(registry.analyse(fast, "evolution"), "of the mean speed of the discs, but the law is that of a slow one")
+    slow = made(piston[0] % -0.05, piston[1], "run.until=6")
+    assert registry.analyse(slow, "evolution").premises == ()
+
+
+def test_a_relaxation_time_takes_a_log_that_is_longer(made):
+    equal = ("species.gas.temperature=", "species.gas.speed=1", "species.gas.count=400", "species.gas.radius=0.05")
+    short = registry.analyse(made(*equal, "run.collisions_per_disc=1"), "relaxation")
+    only(short, "that is an extrapolation")
+    assert registry.analyse(made(*equal, "run.collisions_per_disc=20"), "relaxation").premises == ()
+    few = registry.analyse(made(*equal, "species.gas.count=10", "species.gas.radius=0.5"), "relaxation")
+    assert silent(few, "extrapolation")

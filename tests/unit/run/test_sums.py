@@ -1,0 +1,193 @@
+"""Sums of a run: the same bits with events and without, with breaks and without; and what the events add up to."""
+
+import numpy as np
+import pytest
+from log_compare import differences, scene_of
+
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.samples import SampledImpacts
+from idealgas.analysis.core.stream import stream
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.log import open_log
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
+from idealgas.scene import SceneError, parse_scene
+
+PRESSURE = "log.pressure=true"
+SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_push", "face_drag")
+
+GAS = """
+scene.seed = 3
+box.size = [16, 12]
+species = [{name = "gas", count = 60, radius = 0.4, temperature = 1.0}]
+run.events = 30_000
+log = {pressure = true, snapshot_every = 2.0}
+"""
+MIXTURE = """species = [
+    {name = "a", count = 40, radius = 0.4, temperature = 1},
+    {name = "b", count = 20, radius = 0.3, mass = 3, temperature = 2},
+]
+"""
+CASES = {
+    "walls": GAS,
+    "mixture": GAS.replace(GAS.splitlines()[3] + "\n", MIXTURE),
+    "periodic": GAS + 'box.left = "periodic"\nbox.right = "periodic"\n',
+    "everything": GAS
+    + "rotation = {roughness = 0.4, wall_roughness = 0.2}\nrestitution = {normal = 0.97, wall = 0.9}\n"
+    + "gravity.acceleration = [0.1, -0.3]\nbox.bottom = { thermal = 1.5 }\n"
+    + 'wall = [{name = "shelf", from = [3, 4], to = [7, 6]}, {from = [10, 1], to = [10, 5], opens_at = 9}]\n'
+    + 'piston = {side = "right", velocity = -0.01}\nrun.until = 300\n',
+}
+
+
+def run(case, path, *overrides):
+    simulate(parse_scene(CASES[case], overrides=overrides), path)
+    return path
+
+
+def same(one, other):
+    """Everything but the events."""
+    return [name for name in differences(one, other) if not name.startswith("events/") and name != "scene"]
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(case, marks=pytest.mark.slow if case == "everything" else ()) for case in CASES],
+)
+def whole(request, tmp_path_factory):
+    """A case and its log, with events."""
+    return request.param, run(request.param, tmp_path_factory.mktemp(request.param) / "run.h5")
+
+
+def test_the_same_without_events(whole, tmp_path):
+    case, path = whole
+    other = run(case, tmp_path / "run.h5", "log.events=false")
+    with open_log(path) as a, open_log(other) as b:
+        assert a.observables.keys() == b.observables.keys() >= {*SUMS, "face_hits"}
+        for name, (_, values) in a.observables.items():
+            assert np.array_equal(values, b.observables[name][1]), name
+        for one, same in zip(a.checkpoints, b.checkpoints, strict=True):
+            assert all(np.array_equal(entry, same.arrays[name]) for name, entry in one.arrays.items())
+
+
+def test_brute_force_has_the_same_sums(whole, tmp_path):
+    case, _ = whole
+    short = "run.events=4000"
+    paths = [
+        run(case, tmp_path / f"{method}.h5", short, f"run.method={method}")
+        for method in ("event_driven", "brute_force")
+    ]
+    assert [name for name in differences(*paths) if name != "scene"] == []
+
+
+def test_resumed(whole, tmp_path):
+    case, path = whole
+    part = run(case, tmp_path / "run.h5", "run.events=20000")
+    resume(part, ["run.events=30000"])
+    assert differences(part, path) == []
+
+
+def test_snapshots_change_no_sum(whole, tmp_path):
+    case, path = whole
+    with open_log(path) as a, open_log(run(case, tmp_path / "run.h5", "log.snapshot_every=")) as b:
+        assert len(a.observables["energy"][0]) > 2 * len(b.observables["energy"][0])
+        for name in (f"{name}_sum" for name in SUMS):
+            assert np.array_equal(a.checkpoints[-1].arrays[name], b.checkpoints[-1].arrays[name])
+            assert np.any(a.checkpoints[-1].arrays[name])
+
+
+def test_the_sums_are_those_of_the_events(whole):
+    """Blocks of time between samples, whose events are added up one by one."""
+    _, path = whole
+    with open_log(path) as log:
+        time = log.observables["energy"][0]
+        edges = time[[2, 9, 10, 23, -1]]
+        events, samples = Impacts(len(log.walls), log.periodic), SampledImpacts(log, edges)
+        stream(log, edges, [events])
+        assert np.array_equal(samples.hits, events.hits)
+        assert np.array_equal(samples.collisions, events.collisions)
+        assert events.hits.sum() > 500
+        falls = any(log.gravity)  # then the velocity changes between events too, which these tallies take for impulse
+        if not falls:
+            for name in ("pair_virial", "wall_virial", "impulse"):
+                found, expected = getattr(samples, name), getattr(events, name)
+                scale = np.abs(expected).max()
+                assert np.abs(found - expected).max() < 1e-12 * scale, name
+
+
+def test_momentum_of_the_gas_is_what_walls_gave(whole):
+    """Momentum at the samples, less what gravity gave, changes by what the faces received, normal and along."""
+    _, path = whole
+    with open_log(path) as log:
+        time, momentum = log.observables["momentum"]
+        received = SampledImpacts(log, time).impulse.sum(axis=1)
+        gained = np.diff(momentum, axis=0) - np.outer(np.diff(time), log.discs.mass.sum() * np.array(log.gravity))
+        assert np.abs(gained + received).max() < 1e-9 * log.observables["face_push"][1].max()
+
+
+def test_the_kinetic_flow_is_twice_the_energy(whole):
+    """Its trace is the integral of twice the kinetic energy; where nothing changes that, the energy times time."""
+    case, path = whole
+    if case != "everything":
+        with open_log(path) as log:
+            time, flow = log.observables["kinetic_flow"]
+            energy = log.observables["kinetic_energy"][1]
+            assert np.abs(flow[:, 0] + flow[:, 2] - 2 * energy * time).max() < 1e-11 * flow.max()
+
+
+def compared(tmp_path, *overrides):
+    """Z and rates from events and from samples of two runs, in one window."""
+    scene = GAS.replace("snapshot_every = 2.0", "snapshot_every = 50.0")
+    paths = tmp_path / "events.h5", tmp_path / "samples.h5"
+    for path, events in zip(paths, ("true", "false"), strict=True):
+        simulate(parse_scene(scene, overrides=[*overrides, f"log.events={events}"]), path)
+    with open_log(paths[0]) as a, open_log(paths[1]) as b:
+        for name in (*SUMS, "face_hits"):
+            assert np.array_equal(a.observables[name][1], b.observables[name][1])
+        time = b.observables["energy"][0]
+        start, end = time[len(time) // 10], time[-3]
+        one, other = (pressure(log, start, end) for log in (a, b))
+    assert other.window.start == start
+    assert [route.name for route in other.routes] == [route.name for route in one.routes]
+    for found, expected in zip(other.routes, one.routes, strict=True):
+        assert found.compressibility.value == pytest.approx(expected.compressibility.value, rel=1e-12)
+        assert found.compressibility.theory == expected.compressibility.theory
+        error = found.compressibility.standard_error / expected.compressibility.standard_error
+        assert 0.5 < error < 2
+    for found, expected in zip(other.collision_rates, one.collision_rates, strict=True):
+        assert found.rate.value == pytest.approx(expected.rate.value, rel=1e-12)
+    assert other.free_paths == ()
+    return other
+
+
+def test_the_same_pressure_without_events(tmp_path):
+    compared(tmp_path, "run.events=100_000")
+
+
+@pytest.mark.long
+def test_the_same_pressure_without_events_in_a_long_run(tmp_path):
+    found = compared(tmp_path, "run.events=10_000_000")
+    assert found.check().agrees
+
+
+def test_sums_that_were_not_asked_for(tmp_path):
+    path = tmp_path / "run.h5"
+    simulate(scene_of("quickstart", "run.events=3000", "log.events=false"), path)
+    with open_log(path) as log:
+        assert not {*SUMS, "face_hits"} & log.observables.keys()
+        assert not [name for name in log.checkpoints[0].arrays if "flow" in name or "face" in name]
+
+
+@pytest.mark.parametrize(
+    ("keys", "got"),
+    [
+        ('method = "time_driven"\ndt = 0.01', 'method = "time_driven"'),
+        ('method = "monte_carlo"', 'method = "monte_carlo"'),
+        ('method = "brute_force"\nprecision = "float32"', 'precision = "float32"'),
+    ],
+)
+def test_methods_without_these_sums(keys, got):
+    with pytest.raises(SceneError) as refused:
+        parse_scene(GAS + "".join(f"run.{key}\n" for key in keys.splitlines()))
+    allowed = 'event_driven, brute_force with "float64"'
+    assert f"log.pressure: not recorded by this method (got {got}; allowed {allowed})" in str(refused.value)

@@ -1,0 +1,187 @@
+"""Runs whose events do not come end, runs that have an end in time reach it, and neither fills a disk on the way."""
+
+import pytest
+from log_compare import differences
+
+import idealgas.run.watch as watch
+from idealgas.errors import UserError
+from idealgas.log import open_log
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+PERIODIC = """
+[box]
+size = [10, 10]
+left = "periodic"
+right = "periodic"
+bottom = "periodic"
+top = "periodic"
+"""
+MOVERS = """
+disc = [
+    { position = [1, 1], velocity = [1, 0.1], radius = 0.2 },
+    { position = [3, 3], velocity = [1, -0.1], radius = 0.2 },
+    { position = [5, 5], velocity = [1, 0.2], radius = 0.2 },
+    { position = [7, 7], velocity = [1, -0.2], radius = 0.2 },
+]
+"""
+LANES = """
+box.size = [10, 10]
+disc = [
+    { position = [1, 2], velocity = [1, 0], radius = 0.2 },
+    { position = [5, 4], velocity = [-1, 0], radius = 0.2 },
+    { position = [7, 8], velocity = [1, 0], radius = 0.2 },
+]
+"""
+"""Discs that never meet, but hit walls for ever."""
+
+
+def movers(*overrides):
+    """Four discs that keep their places in a row: all are equally fast along it, so none meets another."""
+    return parse_scene(MOVERS + PERIODIC, overrides=overrides)
+
+
+@pytest.fixture
+def few(monkeypatch):
+    monkeypatch.setattr(watch, "EMPTY_EPOCHS", 100)
+    monkeypatch.setattr(watch, "EXPECTED", 50)
+
+
+METHODS = ("run.method=event_driven", "run.method=brute_force", "run={ method='time_driven', dt=0.5, events=4000 }")
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.usefixtures("few")
+def test_a_run_without_events_ends_with_one_line_and_a_log_to_go_on_with(method, tmp_path):
+    path = tmp_path / "run.h5"
+    with pytest.raises(UserError, match=r"run\.h5: no event in 100 epochs, up to t = \d+") as caught:
+        simulate(movers("run.events=4000", method), path)
+    assert "\n" not in str(caught.value)
+    with open_log(path) as log:
+        assert (log.complete, log.unclosed, len(log)) == (False, False, 0)
+        assert [checkpoint.epoch for checkpoint in log.checkpoints] == [0, 100]
+        assert len(log.observables["energy"][0]) == watch.QUIET_SAMPLES + 1
+        end = log.end_time
+        assert log.state_at(end).position.shape == (4, 2)
+    with pytest.raises(UserError, match="no event in 100 epochs"):  # as many again
+        resume(path)
+    with open_log(path) as log:
+        assert log.end_time == pytest.approx(2 * end)
+    summary = resume(path, ["run.events=", f"run.until={3.5 * end}"])
+    assert (summary.completed, summary.end_time, summary.events) == (True, 3.5 * end, 0)
+
+
+@pytest.mark.usefixtures("few")
+def test_pairs_of_discs_with_one_velocity(tmp_path):
+    text = """
+        box.size = [10, 10]
+        run = { method = "monte_carlo", events = 10 }
+        species = [{ name = "gas", count = 3, radius = 0.2, velocities = [[1, 0], [1, 0], [1, 0]] }]
+    """
+    with pytest.raises(UserError, match="no event in 100 epochs"):
+        simulate(parse_scene(text), tmp_path / "run.h5")
+    summary = simulate(parse_scene(text, overrides=["run.events=", "run.trials=200000"]), tmp_path / "trials.h5")
+    assert (summary.completed, summary.trials, summary.events) == (True, 200_000, 0)
+    with open_log(tmp_path / "trials.h5") as log:
+        assert len(log.checkpoints) == 1
+
+
+@pytest.mark.usefixtures("few")
+def test_a_run_with_an_end_in_time_comes_to_it(tmp_path):
+    summary = simulate(movers("run.until=1e6"), tmp_path / "run.h5")
+    assert (summary.completed, summary.end_time, summary.events) == (True, 1e6, 0)
+    assert summary.epochs > 5 * watch.EMPTY_EPOCHS
+    with open_log(tmp_path / "run.h5") as log:
+        assert len(log.checkpoints) == 1
+        assert len(log.observables["energy"][0]) == watch.QUIET_SAMPLES + 1
+        assert log.state_at(1e6).position[:, 1] == pytest.approx([1, 3, 5, 7], abs=1e-6)
+
+
+@pytest.mark.usefixtures("few")
+def test_discs_that_never_meet(tmp_path):
+    """Walls are hit for ever, but only a collision of two discs would end the run."""
+    with pytest.raises(UserError, match="no two discs have met where 50 collisions were to be expected"):
+        simulate(parse_scene(LANES, overrides=["run.collisions_per_disc=10"]), tmp_path / "run.h5")
+    assert simulate(parse_scene(LANES, overrides=["run.events=5000"]), tmp_path / "events.h5").completed
+    late = ["run.collisions_per_disc=10", "wall=[{ from=[0, 9], to=[10, 9], opens_at=1e5 }]"]
+    assert simulate(parse_scene(LANES, overrides=[*late, "run.until=2e4"]), tmp_path / "until.h5").completed
+
+
+@pytest.mark.usefixtures("few")
+def test_before_a_gate_opens_nothing_is_in_vain(tmp_path):
+    """The discs meet once the wall between them is gone."""
+    text = """
+        box.size = [10, 2]
+        wall = [{ from = [5, 0], to = [5, 2], opens_at = 20000 }]
+        disc = [
+            { position = [2, 1], velocity = [1, 0], radius = 0.2 },
+            { position = [8, 1], velocity = [-1, 0], radius = 0.2 },
+        ]
+        run.collisions_per_disc = 3
+    """
+    summary = simulate(parse_scene(text), tmp_path / "run.h5")
+    assert summary.completed
+    assert summary.end_time > 20_000
+
+
+DILUTE = """
+scene.seed = 3
+species = [{ name = "gas", count = 2, radius = 0.01, speed = 1 }]
+"""
+"""Two discs that meet in one epoch of fifty: the length of an epoch does not know that sides are periodic."""
+
+
+@pytest.mark.usefixtures("few")
+def test_a_dilute_gas_is_waited_for(tmp_path):
+    scene = parse_scene(DILUTE + PERIODIC, overrides=["run.events=12"])
+    summary = simulate(scene, tmp_path / "run.h5")
+    assert summary.completed
+    assert summary.epochs > 12 * 20
+    with open_log(tmp_path / "run.h5") as log:
+        assert len(log.checkpoints) <= 13
+
+
+def test_a_break_in_an_empty_stretch_changes_nothing(tmp_path):
+    whole, part = tmp_path / "whole.h5", tmp_path / "part.h5"
+    scene = parse_scene(DILUTE + PERIODIC, overrides=["run.until=50000", "log.checkpoint_every=2"])
+    summary = simulate(scene, whole)
+    calls = iter(range(1_000_000))
+    simulate(scene, part, interrupted=lambda: next(calls) > summary.epochs // 2)
+    with open_log(whole) as log, open_log(part) as broken:
+        assert 1 < len(log.checkpoints) < summary.epochs / 4
+        assert not broken.complete
+        assert len(broken.checkpoints) < len(log.checkpoints)
+    resume(part)
+    assert differences(part, whole) == []
+
+
+# ── few discs that make most events ──
+
+FALL = """
+box.size = [10, 10]
+gravity.acceleration = [0, -1]
+restitution = { wall = 0.5, contact_duration = 1e-6 }
+run.until = 3
+log.events = false
+disc = [{ position = [5, 0.6], radius = 0.5 }]
+species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1, region = [0, 5, 10, 10] }]
+"""
+
+
+def notices(text, path, *overrides):
+    found = []
+    simulate(parse_scene(text, overrides=overrides), path, on_progress=lambda progress: found.append(progress.notice))
+    return [notice for notice in found if notice]
+
+
+def test_a_disc_that_keeps_the_run_busy_is_told_once(tmp_path):
+    (line,) = notices(FALL, tmp_path / "run.h5")
+    assert line.startswith("1 of 6 discs makes most of the events from t = 0 to t = 1.3")
+    assert notices(FALL, tmp_path / "default.h5", "restitution={ wall=0.5 }", "run.until=50") == []
+
+
+def test_a_gas_is_never_called_busy(monkeypatch, tmp_path):
+    """Not even where it has more events than its epochs are made for."""
+    monkeypatch.setattr(watch, "OVERDUE", 0.1)
+    assert notices(FALL, tmp_path / "run.h5", "restitution=", "run.until=100") == []

@@ -1,0 +1,78 @@
+"""The default contact duration, and what discs do that have come to rest."""
+
+import math
+
+import pytest
+
+from idealgas.scene import SceneError, parse_scene
+
+GAS = """
+box.size = [10, 8]
+restitution = { normal = 0.9, wall = 0.8 }
+run.until = 5
+species = [{ name = "gas", count = 20, radius = 0.2, speed = 2, region = [0, 0, 8, 8] }]
+"""
+FALL = "gravity.acceleration=[0, -3]"
+PISTON = 'piston={ side="right", position=9, mass=4, pressure=0.5 }'
+
+
+def scene(*overrides):
+    return parse_scene(GAS, overrides=overrides)
+
+
+def test_without_a_force_it_is_far_below_every_free_time():
+    found = scene()
+    assert found.press == (0, 0)
+    assert found.restitution.contact_duration == 1e-6 * 20 * 2 * 0.2 / 20 / 2
+    assert found.rest is None
+    assert scene("piston={ position=9, velocity=-0.1 }").restitution == found.restitution
+
+
+def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
+    """√2 · 2R n χ and 2/π over the room of the centres along each axis, at √(v² + gL): a fall through half the box."""
+    found = scene(FALL)
+    phi = 20 * math.pi * 0.04 / 80
+    chi = (1 - 7 * phi / 16) / (1 - phi) ** 2
+    pairs = math.sqrt(2) * 0.4 * 19 / 80 * chi
+    sides = 2 / math.pi * (1 / 9.6 + 1 / 7.6)
+    free_time = 1 / ((pairs + sides) * math.sqrt(4 + 3 * 8))
+    assert found.free_time == pytest.approx(free_time, rel=1e-14)
+    assert found.restitution.contact_duration == pytest.approx(free_time / 20, rel=1e-14)
+    assert parse_scene(GAS, overrides=[FALL]).restitution == found.restitution
+
+
+def test_a_piston_that_is_pressed_is_a_force():
+    found = scene(PISTON)
+    assert found.press == (-0.5 * 8 / 4, 0)
+    assert found.restitution.contact_duration == pytest.approx(found.free_time / 20, rel=1e-14)
+    assert found.free_time < scene("piston={ position=9, velocity=0 }").free_time
+
+
+def test_what_is_given_stays():
+    assert scene(FALL, "restitution.contact_duration=1e-4").restitution.contact_duration == 1e-4
+    assert scene(FALL, "restitution={ normal = 1, wall = 1 }").restitution.contact_duration is None
+
+
+def test_under_gravity_discs_may_be_at_rest_at_the_start():
+    assert 0 < scene(FALL, "species.gas.speed=0").restitution.contact_duration < math.inf
+    with pytest.raises(SceneError, match="no default where nothing moves at the start"):
+        scene("species.gas.speed=0")
+
+
+def test_rest():
+    """Rebounds of speed v < g t/2 are over in less than the contact duration t: m v²/2 = m g h, h < g t²/8."""
+    rest = scene(FALL, "restitution.contact_duration=0.01").rest
+    assert rest.hits == pytest.approx((100, 125))
+    assert rest.height == pytest.approx(3 * 0.01**2 / 8)
+    assert rest.energy == pytest.approx(3 * rest.height)
+    assert rest.per_free_time == pytest.approx(125 * scene(FALL).free_time)
+    assert scene(FALL).rest.per_free_time == pytest.approx(20 / 0.8)
+    stuck = scene(FALL, "restitution.wall=0").rest
+    assert (stuck.hits[1], stuck.per_free_time) == (None, None)
+
+
+@pytest.mark.parametrize("override", ["box.size=[10]", "gravity.acceleration=3", "piston=3", "species=[]"])
+def test_what_is_wrong_elsewhere_is_said_there(override):
+    with pytest.raises(SceneError) as caught:
+        scene(FALL, override)
+    assert "contact_duration" not in str(caught.value)
