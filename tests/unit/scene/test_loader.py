@@ -136,5 +136,5 @@ def test_a_dump_shows_the_defaults():
         "[box]", "size = [4.0, 2.0]", *(f'{side} = "reflecting"' for side in ("left", "right", "bottom", "top")), "",
         "[[disc]]", "position = [1.0, 1.0]", "velocity = [0.0, 0.0]", "radius = 0.5", "mass = 1.0", "",
         "[run]", 'method = "event_driven"', "until = 1.0", "",
-        "[log]", "events = true", 'compression = "gzip"', "checkpoint_every = 1", "fsync = false",
+        "[log]", "events = true", 'compression = "gzip"', "pressure = false", "checkpoint_every = 1", "fsync = false",
     ]  # fmt: skip
