@@ -19,6 +19,8 @@ from idealgas.sides import FIRST_SEGMENT
 
 ENERGY, ACTION, MOMENTUM = "energy", "energy time", "mass length/time"
 TENSOR = ("xx", "xy", "yy", "yx")
+LEAST_SHARE = 2.0**-40
+"""Smallest energy taken as typical, over the largest that effects bring: that stays far below 2^100 units."""
 
 
 def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool) -> Effects:
@@ -27,7 +29,7 @@ def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, l
     gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any.
     """
     speed, walls = _speed(scene, gas, effects), len(number_walls(scene))
-    energy = 0.5 * float(gas.mass.mean()) * speed**2
+    energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * 0.5 * float(gas.mass.mean()) * speed**2)
     return effects._replace(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,

@@ -81,6 +81,7 @@ def test_resume_refuses(copy, arguments, message):
     assert copy.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_reading_a_dead_writers_log_says_so(dead):
     for command in (("info",), ("temperature", "--from", 0), ("follow", "--once")):
         result = idealgas(command[0], dead, *command[1:])
@@ -103,6 +104,7 @@ def test_recover(dead, tmp_path):
     assert called("recover", dead, "-o", copy).returncode == 2
 
 
+@pytest.mark.slow
 def test_follow_ends_with_the_run(tmp_path):
     path = tmp_path / "run.h5"
     child = start_run(path)

@@ -47,6 +47,7 @@ def shown(*arguments, folder):
     return result
 
 
+@pytest.mark.slow
 def test_two_discs_that_do_not_reach_all_states(folder, tmp_path):
     line = "premise: Two equal discs that start without total momentum between walls do not reach all states"
     for command in (("check", "two.toml"), ("pressure", "two.h5"), ("temperature", "two.h5")):

@@ -104,7 +104,9 @@ def test_the_first_command_as_a_user_runs_it(folder):
     done = subprocess.run(f"{run} && {check}", shell=True, cwd=folder, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert "Z = PA/NT" in done.stdout
-    assert done.stdout.endswith("Measurement and theory agree within 4 standard errors.\n")
+    assert done.stdout.endswith(
+        "Measurement and theory agree within 4 standard errors in walls, virial; pairs, virial.\n"
+    )
 
 
 def test_code_of_readme_runs(folder):

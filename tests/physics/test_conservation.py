@@ -15,7 +15,7 @@ pytestmark = pytest.mark.slow
 def test_energy_and_momentum(shipped_scene, tmp_path):
     """Energy to 1e-12, with what collisions lost and less what thermal walls or a piston gave.
 
-    Inelastic collisions only ever take some. Momentum to 1e-12 along axes on which no wall takes any.
+    What inelastic collisions take is counted and only grows. Momentum to 1e-12 along axes on which no wall takes any.
     """
     scene = load_scene(shipped_scene, ["run.events=20000"])
     simulate(scene, tmp_path / "run.h5")

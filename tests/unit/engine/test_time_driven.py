@@ -127,6 +127,7 @@ def test_it_neither_makes_nor_loses_energy():
     assert made.state()[0].kinetic_energy == pytest.approx(some_gas(seed=4).kinetic_energy, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_longer_list_is_made_where_the_first_is_too_short():
     """A crowd in a corner of an empty box has far more pairs near each other than the same discs all over it."""
     k = np.arange(100)

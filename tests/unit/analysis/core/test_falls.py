@@ -24,6 +24,7 @@ VALUES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", VELOCITY_QUANTITIES)
 @pytest.mark.parametrize("gravity", ["[0.3, -0.7]", "[0, -0.7]", "[0.4, 0]"])
 def test_time_in_each_bin_of_falling_discs(quantity, gravity, make):
