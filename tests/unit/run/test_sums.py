@@ -8,6 +8,8 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.status import status
+from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
@@ -176,6 +178,27 @@ def test_sums_that_were_not_asked_for(tmp_path):
     with open_log(path) as log:
         assert not {*SUMS, "face_hits"} & log.observables.keys()
         assert not [name for name in log.checkpoints[0].arrays if "flow" in name or "face" in name]
+        with pytest.raises(UserError, match=r"no events .* and no sums \(log.pressure = true\)"):
+            pressure(log)
+        assert status(log).compressibility is None
+
+
+def test_pressure_of_few_and_of_enough_samples(tmp_path):
+    """Too few are refused; a run that goes on shows the pressure of the last ones, its analysis that of all."""
+    path = tmp_path / "run.h5"
+    overrides = ("log.events=false", "log.snapshot_every=", "run.events=400_000")
+    simulate(parse_scene(GAS, overrides=overrides), path)
+    with open_log(path) as log:
+        found = pressure(log)
+        assert found.window.detected
+        assert found.check().agrees
+        z = status(log).compressibility
+        assert abs(z.value - found.routes[-1].compressibility.value) < 5 * z.standard_error
+        time = log.observables["energy"][0]
+        few = rf"only 16 samples between t = 0 and {time[15]:g}, one for each epoch or snapshot \(allowed >= 17\)"
+        with pytest.raises(UserError, match=few):
+            pressure(log, 0.0, time[15])
+        assert len(pressure(log, 0.0, time[16]).window.edges) == 17
 
 
 @pytest.mark.parametrize(
