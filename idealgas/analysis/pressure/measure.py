@@ -25,8 +25,9 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import SampledImpacts, sampled
+from idealgas.analysis.core.samples import SampledImpacts, SampledWalls, sampled
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
 from idealgas.analysis.core.wall_pressure import WallGauge
@@ -167,12 +168,20 @@ def _without_theory(
     log: Log, start: float | None, end: float | None, progress: Callable[[int, int], None] | None
 ) -> Pressure:
     """Mechanical pressure of a gas without an equation of state; one that never settles is averaged from its start."""
-    gauge, moments, gas = WallGauge(log), Moments(log.gravity), log.discs
+    gas = log.discs
     if start is None and why_never_stationary(log):
         start = log.start_time
-    window = measure(log, [moments, *gauge.tallies], start, end, progress)
+    if log.has_events:
+        gauge, moments = WallGauge(log), Moments(log.gravity)
+        window = measure(log, [moments, *gauge.tallies], start, end, progress)
+        energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
+    elif moving_wall(log):
+        raise NotApplicableError(f"{log.path}: has no events, and samples do not follow a piston closely enough")
+    else:
+        window, impacts = sampled(log, start, end, ())
+        gauge = WallGauge(log, SampledWalls(log, impacts))
+        energies = window.of(impacts.kinetic_flow)[:, :3:2].sum(axis=1)
     found = mechanical(log, gauge, window)
-    energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
     causes = log.scene.lacking("uniform", "conserves_energy")
     return Pressure(
         window=window,
