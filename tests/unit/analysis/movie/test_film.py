@@ -217,9 +217,11 @@ def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
     def speeds(flow):
         sides = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
         velocities = [[flow + v, 0.0] for v in (1, -1)]
-        made = parse_scene(sides + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
-            f"[[disc]]\nposition = [{x}, 5]\nvelocity = {v}\nradius = 0.5\n" for x, v in zip((2, 8), velocities, strict=True)
-        ))  # fmt: skip
+        discs = "".join(
+            f"[[disc]]\nposition = [{2 + 6 * k}, 5]\nvelocity = {velocity}\nradius = 0.5\n"
+            for k, velocity in enumerate(velocities)
+        )
+        made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
         frame = Painter(made, make_gas(made), None, SIZE, 1.0, False).paint(
             STATE._replace(velocity=np.array(velocities))
         )
