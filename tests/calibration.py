@@ -137,7 +137,7 @@ GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "te
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 THERMAL = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
 SHORT_AND_LONG = ("collisions_per_disc = 400", "collisions_per_disc = 4000")
-SNAPSHOTS = "snapshot_every = 0.1\n"
+SNAPSHOTS = "snapshot_every = 0.4\n"
 SLOW = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
 """Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 20 times it."""
 

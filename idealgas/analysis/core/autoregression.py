@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import signal
+
+from idealgas._jit import njit
 
 LEAST_WEIGHT = 1e-3
 """Orders of a smaller weight, relative to the largest one, are left out."""
@@ -43,13 +44,10 @@ class Model(NamedTuple):
 
     def covariances(self, length: int) -> np.ndarray:
         """Autocovariances (length,) of the process from lag 0 on."""
-        order = len(self.coefficients)
-        if length <= order + 1 or not order:
-            return np.append(self.covariance[:length], np.zeros(max(length - order - 1, 0)))
-        predictor, latest = np.append(1.0, -self.coefficients), self.covariance[:0:-1]
-        state = [self.coefficients[k:] @ latest[: order - k] for k in range(order)]
-        rest = signal.lfilter([1.0], predictor, np.zeros(length - order - 1), zi=state)[0]
-        return np.append(self.covariance, rest)
+        known = self.covariance[:length]
+        found = np.append(known, np.zeros(length - len(known)))
+        _go_on(self.coefficients, found)
+        return found
 
 
 class Spread(NamedTuple):
@@ -125,22 +123,64 @@ def process_of(series: np.ndarray) -> Process:
 def _models(series: np.ndarray) -> list[Model]:
     """Models of a series (n,) of mean 0, of orders 0 to n/8 or, in a long series, 20 log₁₀ n."""
     n = len(series)
-    forward, backward = series[1:].astype(float), series[:-1].astype(float)
-    noise = float(series @ series) / n
-    coefficients, covariance = np.zeros(0), [noise]
-    certainty, found = 0.0, []  # certainty: of Σ a_k, the sum over lower orders of (1 - Σ a_k)²/s
-    least = NOISE * noise
-    for order in range(min(n // 8, int(20 * math.log10(n))) + 1):
-        if order:
-            power = float(forward @ forward + backward @ backward)
-            reflection = 2 * float(forward @ backward) / power if power > 0 else 0.0
-            certainty += (1 - coefficients.sum()) ** 2 / noise
-            covariance.append(reflection * noise + float(coefficients @ covariance[:0:-1]))
-            coefficients = np.append(coefficients - reflection * coefficients[::-1], reflection)
-            noise *= 1 - reflection**2
-            forward, backward = (forward - reflection * backward)[1:], (backward - reflection * forward)[:-1]
-        if noise <= least:
-            break
-        off = 2 / n + 4 * noise * certainty / (n * (1 - coefficients.sum()) ** 2)
-        found.append(Model(coefficients, noise, np.array(covariance) * n / (n - order), off))
-    return found
+    most = min(n // 8, int(20 * math.log10(n)))
+    coefficients = np.zeros((most + 1, most))
+    noise, covariance, doubt = np.zeros((3, most + 1))
+    found = _fit(np.array(series, float), np.array(series, float), coefficients, noise, covariance, doubt)
+    return [
+        Model(coefficients[p, :p], noise[p], covariance[: p + 1] * n / (n - p), 2 / n + 4 * doubt[p] / n)
+        for p in range(found)
+    ]
+
+
+@njit
+def _fit(forward, backward, coefficients, noise, covariance, doubt):
+    """Fill arrays by order from a series given twice, (n,), which is lost: numbers of orders that have a model.
+
+    coefficients: (P + 1, P), of order p in row p. noise, covariance: (P + 1,). doubt: (P + 1,), mean square error of
+    Σ a_k in units of (1 - Σ a_k)²/n.
+    """
+    n = forward.shape[0]
+    left = 0.0
+    for t in range(n):
+        left += forward[t] * forward[t] / n
+    least = NOISE * left
+    covariance[0] = left
+    rest = 1.0  # 1 - Σ a_k
+    certainty = 0.0  # of Σ a_k: the sum over lower orders of (1 - Σ a_k)²/noise
+    for p in range(noise.shape[0]):
+        if p > 0:
+            both = power = 0.0
+            for t in range(p, n):
+                both += forward[t] * backward[t - 1]
+                power += forward[t] * forward[t] + backward[t - 1] * backward[t - 1]
+            reflection = 2 * both / power if power > 0 else 0.0
+            certainty += rest * rest / left
+            covariance[p] = reflection * left
+            rest = 1.0 - reflection
+            for k in range(p - 1):
+                covariance[p] += coefficients[p - 1, k] * covariance[p - 1 - k]
+                coefficients[p, k] = coefficients[p - 1, k] - reflection * coefficients[p - 1, p - 2 - k]
+                rest -= coefficients[p, k]
+            coefficients[p, p - 1] = reflection
+            left *= 1 - reflection * reflection
+            for t in range(n - 1, p - 1, -1):
+                ahead, behind = forward[t], backward[t - 1]
+                forward[t] = ahead - reflection * behind
+                backward[t] = behind - reflection * ahead
+        if left <= least:
+            return p
+        noise[p] = left
+        doubt[p] = left * certainty / (rest * rest)
+    return noise.shape[0]
+
+
+@njit
+def _go_on(coefficients, covariance):
+    """Fill in the autocovariances (n,) of a model of order p, of which the first p + 1 are known."""
+    p = coefficients.shape[0]
+    for k in range(p + 1, covariance.shape[0]):
+        total = 0.0
+        for j in range(p):
+            total += coefficients[j] * covariance[k - 1 - j]
+        covariance[k] = total

@@ -2,8 +2,8 @@
 
 The later part of a log is taken as reference. A series is steady from a start on if the mean of every stretch that
 begins there agrees with the mean of the reference. What stretches of any length scatter by is known from the
-autocovariances of the reference (`autoregression`), so that a steady series passes whatever its correlations: one in a
-hundred fails for a stretch of given length.
+autocovariances of the reference (`autoregression`), so that a steady series passes whatever its correlations: one gas
+in twenty fails for stretches of one length, and then loses some of its start.
 """
 
 import math
@@ -39,7 +39,7 @@ drift would pass for steady."""
 TREND = 0.001
 """Probability that a steady gas is found to have a trend in the reference."""
 
-LEVEL = 0.01
+LEVEL = 0.05
 """Probability that a steady gas is found not to be steady, for stretches of one length."""
 
 STARTS = 33

@@ -74,9 +74,9 @@ def test_gas_that_still_changes_at_the_end(log_of):
     """Discs go through a slit one by one, from the left into the void."""
     slit = (
         '[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n[[species]]\nname = "gas"\n'
-        "count = 200\nradius = 0.005\ntemperature = 1\nregion = [0, 0, 1, 1]\n"
+        "count = 400\nradius = 0.005\ntemperature = 1\nregion = [0, 0, 1, 1]\n"
     )
-    log = log_of("[box]\nsize = [2, 1]\n" + slit + "[run]\nuntil = 40\n")
+    log = log_of("[box]\nsize = [2, 1]\n" + slit + "[run]\nuntil = 15\n")
     with pytest.raises(NotApplicableError, match="still changes at the end"):
         analyse(log, "temperature")
 
