@@ -1,9 +1,10 @@
 """From when on a gas is steady: one test for all analyses, of the quantities that they average.
 
-The later part of a log is taken as reference. A series is steady from a start on if the mean of every stretch that
-begins there agrees with the mean of the reference. What stretches of any length scatter by is known from the
-autocovariances of the reference (`autoregression`), so that a steady series passes whatever its correlations: one gas
-in twenty fails for stretches of one length, and then loses some of its start.
+The later part of a log is taken as reference: its half or, where that tells nothing of a series, its last quarter. A
+series is steady from a start on if the mean of every stretch that begins there agrees with the mean of the reference.
+What stretches of any length scatter by is known from the autocovariances of the reference (`autoregression`), so that a
+steady series passes whatever its correlations: one gas in a hundred fails for stretches of one length, and then loses
+some of its start.
 """
 
 import math
@@ -36,10 +37,10 @@ BEYOND = 16
 """Part of a log by which the steady part is longer than the last quarter if the last half has a trend; else a slow
 drift would pass for steady."""
 
-TREND = 0.001
-"""Probability that a steady gas is found to have a trend in the reference."""
+TREND = 1e-5
+"""Probability that a steady gas is found to have a trend in the reference, roughly: slow fluctuations look like one."""
 
-LEVEL = 0.05
+LEVEL = 0.01
 """Probability that a steady gas is found not to be steady, for stretches of one length."""
 
 STARTS = 33
@@ -89,14 +90,19 @@ class Course:
 class Reference(NamedTuple):
     """Later part of a series, of n samples.
 
-    mean: of the samples. variance: (n,), variances of means of 1 to n samples. dof: degrees of freedom of these. trend:
-    slope of the samples against time, in its standard errors.
+    first: index of the first sample. mean: of the samples. variance: (n,), variances of means of 1 to n samples. dof:
+    degrees of freedom of these. trend: slope of the samples against time, in its standard errors.
     """
 
+    first: int
     mean: float
     variance: np.ndarray
     dof: float
     trend: float
+
+    def drifts(self, level: float) -> bool:
+        """Whether the samples have a trend that chance gives with the probability `level`."""
+        return self.trend > self.quantile(level)
 
     def quantile(self, level: float) -> float:
         """Deviation in standard errors that chance exceeds with the probability `level`, on either side."""
@@ -108,30 +114,36 @@ def steady_from(series: Iterable[np.ndarray]) -> int | None:
     some = [values for values in series if np.ptp(values) > ROUNDING * np.abs(values).max()]
     if not some or len(some[0]) < FEWEST:
         return 0
-    n, drifts = len(some[0]), False
+    n, level = len(some[0]), TREND / len(some)
     parts = [part for part in REFERENCES if n // part >= LONG or part == REFERENCES[0]]
-    for part in parts:
-        first = n - n // part
-        references = [_reference(values[first:]) for values in some]
-        if any(r.trend > r.quantile(TREND / len(some)) for r in references):
-            drifts = True
-        elif part == parts[-1] or min(r.dof for r in references) >= ENOUGH:
-            start = _first_steady(some, references, first)
-            return None if drifts and first - start < n // BEYOND else start
-    return None if n // 2 >= LONG else n - n // 2
+    references, drifts = [], False
+    for values in some:
+        for part in parts:
+            found = _reference(values, n - n // part)
+            if found.drifts(level):
+                drifts = True
+            elif found.dof >= ENOUGH or part == parts[-1]:
+                references.append(found)
+                break
+        else:
+            return None if n // 2 >= LONG else n - n // 2
+    last = max(r.first for r in references)
+    start = _first_steady(some, references, last)
+    return None if drifts and last - start < n // BEYOND else start
 
 
-def _reference(values: np.ndarray) -> Reference:
-    """Reference of the last n samples of a series."""
+def _reference(series: np.ndarray, first: int) -> Reference:
+    """Reference of the samples of a series from the first on."""
+    values = series[first:]
     n = len(values)
     if is_constant(values):
-        return Reference(float(values.mean()), np.zeros(n), math.inf, 0.0)
+        return Reference(first, float(values.mean()), np.zeros(n), math.inf, 0.0)
     time = np.arange(n) - (n - 1) / 2
     weight = time / (time @ time)
     slope = float(weight @ values)
     rest = values - values.mean() - slope * time
     if is_constant(rest):
-        return Reference(float(values.mean()), np.zeros(n), math.inf, math.inf)
+        return Reference(first, float(values.mean()), np.zeros(n), math.inf, math.inf)
     process = process_of(rest)
     samples = process.spread().samples
     dof = max(samples - 2, 1.0)
@@ -139,7 +151,7 @@ def _reference(values: np.ndarray) -> Reference:
     overlaps = np.fft.irfft(np.abs(np.fft.rfft(weight, 2 * n)) ** 2, 2 * n)[:n]
     variance = covariance[0] * overlaps[0] + 2 * float(covariance[1:] @ overlaps[1:])
     scatter = np.maximum(variance_of_mean(covariance), 0.0)
-    return Reference(float(values.mean()), scatter, dof, abs(slope) / math.sqrt(variance))
+    return Reference(first, float(values.mean()), scatter, dof, abs(slope) / math.sqrt(variance))
 
 
 def _first_steady(series: list[np.ndarray], references: list[Reference], last: int) -> int:
@@ -149,10 +161,10 @@ def _first_steady(series: list[np.ndarray], references: list[Reference], last: i
 
     def is_steady(start: int) -> bool:
         lengths = SHORTEST * 2 ** np.arange(int(np.log2(max(last - start, SHORTEST) / SHORTEST)) + 1)
-        lengths = lengths[start + lengths <= last]
         for total, r, limit in zip(sums, references, limits, strict=True):
-            heads = (total[start + lengths] - total[start]) / lengths
-            scatter = r.variance[np.minimum(lengths, len(r.variance)) - 1] + r.variance[-1]
+            some = lengths[start + lengths <= r.first]
+            heads = (total[start + some] - total[start]) / some
+            scatter = r.variance[np.minimum(some, len(r.variance)) - 1] + r.variance[-1]
             if (heads**2 > limit * scatter).any():
                 return False
         return True

@@ -9,8 +9,8 @@ GAS = '[[species]]\nname = "gas"\ncount = 60\nradius = 0.02\ntemperature = 1\n'
 RUN = "[run]\ncollisions_per_disc = 150\n"
 BOX = "[box]\nsize = [1, 1]\n"
 LIGHT_AND_HEAVY = (
-    '[[species]]\nname = "light"\ncount = 60\nradius = 0.02\ntemperature = 2\n'
-    '[[species]]\nname = "heavy"\ncount = 20\nradius = 0.03\nmass = 50\ntemperature = 0.1\n'
+    '[[species]]\nname = "light"\ncount = 240\nradius = 0.01\ntemperature = 2\n'
+    '[[species]]\nname = "heavy"\ncount = 80\nradius = 0.015\nmass = 50\ntemperature = 0.1\n'
 )
 EXPANSION = (
     '[box]\nsize = [2, 1]\n[[wall]]\nname = "gate"\nfrom = [1, 0]\nto = [1, 1]\nopens_at = 3\n'
