@@ -248,12 +248,16 @@ def _routes(
         inner = (kinetic + window.of(impacts.inner_virial)) / unit
         routes.append(_route(WALLS, window.of(impacts.wall_virial) / unit, inner, ideal, theory.walls))
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
-    return (*routes, Route(PAIRS, z.times(ideal), z))
+    return (*routes, _of(PAIRS, z, ideal))
 
 
 def _route(name: str, flux: np.ndarray, bulk: np.ndarray, ideal: float, theory: Theory | None) -> Route:
     """Pressure by the momentum flux to walls in units of the `ideal` pressure, beside that of the bulk of the gas."""
-    z = mean_of_flux(flux, bulk, theory)
+    return _of(name, mean_of_flux(flux, bulk, theory), ideal)
+
+
+def _of(name: str, z: Estimate, ideal: float) -> Route:
+    """Route with Z, whose theory is not repeated for the pressure."""
     return Route(name, replace(z, theory=None, theory_error=0.0).times(ideal), z)
 
 
