@@ -20,7 +20,7 @@ from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.piston import piston_motion
 from idealgas.run.effects.thermal import temperature_of_walls
-from idealgas.run.energy import energy_of, is_conserved
+from idealgas.run.energy import energy_of
 from idealgas.scene import Scene
 from idealgas.sides import SIDES
 
@@ -65,7 +65,6 @@ class InvariantChecker:
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.known, self.epochs, self.events, self.fastest = 0.0, 0.0, 0, 0, 0.0
         self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston[0], 0.0)[1])
-        self.conserved = is_conserved(effects)
         self.start = energy_of(gas, effects)
         self.lowest, self.scale = self.start.balance, self.start.scale
 
@@ -332,13 +331,12 @@ class InvariantChecker:
         self.scale = max(self.scale, energy.scale)
         weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
         bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
-        assert energy.balance <= self.lowest + bound, "energy gained"
-        if self.conserved:
-            drift = abs(energy.balance - self.start.balance)
-            assert drift <= bound, f"energy drifts by {drift}"
-            self.max_errors.energy = max(self.max_errors.energy, drift / self.scale if self.scale else 0.0)
-        else:
-            self.lowest = min(self.lowest, energy.balance)
+        kept = energy.balance - energy.lost
+        assert kept <= self.lowest + bound, "energy gained"
+        self.lowest = min(self.lowest, kept)
+        drift = abs(energy.balance - self.start.balance)
+        assert drift <= bound, f"energy drifts by {drift}"
+        self.max_errors.energy = max(self.max_errors.energy, drift / self.scale if self.scale else 0.0)
 
     def behind_piston(self, place: np.ndarray, piston: np.ndarray, local_time: float) -> None:
         """The piston is between all discs and its end stop."""

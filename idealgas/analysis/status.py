@@ -14,6 +14,9 @@ from idealgas.log import Log
 ROWS = 2**20
 """Largest number of event rows that are read for the state, and again for the pressure."""
 
+CHECKPOINTS = 256
+"""Number of checkpoints whose sums give the pressure of a log without events."""
+
 BINS, HIGHEST = 20, 4.0
 
 
@@ -79,11 +82,15 @@ def _time_seen(log: Log) -> float:
 
 
 def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
-    """Pressure and Z from the pair collisions since a checkpoint at most ROWS event rows before time `seen`."""
-    if not log.has_events:
-        return None, None
-    first = int(log.checkpoints.rows.searchsorted(log.row_at(seen) - ROWS))
+    """Pressure and Z from the pair collisions since a checkpoint at most ROWS event rows before time `seen`.
+
+    Without events they come from the sums in the samples since one of the last checkpoints, if the log has them.
+    """
     times = log.checkpoints.times
+    if log.has_events:
+        first = int(log.checkpoints.rows.searchsorted(log.row_at(seen) - ROWS))
+    else:
+        first = max(len(times) - CHECKPOINTS, 0)
     start = times[min(first, len(times) - 1)] if len(times) else log.start_time
     try:
         routes = pressure(log, float(start), seen).routes

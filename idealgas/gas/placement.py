@@ -181,26 +181,28 @@ def insert_randomly(grid, position, radius, bounds, ids, rng, patience):
     """
     placed = 0
     refused = 0
-    while placed < len(ids) and refused < patience:
-        i = ids[placed]
+    step = False  # whether a disc in place makes a step, instead of a new one that looks for room
+    while placed < len(ids) and (refused < patience or step):
+        i = ids[int(placed * rng.random())] if step else ids[placed]
         x0, y0, x1, y1 = bounds[i, 0], bounds[i, 1], bounds[i, 2], bounds[i, 3]
-        x = min(x0 + (x1 - x0) * rng.random(), x1)
-        y = min(y0 + (y1 - y0) * rng.random(), y1)
-        if _is_free(grid, position, radius, x, y, radius[i], i):
+        if step:
+            x = position[i, 0] + radius[i] * (rng.random() - 0.5)
+            y = position[i, 1] + radius[i] * (rng.random() - 0.5)
+        else:
+            x = min(x0 + (x1 - x0) * rng.random(), x1)
+            y = min(y0 + (y1 - y0) * rng.random(), y1)
+        inside = not step or (x0 <= x <= x1 and y0 <= y <= y1)
+        if inside and _is_free(grid, position, radius, x, y, radius[i], i):  # once: it is long, and inlined
+            if step:
+                _remove(grid, position, i)
+            else:
+                placed += 1
             position[i, 0], position[i, 1] = x, y
             _insert(grid, position, i)
-            placed += 1
-            continue
-        refused += 1
-        if placed:
-            k = ids[int(placed * rng.random())]
-            x = position[k, 0] + radius[k] * (rng.random() - 0.5)
-            y = position[k, 1] + radius[k] * (rng.random() - 0.5)
-            inside = bounds[k, 0] <= x <= bounds[k, 2] and bounds[k, 1] <= y <= bounds[k, 3]
-            if inside and _is_free(grid, position, radius, x, y, radius[k], k):
-                _remove(grid, position, k)
-                position[k, 0], position[k, 1] = x, y
-                _insert(grid, position, k)
+            step = False
+        else:
+            refused += not step
+            step = not step and placed > 0
     return placed
 
 

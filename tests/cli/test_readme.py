@@ -327,7 +327,7 @@ def test_links_lead_somewhere(document):
     for link in LINK.findall(document.read_text(encoding="utf-8")):
         path, _, heading = link.partition("#")
         if not link.startswith("https://"):
-            target = document.parent / path
+            target = document.parent / path if path else document
             assert target.exists(), link
             if heading:
                 headings = re.findall(r"^#+ (.*)", target.read_text(encoding="utf-8"), re.MULTILINE)

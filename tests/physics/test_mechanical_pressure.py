@@ -83,7 +83,7 @@ def test_the_floor_carries_the_column(run):
 def test_a_piston_is_held_by_the_gas(run):
     """Its mean force is P L, and in a dilute gas all other walls have the same pressure (Pascal)."""
     log = run(
-        "box.size=[40, 10]", species(100, 0.005), "run.until=4000", "piston={ position = 10, mass = 5, pressure = 1 }"
+        "box.size=[40, 10]", species(100, 0.005), "run.until=8000", "piston={ position = 10, mass = 5, pressure = 1 }"
     )
     found = walls(pressure(log))
     assert found["right wall"].theory == 1.0
@@ -94,7 +94,7 @@ def test_a_piston_is_held_by_the_gas(run):
 
 def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run):
     """A plate in an ideal gas: N T/A on each face, with A the area that centres reach; no net force."""
-    log = run("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=500")
+    log = run("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=1000")
     result = pressure(log)
     found = walls(result)
     assert set(found) > {"plate, left", "plate, right"}
@@ -127,7 +127,11 @@ def test_heat_flows_but_forces_balance(run):
 
 
 def test_a_slow_compression_follows_the_adiabat(run):
-    """P(A) of 200 nearly pointlike discs: N T₀ A₀/A² within 4 s.e. in 99 % of 64 bins, and chi² within its 4 s.d."""
+    """P(A) of 200 nearly pointlike discs: N T₀ A₀/A² within 4 s.e. in 95 % of 64 bins, and chi² within its 4 s.d.
+
+    The error of a bin has some five degrees of freedom; Student's t is then beyond 4 in 1 % of all bins, and 5 % are
+    four standard deviations more.
+    """
     log = run("box.size=[20, 10]", species(200, 0.02), "piston={ velocity = -0.0125 }", "run.until=800")
     course = evolution(log).pressure
     assert course.shown == ("right wall",)
@@ -137,7 +141,7 @@ def test_a_slow_compression_follows_the_adiabat(run):
     expected = np.interp(course.area, course.lines.area, course.lines.adiabat)
     off = (p - expected) / error
     assert np.median(error / p) < 0.1
-    assert (np.abs(off) < STANDARD_ERRORS).mean() > 0.99
+    assert (np.abs(off) < STANDARD_ERRORS).mean() > 0.95
     assert (off**2).mean() < 1 + 4 * math.sqrt(2 / len(off))
     isotherm = np.interp(course.area, course.lines.area, course.lines.isotherm)
     assert (((p - isotherm) / error)[-8:] > 4).all()

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idealgas.analysis.core.statistics import equilibration
-from idealgas.analysis.core.window import MOST_BLOCKS, Window, span
+from idealgas.analysis.core.settling import why_never_stationary
+from idealgas.analysis.core.window import MOST_BLOCKS, Window, first_steady, not_steady, span
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 from idealgas.sides import FIRST_SEGMENT, OUTWARD
@@ -18,8 +18,9 @@ class SampledImpacts:
     """Sums over the events in B blocks of time, as those of `Impacts`, for W walls and S species.
 
     kinetic_flow: (B, 3), ∫ Σ m v_a v_b dt for xx, xy and yy, energy·time. collision_flow: (B, 4), Σ Δp_a r_b over pair
-    collisions for xx, xy, yy and yx, energy·time. pair_virial: (B,), its trace. wall_virial, collisions, impulse, hits:
-    as there.
+    collisions for xx, xy, yy and yx, energy·time. pair_virial: (B,), its trace. inner_virial, wall_virial, collisions,
+    impulse, hits: as there. push, drag: (B, F), momentum given to each of F faces, into the wall and along it,
+    mass·length/time. dragged: whether walls take momentum along themselves.
     """
 
     def __init__(self, log: Log, edges: np.ndarray) -> None:
@@ -34,12 +35,36 @@ class SampledImpacts:
             found["pair_collisions"] = _in_blocks(*log.observables["disc_collisions"], edges)
         self.kinetic_flow, self.collision_flow = found["kinetic_flow"], found["collision_flow"]
         self.pair_virial = self.collision_flow[:, 0] + self.collision_flow[:, 2]
+        self.inner_virial = self.collision_flow[:, :3:2][:, [not wrapped for wrapped in log.periodic]].sum(axis=1)
         self.wall_virial = found["wall_virial"]
         self.collisions = found["pair_collisions"].reshape(-1, species, species)
-        push, drag = found["face_push"][..., None], found["face_drag"][..., None]
+        self.push, self.drag = found["face_push"], found["face_drag"]
+        self.dragged = bool(self.drag.any())
         into, along = face_directions(log)
-        self.impulse = _by_wall(push * into + drag * along)
+        self.impulse = _by_wall(self.push[..., None] * into + self.drag[..., None] * along)
         self.hits = _by_wall(found["face_hits"])
+
+
+class SampledWalls:
+    """Momentum given to W walls in B blocks of time, as that of `WallImpulses`, by sums in samples.
+
+    normals, faces, given, hits: as there, but what discs give to the ends of a segment counts for its faces.
+    """
+
+    def __init__(self, log: Log, impacts: SampledImpacts) -> None:
+        """Take a log and the sums over its blocks."""
+        into, along = face_directions(log)
+        sides = np.arange(FIRST_SEGMENT)
+        first = np.concatenate((sides, np.arange(FIRST_SEGMENT, len(into), 2)))
+        self.normals = -into[first]
+        turned = np.column_stack((self.normals[:, 1], -self.normals[:, 0]))
+        way = np.sign((along[first] * turned).sum(axis=1))
+        self.faces = np.zeros((len(impacts.edges) - 1, len(first), 2, 2))
+        for c, given in enumerate((impacts.push, impacts.drag)):
+            self.faces[:, :, 0, c] = given[:, first]
+            self.faces[:, FIRST_SEGMENT:, 1, c] = given[:, FIRST_SEGMENT + 1 :: 2]
+        self.faces[..., 1] *= way[:, None]
+        self.given, self.hits = impacts.impulse, impacts.hits
 
 
 def face_directions(log: Log) -> tuple[np.ndarray, np.ndarray]:
@@ -65,6 +90,8 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     """
     if strange := log.scene.lacking(*needs):
         raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+    if start is None and (why := why_never_stationary(log)):
+        raise not_steady(log, why)
     if SUMS[0] not in log.observables:
         raise UserError(f"{log.path}: has no events (made with log.events = false), and no sums (log.pressure = true)")
     first, last = span(log, start, end)
@@ -78,7 +105,7 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     if start is not None:
         return Window(edges, 0, detected=False), impacts
     series = (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
-    return Window(edges, equilibration(*series), detected=True), impacts
+    return Window(edges, first_steady(log, series), detected=True), impacts
 
 
 def _in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Estimates with error bars from correlated series.
 
-A series is an observable averaged over consecutive blocks of time. pymbar measures how many of its samples are
-independent (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007)) and where equilibrium begins (Chodera, ibid. 12, 1799
-(2016)).
+A series is an observable averaged over consecutive blocks of time. The error of its mean comes from autoregressive
+models (`autoregression`). pymbar measures how far apart decorrelated samples are (Chodera et al., J. Chem. Theory
+Comput. 3, 26 (2007)).
 """
 
 import logging
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from idealgas.analysis.core.autoregression import error_of_mean
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
@@ -22,9 +23,6 @@ from pymbar import timeseries  # noqa: E402
 
 ENOUGH_REPLICATES = 20
 """Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
-
-LONG_BLOCKS = 32
-"""Number of long blocks from which the errors of anticorrelated series are computed."""
 
 TOLERANCE = 4.0
 """Largest allowed deviation between measurement and theory in a check, in errors of both together."""
@@ -35,9 +33,10 @@ class Estimate:
     """A measured number with its error bar.
 
     value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
-    there are too few samples. independent_samples: number of independent samples behind the error; inf for a quantity
-    that is known exactly. theory: value expected by theory, in the same unit; None where no theory applies.
-    theory_error: standard deviation of the error of that value, in the same unit.
+    there are too few samples. independent_samples: number of independent samples that would know the standard error as
+    well, one more than its degrees of freedom; inf for a quantity that is known exactly. theory: value expected by
+    theory, in the same unit; None where no theory applies. theory_error: standard deviation of the error of that value,
+    in the same unit.
     """
 
     value: float
@@ -144,18 +143,6 @@ def ensemble_inefficiency(series: np.ndarray) -> float:
     return float(timeseries.statistical_inefficiency_multiple(list(series.T)))
 
 
-def equilibration(*series: np.ndarray) -> int:
-    """Index from which all series are stationary: the start that leaves the largest number of independent samples.
-
-    Source: Chodera, J. Chem. Theory Comput. 12, 1799 (2016).
-    """
-    start = 0
-    for values in series:
-        if len(values) >= 16 and np.ptp(values) > 1e-12 * np.abs(values).max():
-            start = max(start, int(timeseries.detect_equilibration(values, nskip=max(1, len(values) // 64))[0]))
-    return start
-
-
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Estimate of function(means of the series), with its error by linear propagation of their joint fluctuations.
 
@@ -173,7 +160,7 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory |
                 slope = (function(*(means + shift)) - function(*(means - shift))) / (2 * step)
                 influence += slope * (column - means[k])
         value = float(function(*means))
-    error, samples = _error_of_mean(influence)
+    error, samples = error_of_mean(influence)
     return Estimate(value, error, samples, *_said(theory))
 
 
@@ -182,27 +169,28 @@ def _said(theory: Theory | float | None) -> tuple[float | None, float]:
     return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
-def _error_of_mean(series: np.ndarray) -> tuple[float, float]:
-    """Standard error of the mean of a series, and its number of independent samples.
-
-    pymbar never gives an inefficiency below 1, but the momentum that walls receive is anticorrelated by sound waves in
-    the box. Therefore the error comes from longer blocks where these give a clearly smaller error than chance would:
-    Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
-    """
-    if len(series) < 2:
-        return math.nan, float(len(series))
-    samples = len(series) / inefficiency(series)
-    error = float(series.std(ddof=1) / math.sqrt(samples))
-    if len(series) >= 2 * LONG_BLOCKS:
-        longer, fewer = _error_of_mean(block_averages(series, LONG_BLOCKS))
-        if longer < (1 - 2.5 / math.sqrt(2 * LONG_BLOCKS)) * error:
-            return longer, fewer
-    return error, samples
-
-
 def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Estimate of the mean of one correlated series."""
     return estimate(lambda a: a, series, theory=theory)
+
+
+def mean_of_flux(flux: np.ndarray, bulk: np.ndarray, theory: Theory | float | None = None) -> Estimate:
+    """Estimate of the mean of a flux through a boundary, such as the force on a wall.
+
+    What flows through the boundary of a gas has come through its bulk, or its store has changed: the two series differ
+    by the rate at which a bounded quantity of the gas changes, such as its momentum. This rate fluctuates much, to and
+    fro with the sound in the box for as long as that lasts, and nearly cancels in the mean. So the error is that of the
+    bulk and that of the change of the store between two instants, which is twice its variance.
+
+    flux, bulk: (n,), both series.
+    """
+    error, samples = error_of_mean(bulk)
+    store = np.append(0.0, np.cumsum(flux - bulk))
+    change = 2 * float(store.var()) / len(flux) ** 2
+    whole = error**2 + change
+    if error > 0:
+        samples = 1 + (samples - 1) * (whole / error**2) ** 2  # Welch-Satterthwaite
+    return Estimate(float(flux.mean()), math.sqrt(whole), samples, *_said(theory))
 
 
 def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None) -> Estimate:

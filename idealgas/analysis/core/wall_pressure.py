@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.moving_wall import moving_wall
+from idealgas.analysis.core.samples import SampledWalls
 from idealgas.analysis.core.stream import Tally
 from idealgas.analysis.core.wall_impulses import WallImpulses
 from idealgas.log import Log
@@ -45,17 +46,20 @@ class WallGauge:
     impulses: momentum given to walls. moving: depth of the room below a piston; None without one.
     """
 
-    def __init__(self, log: Log) -> None:
-        """Take the walls of a log."""
+    impulses: WallImpulses | SampledWalls
+
+    def __init__(self, log: Log, sampled: SampledWalls | None = None) -> None:
+        """Take the walls of a log; sampled: what they were given, if it does not come from events."""
         self._log = log
-        self.impulses = WallImpulses(log)
+        self.impulses = sampled or WallImpulses(log)
         self.moving = moving_wall(log)
 
     @property
     def tallies(self) -> list[Tally]:
         """Tallies to fill from the events of the log."""
         moving: list[Tally] = [self.moving] if self.moving else []
-        return [self.impulses, *moving]
+        impulses: list[Tally] = [self.impulses] if isinstance(self.impulses, WallImpulses) else []
+        return [*impulses, *moving]
 
     def area(self, edges: np.ndarray) -> np.ndarray:
         """Area (B,) that the gas has in each block of time: the box, or the room that a piston leaves, length²."""

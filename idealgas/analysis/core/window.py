@@ -1,18 +1,22 @@
 """Window of time that an analysis uses: given by the user, or from detected equilibrium on."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.statistics import equilibration
+from idealgas.analysis.core.settling import why_never_stationary
+from idealgas.analysis.core.steadiness import Course, steady_from
 from idealgas.analysis.core.stream import Tally, stream
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
 DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
+
+_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float], int]] = WeakKeyDictionary()
+"""Block from which on the gas of a log is steady, by the number of event rows and the end of the window."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +70,7 @@ def measure(
 ) -> Window:
     """Read the events of a log between two times into tallies, and return the window of time to use.
 
-    Without `start` the window begins at detected equilibrium: where the kurtosis of the velocities, the energy of each
-    species and the numbers of events per block are stationary.
+    Without `start` the window begins where the gas is steady (`steadiness`), at one time for all analyses of a log.
 
     Args:
         log: the log to read.
@@ -78,19 +81,46 @@ def measure(
         needs: properties of a scene (`idealgas.scene.properties`) that the analysis relies on.
 
     Raises:
-        UserError: if the window is empty or not covered by the log, if the log has no events, or if an effect of the
-            scene takes one of the needed properties away.
+        UserError: if the window is empty or not covered by the log, if the log has no events, if an effect of the scene
+            takes one of the needed properties away, or if the gas does not become steady.
     """
     if strange := log.scene.lacking(*needs):
         raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+    if start is None and (why := why_never_stationary(log)):
+        raise not_steady(log, why)
     edges = block_edges(log, start, end)
     if start is not None:
-        stream(log, edges, tallies, progress)
+        if tallies:
+            stream(log, edges, tallies, progress)
         return Window(edges, 0, detected=False)
-    present = [tally for tally in tallies if isinstance(tally, Moments)]
-    moments = present[0] if present else Moments(log.gravity)
-    stream(log, edges, tallies if present else [*tallies, moments], progress)
-    return Window(edges, equilibration(*stationary_series(moments)), detected=True)
+    known = _KNOWN.setdefault(log, {})
+    key = (len(log), edges[-1])
+    if key not in known:
+        course = Course(log, tallies)
+        stream(log, edges, course.tallies, progress)
+        known[key] = first_steady(log, course.series())
+    elif tallies:
+        stream(log, edges, tallies, progress)
+    return Window(edges, known[key], detected=True)
+
+
+def first_steady(log: Log, series: Iterable[np.ndarray]) -> int:
+    """Index from which on all series (n,) of a log are steady.
+
+    Raises:
+        UserError: if they are not steady by the end.
+    """
+    first = steady_from(series)
+    if first is None:
+        raise not_steady(log, "it still changes at the end of the log")
+    return first
+
+
+def not_steady(log: Log, why: str) -> NotApplicableError:
+    """Error for a gas that does not come to equilibrium, with what applies to it instead; why: part of a sentence."""
+    return NotApplicableError(
+        f"{log.path}: no equilibrium, as {why}: `idealgas evolution` follows it in time; --from T sets a start by hand"
+    )
 
 
 def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
@@ -111,16 +141,6 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
     number = len(log.discs)
     most = min(max(DISC_BLOCKS // number, MANY_BLOCKS), MOST_BLOCKS)
     return np.linspace(first, last, min(max(rows // number, FEWEST_BLOCKS), most) + 1)
-
-
-def stationary_series(moments: Moments) -> list[np.ndarray]:
-    """Series of block averages that are stationary in equilibrium and change before it."""
-    energy = moments.flights[:, :, 1] + moments.flights[:, :, 2]
-    fourth = moments.flights[:, :, 3].sum(axis=1)
-    shares = [
-        share for share in energy.T if np.ptp(share) > 1e-9 * share.max()
-    ]  # without series that change only by rounding
-    return [fourth, *shares, *moments.events.T.astype(float)]
 
 
 def span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.statistics import equilibration
+from idealgas.analysis.core.window import first_steady, measure
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
@@ -44,6 +44,8 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
     last = log.end_time if end is None else end
     if len(time) < 2 or not np.diff(time).max() > 0:
         raise UserError(f"{log.path}: no samples of the energy")
+    if start is None and log.has_events:
+        start = measure(log, [], None, end).start
     first_time = log.start_time if start is None else start
     if every := scene.log.snapshot_every:
         at = np.flatnonzero(np.isin(time, every * np.arange(last // every + 1)) & (time >= first_time) & (time <= last))
@@ -57,10 +59,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         position, velocity = series["piston_position"], series["piston_velocity"]
         pull = scene.piston.acceleration(scene.box.size, scene.gravity)
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
-    moving = [
-        series for series in (kinetic, energy) if np.ptp(series) > 1e-9 * np.abs(series).max()
-    ]  # without series that change only by rounding
-    first = 0 if start is not None else equilibration(*moving)
+    first = 0 if start is not None else first_steady(log, (kinetic, energy))
     if len(at) - first < FEWEST:
         raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
     tail = slice(first, None)

@@ -13,7 +13,7 @@ import numpy as np
 
 from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, estimate, mean
+from idealgas.analysis.core.statistics import Estimate, estimate, inefficiency, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs
@@ -114,12 +114,12 @@ def heat_capacity(
         (bath,) = properties.temperatures
         temperature, thermometer = Estimate(bath, 0.0, math.inf), "the walls' own"
         route = "Var(E)/T²"
-        found = _bath_fluctuations(series, n, bath, capacity, PISTON in kinds)
+        found, fluctuating = _bath_fluctuations(series, n, bath, capacity, PISTON in kinds), series.energy
     else:
         temperature, thermometer = mean(2 * series.kinetic / dof), "kinetic energy"
         route = "fluctuations of the kinetic energy"
-        found = _kinetic_fluctuations(series, n, dof, capacity, PISTON in kinds)
-    lacking = too_few(route, found)
+        found, fluctuating = _kinetic_fluctuations(series, n, dof, capacity, PISTON in kinds), series.kinetic
+    lacking = too_few(route, found, len(fluctuating) / inefficiency(fluctuating))
     routes, measured = {} if lacking else {route: found}, (_mean_energy(series.energy / n), temperature, thermometer)
     return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, capacity, excess, premises=lacking)
 
@@ -131,9 +131,9 @@ def _mean_energy(energy: np.ndarray) -> Estimate:
     return mean(energy)
 
 
-def too_few(route: str, found: Estimate) -> tuple[str, ...]:
-    """Why fluctuations give no heat capacity, as one sentence; empty if there are enough samples."""
-    samples, error = found.independent_samples, found.standard_error
+def too_few(route: str, found: Estimate, samples: float) -> tuple[str, ...]:
+    """Why fluctuations give no heat capacity, as one sentence; empty if there are enough independent samples."""
+    error = found.standard_error
     if samples >= LEAST_SAMPLES and 0 < error <= LARGEST_ERROR * found.value:
         return ()
     if samples < LEAST_SAMPLES:

@@ -18,7 +18,7 @@ from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, Velocit
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, ratio
+from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, mean_of_flux, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.histogram.laws import premise
@@ -164,17 +164,18 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     if moments:
         measured = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean()) / (2 * len(gas))
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
+    confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = known.laws(quantity, discs, s, measured)
         spacing = int(np.ceil(ensemble_inefficiency(snapshots)))
-        expected = [law.mean for law in possible.values()] if measured is None else []
+        expected = list(possible.values())[-1].mean if possible and measured is None else None
         found.append(
             _distribution(
                 name,
                 np.linspace(low[s], high[s], BINS + 1),
                 window.of(tally.counts)[:, s],
-                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], expected[-1] if expected else None),
+                _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], expected, confined),
                 snapshots[::spacing].ravel(),
                 spacing * window.width,
                 possible,
@@ -183,10 +184,15 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     return window, found, known.why_not
 
 
-def _mean(series: np.ndarray, scale: float, expected: float | None) -> Estimate:
-    """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error."""
+def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:
+    """Mean of a series of values of magnitude `scale`; a conserved quantity only varies by rounding, without error.
+
+    confined: whether the quantity is a velocity between walls, whose integral over time is a place in the box.
+    """
     if np.ptp(series) < 1e-12 * scale:
         return Estimate(float(series.mean()), 0.0, 1.0, expected)
+    if confined:
+        return mean_of_flux(series, np.zeros(len(series)), expected)
     return mean(series, theory=expected)
 
 

@@ -11,6 +11,7 @@ from typing import IO
 
 import numpy as np
 
+from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.window import span
 from idealgas.analysis.movie.gif import GifWriter
 from idealgas.analysis.movie.painter import CROSSING, Painter
@@ -86,7 +87,8 @@ def animate(
     if not log.has_events:
         raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
     first, latest = span(log, start, end)
-    typical = max(np.sqrt((s.velocity**2).sum(axis=1).mean()) for s in log.frames(np.linspace(first, latest, 5)))
+    some = [state.velocity for state in log.frames(np.linspace(first, latest, 5))]
+    typical, thermal = (max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, drift(log)))
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
     gif = path.suffix.lower() == ".gif"
@@ -99,7 +101,7 @@ def animate(
         )
     width, height = (pixels // 2 * 2 for pixels in size)
     piston = piston_track(log, first, last)
-    painter = Painter(log.scene, log.discs, piston, (width, height), float(typical), by_species)
+    painter = Painter(log.scene, log.discs, piston, (width, height), float(thermal), by_species)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with _replacing(path) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
         for k, state in enumerate(log.frames(times)):

@@ -20,6 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.movie.piston_track import PistonTrack
+from idealgas.analysis.theory.conserved import common_motion
 from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.gas.state import Gas
 from idealgas.log import LogState
@@ -93,8 +94,10 @@ class Painter:
         """Prepare what is the same in all frames.
 
         size: width and height of a frame, pixels. rms_speed: approximate largest root-mean-square speed of the film,
-        length/time. by_species: whether the colour of a disc shows its species instead of its speed.
+        length/time. by_species: whether the colour of a disc shows its species instead of its speed. Speeds are those
+        relative to a conserved motion of the whole gas.
         """
+        self._flow = common_motion(scene, gas)
         self._inside, self._gas, self._piston, self._by_species = walls_inside(scene), gas, piston, by_species
         self._periodic = np.array(scene.properties.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
@@ -115,12 +118,12 @@ class Painter:
 
     def paint(self, state: LogState) -> np.ndarray:
         """Paint a state: frame (height, width, 4) uint8, valid until the next call."""
-        speed = np.hypot(*state.velocity.T)
-        energy = float(self._gas.mass @ speed**2) / 2
+        speed = np.hypot(*(state.velocity - self._flow).T)
+        energy = float(self._gas.mass @ (state.velocity**2).sum(axis=1)) / 2
         self._place(state.position, speed)
         density = np.histogram(speed, self._edges)[0] / (len(speed) * self._edges[1])
         self._bars.set_data(density)
-        self._curve.set_ydata(self._law(energy / len(speed)))
+        self._curve.set_ydata(self._law(float(self._gas.mass @ speed**2) / 2 / len(speed)))
         self._title.set_text(f"t = {state.time:<10.4g}  kinetic energy {energy:.6g}")
         self._canvas.restore_region(self._still)
         for artist in (self._discs, *self._walls_at(state.time), self._bars, self._curve, self._title):
@@ -153,7 +156,7 @@ class Painter:
         self._speeds = np.linspace(0, top, 200)
         highest = 1.8 * self._law((top / FASTEST) ** 2 * float(self._gas.mass.mean()) / 2).max()
         axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)")
-        axes.set_xlabel("speed (length/time)")
+        axes.set_xlabel("speed (length/time)" if not self._flow.any() else "speed relative to the gas (length/time)")
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.set_axisbelow(True)
         self._bars = StepPatch(np.zeros(BINS), self._edges, color=COLOURS[5], alpha=0.6, fill=True, animated=True)

@@ -8,7 +8,7 @@ discs one radius inside the box.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,12 +25,14 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import SampledImpacts, sampled
+from idealgas.analysis.core.samples import SampledImpacts, SampledWalls, sampled
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean
+from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.pressure.bulk import momentum_in_bulk
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
@@ -141,6 +143,7 @@ def pressure(
     theory = theory_of(log, discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory)
     impacts: Impacts | SampledImpacts
+    moments: Moments | None = None
     if log.has_events:
         moments, events = Moments(), Impacts(len(log.walls), log.periodic)
         window, impacts = measure(log, [moments, events], start, end, progress, needs), events
@@ -153,7 +156,7 @@ def pressure(
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, impacts),
+        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, moments, impacts),
         theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
@@ -165,12 +168,20 @@ def _without_theory(
     log: Log, start: float | None, end: float | None, progress: Callable[[int, int], None] | None
 ) -> Pressure:
     """Mechanical pressure of a gas without an equation of state; one that never settles is averaged from its start."""
-    gauge, moments, gas = WallGauge(log), Moments(log.gravity), log.discs
+    gas = log.discs
     if start is None and why_never_stationary(log):
         start = log.start_time
-    window = measure(log, [moments, *gauge.tallies], start, end, progress)
+    if log.has_events:
+        gauge, moments = WallGauge(log), Moments(log.gravity)
+        window = measure(log, [moments, *gauge.tallies], start, end, progress)
+        energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
+    elif moving_wall(log):
+        raise NotApplicableError(f"{log.path}: has no events, and samples do not follow a piston closely enough")
+    else:
+        window, impacts = sampled(log, start, end, ())
+        gauge = WallGauge(log, SampledWalls(log, impacts))
+        energies = window.of(impacts.kinetic_flow)[:, :3:2].sum(axis=1)
     found = mechanical(log, gauge, window)
-    energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
     causes = log.scene.lacking("uniform", "conserves_energy")
     return Pressure(
         window=window,
@@ -214,23 +225,40 @@ def _routes(
     periodic: tuple[bool, bool],
     theory: BoxTheory,
     window: Window,
+    moments: Moments | None,
     impacts: Impacts | SampledImpacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
+    flow, bulk = momentum_in_bulk(gas, window, moments, impacts)
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall = {k: theory.sides[axis_of(k)] for k in sides}
-    series: dict[str, tuple[np.ndarray, Theory | None]] = {
-        f"{SIDES[k]} wall": (push[k] / length[k], at_wall[k]) for k in sides
-    }
+    routes = [
+        _route(f"{SIDES[k]} wall", push[k] / length[k] / ideal, bulk[k] / length[k] / ideal, ideal, at_wall[k])
+        for k in sides
+    ]
     if sides:
         perimeter = sum(length[k] for k in sides)
         at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
-        series["all walls"] = (push[sides].sum(axis=0) / perimeter, at_walls)
-        series[WALLS] = (window.of(impacts.wall_virial) / (len(sides) / 2 * gas.area), theory.walls)
-    series[PAIRS] = (ideal + window.of(impacts.pair_virial) / (2 * gas.area), theory.pairs)
-    return tuple(Route(name, mean(p), mean(p / ideal, theory=expected)) for name, (p, expected) in series.items())
+        pushed, carried = (series[sides].sum(axis=0) / perimeter / ideal for series in (push, bulk))
+        routes.append(_route("all walls", pushed, carried, ideal, at_walls))
+        unit = len(sides) / 2 * gas.area * ideal
+        kinetic = sum(flow[:, axis] for axis in {axis_of(k) for k in sides})
+        inner = (kinetic + window.of(impacts.inner_virial)) / unit
+        routes.append(_route(WALLS, window.of(impacts.wall_virial) / unit, inner, ideal, theory.walls))
+    z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
+    return (*routes, _of(PAIRS, z, ideal))
+
+
+def _route(name: str, flux: np.ndarray, bulk: np.ndarray, ideal: float, theory: Theory | None) -> Route:
+    """Pressure by the momentum flux to walls in units of the `ideal` pressure, beside that of the bulk of the gas."""
+    return _of(name, mean_of_flux(flux, bulk, theory), ideal)
+
+
+def _of(name: str, z: Estimate, ideal: float) -> Route:
+    """Route with Z, whose theory is not repeated for the pressure."""
+    return Route(name, replace(z, theory=None, theory_error=0.0).times(ideal), z)
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:

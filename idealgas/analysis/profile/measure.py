@@ -9,8 +9,8 @@ import numpy as np
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, equilibration, mean, ratio
-from idealgas.analysis.core.window import Window, block_edges
+from idealgas.analysis.core.statistics import Estimate, mean, ratio
+from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.errors import UserError
@@ -99,18 +99,16 @@ def profile(
         raise UserError(f"{log.path}: discs of this method have no positions")
     axis = natural_axis(log) if along is None else "xy".index(along)
     reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
-    times, edges = block_edges(log, start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
-    sums, course = _collect(log, axis, times, edges, progress)
-    first = 0 if start is not None else equilibration(*course)
-    window = Window(times, first, detected=start is None)
+    window, edges = measure(log, [], start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
+    sums = _collect(log, axis, window.edges[window.first :], edges, progress)
     expected = expected_profile(log, axis, edges, window.start)
     names = composition(log.discs).name
     strip = float(edges[1] - edges[0]) * log.box[1 - axis]
     spinning = log.inertia is not None
-    species = tuple(_of_species(name, sums[first:, s], strip, expected, s, spinning) for s, name in enumerate(names))
+    species = tuple(_of_species(name, sums[:, s], strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
     premises = (*_unknown_strips(species), *_not_dilute(log, species, expected))
-    return Profile(window, axis, edges, len(times) - first, law, species, _heat(log, window), premises=premises)
+    return Profile(window, axis, edges, len(sums), law, species, _heat(log, window), premises=premises)
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
@@ -136,13 +134,11 @@ def _not_dilute(log: Log, species: Sequence[SpeciesProfile], expected: Expected 
 
 def _collect(
     log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Callable[[int, int], None] | None
-) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, and series to detect equilibrium."""
+) -> np.ndarray:
+    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, at F times."""
     gas, frame = log.discs, drift(log)
     shape = (len(gas.species_names), len(edges) - 1)
     sums = np.zeros((len(times), *shape, 3))
-    middle = np.empty((len(times), shape[0]))
-    number = np.bincount(gas.species)
     inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
     for k, state in enumerate(log.frames(times)):
         place = state.position[:, axis]
@@ -152,11 +148,9 @@ def _collect(
         values = (np.ones(len(gas)), gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2, inertia * spin**2)
         for c, value in enumerate(values):
             sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
-        middle[k] = np.bincount(gas.species, place, shape[0]) / number
         if progress is not None:
             progress(k + 1, len(times))
-    kinetic = sums[..., 1].sum(axis=(1, 2))
-    return sums, tuple(series for series in (kinetic, *middle.T) if np.ptp(series) > 1e-9 * np.abs(series).max())
+    return sums
 
 
 def _of_species(

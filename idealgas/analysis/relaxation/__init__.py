@@ -6,8 +6,8 @@ ANALYSIS = Analysis(
     __name__,
     help="""Measure the relaxation of the velocities to Maxwell-Boltzmann's distribution.
 
-    The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error comes from groups
-    of discs. Several logs are drawn in one picture.
+    The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error is that
+    of the fluctuations of a gas of so many discs. Several logs are drawn in one picture.
     """,
     options=(
         Option(

@@ -73,6 +73,12 @@ class Gas {
     }
   }
 
+  // Speed relative to a conserved motion of the whole gas.
+  speed(i) {
+    const [x, y] = this.head.flow;
+    return Math.hypot(this.vx[i] - x, this.vy[i] - y);
+  }
+
   // Where the piston is: touched by the discs that hit it, on a parabola from hit to hit.
   pistonPlace() {
     const { axis, outward, pull, limits, ends } = this.head.piston;

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib import colormaps
 
 from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.core.window import span
 from idealgas.analysis.movie.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST, PALEST
@@ -56,7 +57,8 @@ def player(log: Log, start: float | None = None) -> Player | None:
         (cut,) = log.chunks(("time",), rows + MOST_ROWS, rows + MOST_ROWS + 1)
         last = float(np.nextafter(cut.time[0], first))
     state = log.state_at(first)
-    typical = float(np.sqrt((state.velocity**2).sum(axis=1).mean())) or 1.0
+    flow = drift(log)
+    typical, thermal = (float(np.sqrt(((state.velocity - u) ** 2).sum(axis=1).mean())) or 1.0 for u in (0.0, flow))
     species = composition(gas)
     shades = colormaps[COLOUR_MAP]
     head = {
@@ -68,8 +70,9 @@ def player(log: Log, start: float | None = None) -> Player | None:
         "end": last,
         "ticks": TICKS,
         "speed": max(gas.box) / CROSSING / typical,
-        "fastest": FASTEST * typical,
-        "brightest": BRIGHTEST * typical,
+        "flow": flow.tolist(),
+        "fastest": FASTEST * thermal,
+        "brightest": BRIGHTEST * thermal,
         "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
         "dark": _hex(shades(np.linspace(0.3, 1, SHADES))),
         "bars": COLOURS[5],

@@ -40,7 +40,7 @@ class DiscView {
     const theme = themed(), shades = theme.dark ? head.dark : head.light;
     const scale = (width - 2 * inset) / boxX;
     for (let i = 0; i < gas.number; i++) {
-      const speed = Math.hypot(gas.vx[i], gas.vy[i]) / head.brightest;
+      const speed = gas.speed(i) / head.brightest;
       this.shade[i] = Math.min(Math.floor(speed * shades.length), shades.length - 1);
     }
     pen.fillStyle = theme.panel;
@@ -114,7 +114,7 @@ class SpeedView {
   temperature() {
     const { gas } = this;
     let energy = 0;
-    for (let i = 0; i < gas.number; i++) energy += gas.mass[i] * (gas.vx[i] ** 2 + gas.vy[i] ** 2) / 2;
+    for (let i = 0; i < gas.number; i++) energy += gas.mass[i] * gas.speed(i) ** 2 / 2;
     return energy / gas.number;
   }
 
@@ -139,7 +139,7 @@ class SpeedView {
     const toX = v => left + v / head.fastest * w, toY = f => above + h * (1 - Math.min(f / this.top, 1));
     counts.fill(0);
     for (let i = 0; i < gas.number; i++) {
-      const bin = Math.floor(Math.hypot(gas.vx[i], gas.vy[i]) / head.fastest * counts.length);
+      const bin = Math.floor(gas.speed(i) / head.fastest * counts.length);
       if (bin < counts.length) counts[bin]++;
     }
     pen.fillStyle = theme.panel;
@@ -169,7 +169,8 @@ class SpeedView {
     pen.textAlign = "center";
     const step = roundStep(head.fastest * 60 / w);
     for (let v = 0; v <= head.fastest; v += step) pen.fillText(+v.toPrecision(6), toX(v), above + h + strip + 14);
-    pen.fillText("speed (length/time)", left + w / 2, above + h + strip + 32);
+    const moves = head.flow.some(v => v !== 0);
+    pen.fillText(`speed ${moves ? "relative to the gas " : ""}(length/time)`, left + w / 2, above + h + strip + 32);
     pen.textAlign = "right";
     const rise = roundStep(this.top / 4);
     for (let f = 0; f <= this.top; f += rise) pen.fillText(+f.toPrecision(3), left - 6, toY(f) + 4);

@@ -10,8 +10,10 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.settling import why_never_stationary, why_no_equilibrium
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
+from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
 
@@ -77,6 +79,11 @@ def temperature(
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if there are no events in the window.
     """
+    if start is None and len(log.scene.properties.temperatures) > 1 and not why_never_stationary(log):
+        raise NotApplicableError(
+            f"{log.path}: no equilibrium, as {why_no_equilibrium(log)}: "
+            "`idealgas profile` shows T in strips; --from T sets a start by hand"
+        )
     moments = Moments(log.gravity)
     window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)

@@ -44,21 +44,22 @@ def _take_byte(items, byte, start, stop, out, place):
 def shuffle(items, noise, blocks, planes):
     """Gather the bytes of unsigned items (n,) in planes: the first bytes of all items, the second bytes, and so on.
 
-    The first `noise` planes go into stored blocks, one behind the other in `blocks`; the rest into `planes`
-    (itemsize - noise, n).
+    The first `noise` planes go into stored blocks, one behind the other in `blocks`; the rest into `planes`, one behind
+    the other too.
     """
     n = len(items)
     for first in range(0, n, _TILE):
         last = min(first + _TILE, n)
-        for byte in range(noise):
+        for byte in range(items.itemsize):
+            stored = byte < noise
             start = first
             while start < last:
-                place = byte * n + start
-                stop = min(last, start + _STORED_BLOCK - place % _STORED_BLOCK)
-                _take_byte(items, byte, start, stop, blocks, place + (place // _STORED_BLOCK + 1) * _BLOCK_HEADER)
+                stop, place = last, (byte if stored else byte - noise) * n + start
+                if stored:
+                    stop = min(last, start + _STORED_BLOCK - place % _STORED_BLOCK)
+                    place += (place // _STORED_BLOCK + 1) * _BLOCK_HEADER
+                _take_byte(items, byte, start, stop, blocks if stored else planes, place)
                 start = stop
-        for byte in range(noise, items.itemsize):
-            _take_byte(items, byte, first, last, planes[byte - noise], first)
 
 
 @inline
@@ -115,11 +116,11 @@ class Encoder:
         words, width, blocks = items.view(f"u{items.itemsize}"), items.itemsize, self._bytes[2:]
         noise = width if len(items) >= _SAMPLE else 0
         if noise:
-            sample = self._planes[: width * _SAMPLE].reshape(width, _SAMPLE)
+            sample = self._planes[: width * _SAMPLE]
             shuffle(words[:_SAMPLE], 0, blocks, sample)
-            while noise and len(isal_zlib.compress(sample[noise - 1], 0)) < _SAMPLE:
+            while noise and len(isal_zlib.compress(sample.reshape(width, -1)[noise - 1], 0)) < _SAMPLE:
                 noise -= 1
-        planes = self._planes[: (width - noise) * len(items)].reshape(-1, len(items))
+        planes = self._planes[: (width - noise) * len(items)]
         shuffle(words, noise, blocks, planes)
         return noise, planes
 

@@ -8,6 +8,8 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.status import status
+from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
@@ -166,8 +168,46 @@ def test_the_same_pressure_without_events(tmp_path):
 
 @pytest.mark.long
 def test_the_same_pressure_without_events_in_a_long_run(tmp_path):
-    found = compared(tmp_path, "run.events=10_000_000")
+    """Ten million collisions."""
+    found = compared(tmp_path, "run.events=", "run.collisions_per_disc=333_334")
     assert found.check().agrees
+
+
+PARTED = (
+    GAS
+    + "rotation = {roughness = 0.4, wall_roughness = 0.2}\ngravity.acceleration = [0.1, -0.3]\n"
+    + 'box.bottom = { thermal = 1.5 }\nwall = [{name = "middle", from = [8, 0], to = [8, 12]}]\n'
+)
+"""A rough gas under gravity on both sides of a wall without ends that discs could touch."""
+
+
+def test_the_same_mechanical_pressure_without_events(tmp_path):
+    paths = tmp_path / "events.h5", tmp_path / "samples.h5"
+    for path, events in zip(paths, ("true", "false"), strict=True):
+        simulate(parse_scene(PARTED, overrides=[f"log.events={events}"]), path)
+    with open_log(paths[0]) as a, open_log(paths[1]) as b:
+        time = b.observables["energy"][0]
+        one, other = (pressure(log, time[10], time[-3]) for log in (a, b))
+    assert one.mechanical
+    assert other.mechanical
+    assert other.temperature == pytest.approx(one.temperature, rel=0.02)  # with the energy at events, not in between
+    walls = list(zip(other.mechanical.walls, one.mechanical.walls, strict=True))
+    assert [found.name for found, _ in walls] == [expected.name for _, expected in walls]
+    assert len(walls) == 6
+    for found, expected in walls:
+        assert found.pressure.value == pytest.approx(expected.pressure.value, rel=1e-11)
+        assert found.stress
+        assert expected.stress
+        assert found.stress.value == pytest.approx(expected.stress.value, rel=1e-9)
+    for push, awaited in zip(other.mechanical.forces, one.mechanical.forces, strict=True):
+        assert (push.name, push.x.theory, push.y.theory) == (awaited.name, awaited.x.theory, awaited.y.theory)
+        assert push.y.value == pytest.approx(awaited.y.value, rel=1e-9)
+
+
+def test_samples_do_not_follow_a_piston(tmp_path):
+    run("everything", tmp_path / "run.h5", "log.events=false", "run.events=3000")
+    with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="do not follow a piston"):
+        pressure(log)
 
 
 def test_sums_that_were_not_asked_for(tmp_path):
@@ -176,6 +216,27 @@ def test_sums_that_were_not_asked_for(tmp_path):
     with open_log(path) as log:
         assert not {*SUMS, "face_hits"} & log.observables.keys()
         assert not [name for name in log.checkpoints[0].arrays if "flow" in name or "face" in name]
+        with pytest.raises(UserError, match=r"no events .* and no sums \(log.pressure = true\)"):
+            pressure(log)
+        assert status(log).compressibility is None
+
+
+def test_pressure_of_few_and_of_enough_samples(tmp_path):
+    """Too few are refused; a run that goes on shows the pressure of the last ones, its analysis that of all."""
+    path = tmp_path / "run.h5"
+    overrides = ("log.events=false", "log.snapshot_every=", "run.events=400_000")
+    simulate(parse_scene(GAS, overrides=overrides), path)
+    with open_log(path) as log:
+        found = pressure(log)
+        assert found.window.detected
+        assert found.check().agrees
+        z = status(log).compressibility
+        assert abs(z.value - found.routes[-1].compressibility.value) < 5 * z.standard_error
+        time = log.observables["energy"][0]
+        few = rf"only 16 samples between t = 0 and {time[15]:g}, one for each epoch or snapshot \(allowed >= 17\)"
+        with pytest.raises(UserError, match=few):
+            pressure(log, 0.0, time[15])
+        assert len(pressure(log, 0.0, time[16]).window.edges) == 17
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,20 @@ def test_interval_of_a_ratio_covers_the_truth():
     assert 180 <= hits <= 198
 
 
+@pytest.mark.parametrize("length", [100, 1000])
+def test_flux_has_the_error_of_the_bulk_and_of_its_store(length):
+    """A store that swings for longer than the series lasts, driven by nothing."""
+    rng = np.random.default_rng(13)
+    deviations = []
+    for _ in range(300):
+        bulk = rng.normal(size=length)
+        store = 8 * np.sin(0.4 * np.arange(length + 1) + rng.uniform(0, 7)) + rng.normal(size=length + 1)
+        found = statistics.mean_of_flux(bulk + np.diff(store), bulk, 0.0)
+        deviations.append(found.deviation)
+    rms = np.sqrt(np.mean(np.square(deviations)))
+    assert abs(rms - 1) < 4 / np.sqrt(2 * 300)  # the scatter of an rms of normal deviates; four of it
+
+
 def test_common_fluctuations_cancel_in_a_ratio():
     a = autoregressive(np.random.default_rng(3), 500, 0.5)[:, 0]
     result = statistics.ratio(3 * a, a)
@@ -59,17 +73,9 @@ def test_inefficiency_of_a_known_process(memory, expected):
     assert many == pytest.approx(expected, rel=error(40_000))
 
 
-def test_equilibration_finds_the_end_of_a_transient():
-    rng = np.random.default_rng(1)
-    for _ in range(20):
-        series = rng.normal(size=400) * 0.1 + 3 * np.exp(-np.arange(400) / 10.0)
-        assert 20 <= statistics.equilibration(series) <= 150
-
-
 def test_constant_and_short_series():
     constant = statistics.mean(np.full(50, 2.5), theory=2.5)
     assert (constant.value, constant.standard_error, constant.deviation) == (2.5, 0.0, None)
-    assert statistics.equilibration(np.full(50, 2.5)) == 0
     assert np.isnan(statistics.mean(np.array([1.0])).standard_error)
 
 

@@ -10,6 +10,7 @@ from idealgas.analysis.core.flights import Moments, VelocityHistogram
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.stream import stream
+from idealgas.analysis.core.strips import Strips
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
@@ -164,6 +165,51 @@ def test_virials_of_pairs_and_walls_balance(log, edges):
     energy = log.discs.kinetic_energy * (edges[-1] - edges[0])
     balance = 2 * energy + tally.pair_virial.sum() - tally.wall_virial.sum()
     assert balance == pytest.approx(last - first, abs=1e-9 * energy)
+
+
+def test_force_on_a_side_comes_from_the_bulk(log, edges):
+    """d/dt Σ p w = ±F + flights and collisions, w the nearness to a side: over any block both are the same number."""
+    moments, impacts = Moments(), Impacts()
+    stream(log, edges, [moments, impacts])
+    gas, species = log.discs, log.discs.species
+    for side in range(4):
+        axis, sign = side // 2, 2 * (side % 2) - 1
+        reach = log.box[axis] - 2 * gas.radius
+        momentum = []
+        for state in log.frames(edges):
+            near = (state.position[:, axis] - gas.radius) / reach
+            momentum.append((gas.mass * state.velocity[:, axis] * (near if sign > 0 else 1 - near)).sum())
+        _, first = np.unique(species, return_index=True)
+        bulk = (moments.flights[:, :, 1 + axis] / reach[first]).sum(axis=1) + impacts.passed_on[:, side]
+        force = sign * impacts.impulse[:, side, axis]
+        assert force == pytest.approx(bulk - sign * np.diff(momentum), abs=1e-10)
+
+
+def test_virials_of_bulk_and_walls_balance_in_every_block(log, edges):
+    moments, impacts = Moments(), Impacts()
+    stream(log, edges, [moments, impacts])
+    middle, mass = np.array(log.box) / 2, log.discs.mass[:, None]
+    virial = [(mass * (state.position - middle) * state.velocity).sum() for state in log.frames(edges)]
+    kinetic = moments.flights[:, :, 1:3].sum(axis=(1, 2))
+    assert impacts.wall_virial == pytest.approx(kinetic + impacts.inner_virial - np.diff(virial), abs=1e-9)
+    assert impacts.inner_virial == pytest.approx(impacts.pair_virial, rel=1e-9, abs=1e-12)
+
+
+def test_strips(log, edges):
+    """A flight, or its part in a block, is where its middle is."""
+    tally = Strips(3)
+    stream(log, edges, [tally])
+    occupied = np.zeros_like(tally.occupied)
+    cuts = np.unique(np.concatenate(([row[0] for row in rows_of(log, edges)], edges)))
+    for start, end in pairwise(cuts):
+        block, state = block_of(edges, (start + end) / 2), log.state_at((start + end) / 2)
+        strip = (state.position / np.array(log.box) * 3).astype(int)
+        for axis in range(2):
+            np.add.at(occupied[block], (log.discs.species, axis, strip[:, axis]), end - start)
+    width = np.diff(edges)[:, None, None]
+    assert tally.occupied.sum(axis=3) / width == pytest.approx(np.broadcast_to([[9.0], [5.0]], (len(width), 2, 2)))
+    off = np.abs(tally.occupied - occupied).sum() / occupied.sum()
+    assert off < 0.1  # flights of a strip's length on average a sixth of the box
 
 
 @pytest.mark.parametrize("path", [True, False], ids=["path", "time"])

@@ -209,3 +209,23 @@ def test_an_old_film_survives_a_failure(path, tmp_path, monkeypatch):
         animate(log, tmp_path / "film.gif", end=2.0, size=(240, 240))
     assert caught.value.exit_code == 1
     assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("film.gif", b"old")]
+
+
+def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
+    """The picture of the speeds is that of the same gas at rest as a whole."""
+
+    def speeds(flow):
+        sides = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+        velocities = [[flow + v, 0.0] for v in (1, -1)]
+        discs = "".join(
+            f"[[disc]]\nposition = [{2 + 6 * k}, 5]\nvelocity = {velocity}\nradius = 0.5\n"
+            for k, velocity in enumerate(velocities)
+        )
+        made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
+        frame = Painter(made, make_gas(made), None, SIZE, 1.0, False).paint(
+            STATE._replace(velocity=np.array(velocities))
+        )
+        x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).speeds)
+        return frame[SIZE[1] - y - height + 4 : SIZE[1] - y - 4, x + 4 : x + width - 4].copy()
+
+    assert np.array_equal(speeds(10.0), speeds(0.0))

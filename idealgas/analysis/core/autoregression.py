@@ -1,0 +1,186 @@
+"""Error of the mean of a correlated series, from autoregressive models of it.
+
+A model of order p predicts a sample from the p samples before it, x_t = Σ a_k x_{t-k} + noise of variance s. Its
+spectrum at frequency 0, s/(1 - Σ a_k)², is the variance of the mean times the number of samples. Unlike a sum of
+autocorrelations that is cut off, or batches of a fixed length, it does justice to correlation and anticorrelation of
+any length that the series can show.
+
+Coefficients: Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral Analysis for Physical
+Applications, 1993, chapter 9). Orders are not chosen but averaged with the weights of Akaike's corrected criterion
+(Burnham & Anderson, Model Selection and Multimodel Inference, 2002), so that the error knows how little a short series
+tells of its order.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import njit
+
+LEAST_WEIGHT = 1e-3
+"""Orders of a smaller weight, relative to the largest one, are left out."""
+
+BLOCKS = 128
+"""Number of blocks that a long series is divided into, or up to twice as many."""
+
+NOISE = 1e-12
+"""Share of the variance below which what a model leaves unexplained is rounding."""
+
+
+class Model(NamedTuple):
+    """Autoregressive model of order p of a series of n samples.
+
+    coefficients: (p,), the a_k. noise: mean square of the noise that the model leaves of the series. covariance:
+    (p + 1,), autocovariances of the process at lags 0 to p, with the variance of the noise by n - p degrees of freedom.
+    variance_of_log: variance of the estimate of the logarithm of the spectrum at frequency 0.
+    """
+
+    coefficients: np.ndarray
+    noise: float
+    covariance: np.ndarray
+    variance_of_log: float
+
+    def covariances(self, length: int) -> np.ndarray:
+        """Autocovariances (length,) of the process from lag 0 on."""
+        known = self.covariance[:length]
+        found = np.append(known, np.zeros(length - len(known)))
+        _go_on(self.coefficients, found)
+        return found
+
+
+class Spread(NamedTuple):
+    """Standard error of the mean of a series, and number of independent samples that know an error as well as this."""
+
+    error: float
+    samples: float
+
+
+@dataclass(frozen=True)
+class Process:
+    """Stationary process behind a series: models with their weights. length: of the series."""
+
+    models: tuple[Model, ...]
+    weights: np.ndarray
+    length: int
+
+    def covariances(self, length: int) -> np.ndarray:
+        """Autocovariances (length,) from lag 0 on, averaged over the models."""
+        return np.asarray(sum(w * m.covariances(length) for m, w in zip(self.models, self.weights, strict=True)))
+
+    def spread(self) -> Spread:
+        """Standard error of the mean of the series.
+
+        If the spectrum at frequency 0 is known as well as from ν independent samples, the mean, which was subtracted,
+        has taken one of them: Bessel's correction has ν in place of n.
+        """
+        found = [variance_of_mean(model.covariances(self.length))[-1] for model in self.models]
+        logs = np.log(found)
+        middle = float(self.weights @ logs)
+        doubt = np.array([model.variance_of_log for model in self.models]) + (logs - middle) ** 2
+        samples = max(2 / float(self.weights @ doubt), 2.0)
+        return Spread(math.sqrt(math.exp(middle) * samples / (samples - 1)), samples)
+
+
+def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
+    """Variance (n,) of the mean of 1 to n successive samples from autocovariances (n,) at lags 0 to n - 1."""
+    n = np.arange(1, len(covariance) + 1)
+    return np.asarray((2 * np.cumsum(np.cumsum(covariance)) - n * covariance[0]) / n**2)
+
+
+def error_of_mean(series: np.ndarray) -> Spread:
+    """Standard error of the mean of a stationary series (n,); not a number for fewer than two samples.
+
+    A long series is averaged in blocks first: what matters are the slow fluctuations, which may be too small to be seen
+    beside the fast ones.
+    """
+    n = len(series)
+    if n < 2:
+        return Spread(math.nan, float(n))
+    if is_constant(series):
+        return Spread(0.0, float(n))
+    block = max(n // BLOCKS, 1)
+    coarse = series[n % block :].reshape(-1, block).mean(axis=1)
+    return process_of(coarse - coarse.mean()).spread()
+
+
+def is_constant(series: np.ndarray) -> bool:
+    """Whether a series changes by rounding only."""
+    return not np.ptp(series) > NOISE * np.abs(series).max()
+
+
+def process_of(series: np.ndarray) -> Process:
+    """Process behind a series (n,) of mean 0 that is not constant, n ≥ 2."""
+    models, n = tuple(_models(series)), len(series)
+    orders, noise = np.arange(len(models)), np.array([model.noise for model in models])
+    criterion = n * np.log(noise) + 2 * (orders + 1) * n / np.maximum(n - orders - 2, 0.5)
+    weight = np.exp((criterion.min() - criterion) / 2)
+    kept = np.flatnonzero(weight >= LEAST_WEIGHT)
+    return Process(tuple(models[p] for p in kept), weight[kept] / weight[kept].sum(), n)
+
+
+def _models(series: np.ndarray) -> list[Model]:
+    """Models of a series (n,) of mean 0, of orders 0 to n/8 or, in a long series, 20 log₁₀ n."""
+    n = len(series)
+    most = min(n // 8, int(20 * math.log10(n)))
+    coefficients = np.zeros((most + 1, most))
+    noise, covariance, doubt = np.zeros((3, most + 1))
+    found = _fit(np.array(series, float), np.array(series, float), coefficients, noise, covariance, doubt)
+    return [
+        Model(coefficients[p, :p], noise[p], covariance[: p + 1] * n / (n - p), 2 / n + 4 * doubt[p] / n)
+        for p in range(found)
+    ]
+
+
+@njit
+def _fit(forward, backward, coefficients, noise, covariance, doubt):
+    """Fill arrays by order from a series given twice, (n,), which is lost: numbers of orders that have a model.
+
+    coefficients: (P + 1, P), of order p in row p. noise, covariance: (P + 1,). doubt: (P + 1,), mean square error of
+    Σ a_k in units of (1 - Σ a_k)²/n.
+    """
+    n = forward.shape[0]
+    left = 0.0
+    for t in range(n):
+        left += forward[t] * forward[t] / n
+    least = NOISE * left
+    covariance[0] = left
+    rest = 1.0  # 1 - Σ a_k
+    certainty = 0.0  # of Σ a_k: the sum over lower orders of (1 - Σ a_k)²/noise
+    for p in range(noise.shape[0]):
+        if p > 0:
+            both = power = 0.0
+            for t in range(p, n):
+                both += forward[t] * backward[t - 1]
+                power += forward[t] * forward[t] + backward[t - 1] * backward[t - 1]
+            reflection = 2 * both / power if power > 0 else 0.0
+            certainty += rest * rest / left
+            covariance[p] = reflection * left
+            rest = 1.0 - reflection
+            for k in range(p - 1):
+                covariance[p] += coefficients[p - 1, k] * covariance[p - 1 - k]
+                coefficients[p, k] = coefficients[p - 1, k] - reflection * coefficients[p - 1, p - 2 - k]
+                rest -= coefficients[p, k]
+            coefficients[p, p - 1] = reflection
+            left *= 1 - reflection * reflection
+            for t in range(n - 1, p - 1, -1):
+                ahead, behind = forward[t], backward[t - 1]
+                forward[t] = ahead - reflection * behind
+                backward[t] = behind - reflection * ahead
+        if left <= least:
+            return p
+        noise[p] = left
+        doubt[p] = left * certainty / (rest * rest)
+    return noise.shape[0]
+
+
+@njit
+def _go_on(coefficients, covariance):
+    """Fill in the autocovariances (n,) of a model of order p, of which the first p + 1 are known."""
+    p = coefficients.shape[0]
+    for k in range(p + 1, covariance.shape[0]):
+        total = 0.0
+        for j in range(p):
+            total += coefficients[j] * covariance[k - 1 - j]
+        covariance[k] = total

@@ -1,0 +1,71 @@
+import numpy as np
+import pytest
+from scipy import stats
+
+from idealgas.analysis.core import autoregression
+
+
+def series_of(coefficients, length, rng):
+    """A stationary autoregressive series with noise of variance 1."""
+    p, burn = len(coefficients), 400
+    found = rng.normal(size=length + burn)
+    for k in range(p, len(found)):
+        found[k] += np.dot(coefficients, found[k - p : k][::-1])
+    return found[burn:]
+
+
+PROCESSES = {
+    "independent": ([], 1.0),
+    "correlated": ([0.8], 25.0),
+    "anticorrelated": ([-0.6], 1 / 2.56),
+    "sound": ([1.7, -0.9], 25.0),
+    "to and fro": ([0.2, -0.9], 1 / 2.89),
+}
+"""Coefficients, and spectrum at frequency 0: the variance of the mean of n samples is that over n."""
+
+
+@pytest.mark.parametrize("name", PROCESSES)
+def test_error_of_long_series(name):
+    coefficients, spectrum = PROCESSES[name]
+    rng = np.random.default_rng(1)
+    found = [autoregression.error_of_mean(series_of(coefficients, 4000, rng)) for _ in range(10)]
+    squares = np.array([spread.error**2 * 4000 for spread in found])
+    own = np.mean([2 / spread.samples for spread in found]) ** 0.5
+    assert abs(squares.mean() / spectrum - 1) < 4 * own / np.sqrt(10)  # four standard errors
+    assert own < 0.4
+
+
+@pytest.mark.parametrize("length", [40, 150])
+@pytest.mark.parametrize("name", PROCESSES)
+def test_intervals_of_short_series_hold(name, length):
+    rng = np.random.default_rng(2)
+    held = 0
+    for _ in range(300):
+        series = series_of(PROCESSES[name][0], length, rng)
+        error, samples = autoregression.error_of_mean(series)
+        held += abs(series.mean()) < stats.t.ppf(0.975, samples - 1) * error
+    assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
+
+
+def test_variance_of_mean_sums_all_covariances():
+    covariance = np.array([2.0, 0.7, -0.3, 0.1])
+    found = autoregression.variance_of_mean(covariance)
+    for n in range(1, 5):
+        matrix = covariance[np.abs(np.subtract.outer(np.arange(n), np.arange(n)))]
+        assert found[n - 1] == pytest.approx(matrix.mean())
+
+
+def test_covariances_follow_the_model():
+    process = autoregression.process_of(series_of([0.5, 0.3], 500, np.random.default_rng(3)))
+    model = process.models[-1]
+    found, p = model.covariances(50), len(model.coefficients)
+    for k in range(p + 1, 50):
+        assert found[k] == pytest.approx(model.coefficients @ found[k - p : k][::-1])
+    assert model.covariances(2) == pytest.approx(found[:2])
+
+
+def test_short_and_constant_series():
+    assert np.isnan(autoregression.error_of_mean(np.array([1.0])).error)
+    assert autoregression.error_of_mean(np.full(9, 3.7)) == (0.0, 9)
+    two = autoregression.error_of_mean(np.array([1.0, 3.0]))
+    assert two == (pytest.approx(1.0), pytest.approx(2.0))

@@ -1,0 +1,89 @@
+"""One log has one start of equilibrium, whatever analysis asks; some gases have none."""
+
+import pytest
+
+from idealgas import analyse, open_log, parse_scene, simulate
+from idealgas.errors import NotApplicableError
+
+GAS = '[[species]]\nname = "gas"\ncount = 60\nradius = 0.02\ntemperature = 1\n'
+RUN = "[run]\ncollisions_per_disc = 150\n"
+BOX = "[box]\nsize = [1, 1]\n"
+LIGHT_AND_HEAVY = (
+    '[[species]]\nname = "light"\ncount = 240\nradius = 0.01\ntemperature = 2\n'
+    '[[species]]\nname = "heavy"\ncount = 80\nradius = 0.015\nmass = 50\ntemperature = 0.1\n'
+)
+EXPANSION = (
+    '[box]\nsize = [2, 1]\n[[wall]]\nname = "gate"\nfrom = [1, 0]\nto = [1, 1]\nopens_at = 3\n'
+    + GAS
+    + "region = [0, 0, 1, 1]\n[run]\nuntil = 60\n"
+)
+NEVER = {
+    "cooling": BOX + GAS + "[restitution]\nnormal = 0.9\n" + RUN,
+    "driven": '[box]\nsize = [2, 1]\n[piston]\nside = "right"\nvelocity = -0.05\n' + GAS + "[run]\nuntil = 10\n",
+}
+
+
+@pytest.fixture
+def log_of(tmp_path):
+    """Log of a scene, given as text."""
+    logs = []
+
+    def run(text):
+        simulate(parse_scene(text), tmp_path / "run.h5", force=True)
+        logs.append(open_log(tmp_path / "run.h5"))
+        return logs[-1]
+
+    yield run
+    for log in logs:
+        log.close()
+
+
+def starts(log, *names):
+    return {analyse(log, name).as_dict()["window"]["start"] for name in names}
+
+
+def test_one_start_for_all_analyses(log_of):
+    log = log_of(BOX + LIGHT_AND_HEAVY + RUN)
+    (start,) = starts(log, "temperature", "pressure", "transport", "profile", "histogram")
+    assert 0 < start < 0.2 * log.end_time  # a heavy disc takes some 25 collisions to become as hot as the light ones
+    (again,) = starts(open_log(log.path), "profile")
+    assert again == start
+
+
+def test_start_is_after_a_gate_has_opened(log_of):
+    log = log_of(EXPANSION)
+    (start,) = starts(log, "profile", "temperature")
+    assert 3 < start < 20
+
+
+def test_steady_gas_is_kept(log_of):
+    assert starts(log_of(BOX + GAS + RUN), "pressure", "profile") == {0.0}
+
+
+@pytest.mark.parametrize("name", NEVER)
+def test_gas_that_is_never_in_equilibrium(name, log_of):
+    log = log_of(NEVER[name])
+    for analysis in ("temperature", "profile"):
+        with pytest.raises(NotApplicableError, match=r"no equilibrium, as .*evolution.*--from") as refused:
+            analyse(log, analysis)
+        assert "\n" not in str(refused.value)
+        assert analyse(log, analysis, start=1.0).as_dict()["window"]["start"] == 1.0
+
+
+def test_gas_that_still_changes_at_the_end(log_of):
+    """Discs go through a slit one by one, from the left into the void."""
+    slit = (
+        '[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n[[species]]\nname = "gas"\n'
+        "count = 400\nradius = 0.005\ntemperature = 1\nregion = [0, 0, 1, 1]\n"
+    )
+    log = log_of("[box]\nsize = [2, 1]\n" + slit + "[run]\nuntil = 15\n")
+    with pytest.raises(NotApplicableError, match="still changes at the end"):
+        analyse(log, "temperature")
+
+
+def test_temperature_between_walls_of_two_temperatures(log_of):
+    log = log_of("[box]\nsize = [1, 1]\nleft = { thermal = 2 }\nright = { thermal = 1 }\n" + GAS + RUN)
+    with pytest.raises(NotApplicableError, match=r"walls have 2 temperatures.*profile"):
+        analyse(log, "temperature")
+    assert analyse(log, "temperature", start=0.5).as_dict()["species"]
+    assert analyse(log, "profile").as_dict()["window"]["equilibration_detected"]
