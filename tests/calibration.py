@@ -137,7 +137,9 @@ GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "te
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 THERMAL = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
 SHORT_AND_LONG = ("collisions_per_disc = 400", "collisions_per_disc = 4000")
-SNAPSHOTS = "snapshot_every = 0.4\n"
+OFTEN, SELDOM = "snapshot_every = 0.1\n", "snapshot_every = 0.25\n"
+"""Samples of the energy: some in the time for which it fluctuates."""
+
 SLOW = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
 """Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 20 times it."""
 
@@ -145,9 +147,9 @@ CASES = {
     "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),
     "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
     "periodic box": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, periodic),
-    "heat bath": Case(GAS.format(sides=THERMAL), SLOW, bath, SNAPSHOTS),
+    "heat bath": Case(GAS.format(sides=THERMAL), SLOW, bath, SELDOM),
     "rough discs": Case(
-        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, SNAPSHOTS
+        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN
     ),
     "mixture": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'light'\ncount = 30\nradius = 0.03\ntemperature = 1.3\n"
