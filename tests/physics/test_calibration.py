@@ -15,8 +15,13 @@ LEAST_KEPT = 0.9
 """Share of a steady log that at least half of all logs keep."""
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("title", CASES)
+QUICK = {"closed box", "mixture", "two chambers", "equal speeds"}
+"""Gases that take less than half a minute; the others take up to two minutes each, and are run by hand."""
+
+
+@pytest.mark.parametrize(
+    "title", [pytest.param(title, marks=pytest.mark.slow if title in QUICK else pytest.mark.long) for title in CASES]
+)
 def test_errors_in_200_short_runs(title, tmp_path):
     """The rms of 200 deviations scatters by 1/√400 = 5 %, coverage by √(0.05·0.95/200) = 1.5 %; four of both."""
     collected = collect(tmp_path, 200, only=f"{title}, {CASES[title].runs[0]}")
