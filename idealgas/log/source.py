@@ -12,6 +12,7 @@ import numpy as np
 
 from idealgas.log import schema
 from idealgas.log.errors import LogError
+from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.commit import Commit, table_of
 from idealgas.log.hdf5.superblock import Unmarked, is_locked, is_marked
 from idealgas.log.hdf5.table import StoredColumn, open_dataset
@@ -30,6 +31,7 @@ class Source:
         self.path = path
         self._file: Any = None
         self.chunk = lru_cache(_CACHED_CHUNKS)(self._chunk)
+        keep_freed_memory()
         try:
             self._read(self._open)
         except LogError:

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.window import MOST_BLOCKS, Window, first_steady, not_steady, span
-from idealgas.errors import NotApplicableError, UserError
+from idealgas.analysis.core.window import MOST_BLOCKS, Window, first_steady, must_apply, span
+from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.sides import FIRST_SEGMENT, OUTWARD
 
@@ -88,10 +87,7 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
         UserError: if the log has neither events nor such sums, if it does not cover the window, if there are too few
             samples in it, or if an effect of the scene takes one of the needed properties away.
     """
-    if strange := log.scene.lacking(*needs):
-        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
-    if start is None and (why := why_never_stationary(log)):
-        raise not_steady(log, why)
+    must_apply(log, start, needs)
     if SUMS[0] not in log.observables:
         raise UserError(f"{log.path}: has no events (made with log.events = false), and no sums (log.pressure = true)")
     first, last = span(log, start, end)

@@ -207,12 +207,6 @@ def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) ->
     return float(max((steps[1:] - law).max(), (law - steps[:-1]).max()))
 
 
-def block_averages(series: np.ndarray, blocks: int) -> np.ndarray:
-    """Averages of a series over `blocks` blocks of equal length; samples that remain at the end are left out."""
-    length = len(series) // blocks
-    return np.asarray(series)[: length * blocks].reshape(blocks, length).mean(axis=1)
-
-
 def bootstrap(
     replicates: np.ndarray,
     function: Callable[[np.ndarray], float] = np.mean,

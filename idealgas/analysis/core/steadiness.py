@@ -84,7 +84,7 @@ class Course:
         yield from self.moments.events.T.astype(float)
         if self.impacts is not None and self.strips is not None:
             yield self.impacts.pair_virial
-            yield from self.strips.occupied.reshape(len(self.strips.occupied), -1).T
+            yield from self.strips.discs.reshape(len(self.strips.discs), -1).T
 
 
 class Reference(NamedTuple):

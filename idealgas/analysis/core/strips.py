@@ -1,11 +1,10 @@
-"""How discs are spread over the box: time that they spend in strips along x and along y."""
+"""How discs are spread over the box: their numbers in strips along x and along y."""
 
 from typing import Any
 
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.analysis.core.stream import block_at, block_back
 from idealgas.gas.state import Gas
 from idealgas.physics.motion import position_after
 
@@ -13,10 +12,9 @@ T, X, Y, VX, VY = range(5)  # columns of a track: time of the disc's last event,
 
 
 class Strips:
-    """Time that discs of each species spend in strips of the box, in each block of time.
+    """Numbers of discs of each species in strips of the box at the end of each block of time.
 
-    occupied: (B, S, 2, strips), time for B blocks, S species, x and y. A flight, or its part in a block, counts whole
-    for the strip in which it has its middle: this shows where the gas is, not how dense exactly.
+    discs: (B, S, 2, strips), for B blocks, S species, x and y.
     """
 
     columns = ("time", "disc", "position", "velocity")
@@ -30,7 +28,7 @@ class Strips:
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
-        self.occupied = np.zeros((len(edges) - 1, len(gas.species_names), 2, self.strips))
+        self.discs = np.zeros((len(edges) - 1, len(gas.species_names), 2, self.strips))
         self._per_length = self.strips / np.array(gas.box)
         self._species = gas.species
         self._tracks = np.column_stack((np.full(len(gas), edges[0]), gas.position, gas.velocity))
@@ -38,54 +36,48 @@ class Strips:
 
     def add(self, rows: Any) -> None:
         """Add the next event rows of the log."""
-        self._block = _add_strips(
+        self._block = _follow(
             rows.time, rows.disc, rows.position, rows.velocity, self.gravity, self.periodic, self._per_length,
-            self._species, self._tracks, self.edges, self._block, self.occupied,
+            self._species, self._tracks, self.edges, self._block, self.discs,
         )  # fmt: skip
 
     def finish(self) -> None:
-        """Add the last part of the flight of every disc, up to time edges[-1]."""
-        _finish_strips(
-            self.gravity, self.periodic, self._per_length, self._species, self._tracks, self.edges, self.occupied
-        )
+        """Count the discs at the ends of the blocks that are left, up to time edges[-1]."""
+        _count_to(
+            np.inf, self.gravity, self.periodic, self._per_length, self._species, self._tracks, self.edges,
+            self._block, self.discs,
+        )  # fmt: skip
 
 
 @inline
-def _spend_in_strips(track, gravity, periodic, per_length, species, until, edges, block, occupied):
-    strips = occupied.shape[3]
-    since = track[T]
-    k = block_back(edges, block, since)
-    while True:
-        stop = until if k == block else edges[k + 1]
-        middle = 0.5 * (since + stop) - track[T]
+def _count(gravity, periodic, per_length, species, tracks, now, discs):
+    strips = discs.shape[2]
+    for i in range(tracks.shape[0]):
+        track = tracks[i]
         for axis in range(2):
-            place = position_after(track[X + axis], track[VX + axis], gravity[axis], middle) * per_length[axis]
+            place = position_after(track[X + axis], track[VX + axis], gravity[axis], now - track[T]) * per_length[axis]
             if periodic[axis]:
                 place -= strips * np.floor(place / strips)
-            occupied[k, species, axis, np.int64(min(max(place, 0.0), strips - 1))] += stop - since
-        if k == block:
-            break
-        since = stop
-        k += 1
+            discs[species[i], axis, np.int64(min(max(place, 0.0), strips - 1))] += 1.0
 
 
 @njit
-def _add_strips(time, disc, position, velocity, gravity, periodic, per_length, species, tracks, edges, block, occupied):
+def _count_to(time, gravity, periodic, per_length, species, tracks, edges, block, discs):
+    """Count the discs at the end of each block, from a given one on, that ends before a time; return the next block."""
+    while block < discs.shape[0] and time > edges[block + 1]:
+        _count(gravity, periodic, per_length, species, tracks, edges[block + 1], discs[block])
+        block += 1
+    return block
+
+
+@njit
+def _follow(time, disc, position, velocity, gravity, periodic, per_length, species, tracks, edges, block, discs):
     for row in range(time.shape[0]):
-        i = np.uintp(disc[row])
-        block = block_at(edges, block, time[row])
-        track = tracks[i]
-        _spend_in_strips(track, gravity, periodic, per_length, species[i], time[row], edges, block, occupied)
+        if time[row] > edges[block + 1]:
+            block = _count_to(time[row], gravity, periodic, per_length, species, tracks, edges, block, discs)
+        track = tracks[np.uintp(disc[row])]
         track[T] = time[row]
         for axis in range(2):
             track[X + axis] = position[row, axis]
             track[VX + axis] = velocity[row, axis]
     return block
-
-
-@njit
-def _finish_strips(gravity, periodic, per_length, species, tracks, edges, occupied):
-    for i in range(tracks.shape[0]):
-        _spend_in_strips(
-            tracks[i], gravity, periodic, per_length, species[i], edges[-1], edges, edges.shape[0] - 2, occupied
-        )

