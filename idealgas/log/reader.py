@@ -33,7 +33,7 @@ import json
 import os
 from collections import namedtuple
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from pathlib import Path
 from time import sleep
 from typing import TYPE_CHECKING, Any, Literal, Self, overload
@@ -66,6 +66,12 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
                 raise
             sleep(PAUSE)  # a run that goes on with the log may have cut off what its record named just before
     return Log(Source(Path(path)))
+
+
+@cache
+def _rows(columns: tuple[str, ...]) -> Any:
+    """Type of blocks of rows with these columns; to make it takes longer than to read a short block."""
+    return namedtuple("Rows", columns)
 
 
 class Log(LogHeader):
@@ -195,7 +201,7 @@ class Log(LogHeader):
         columns: names of those to read; each block is then a named tuple of arrays, (n,) or (n, 2). Without them it is
         an `EventBatch`, which says what the columns are. Raises LogError if the log does not have a column.
         """
-        block: Any = partial(EventBatch, position=None) if columns is None else namedtuple("Rows", columns)
+        block: Any = partial(EventBatch, position=None) if columns is None else _rows(tuple(columns))
         names = self.columns if columns is None else columns
         if self.has_events and (missing := [name for name in names if name not in self.columns]):
             raise LogError(f"{self.path}: its events have no {' and no '.join(missing)} ({self.scene.run.method})")

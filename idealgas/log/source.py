@@ -55,7 +55,7 @@ class Source:
 
     def names(self, table: str) -> list[str]:
         """Names of a table's columns."""
-        return [path.partition("/")[2] for path in self.commit.tails if table_of(path) == table]
+        return self._names.get(table, [])
 
     def chunk_rows(self, path: str) -> int:
         """Rows of a chunk of a column."""
@@ -110,6 +110,9 @@ class Source:
         if marked and size < self.commit.file_size:
             raise LogError(f"{self.path}: damaged: truncated, {size} bytes of {self.commit.file_size}")
         self._columns = {path: StoredColumn(open_dataset(self._file, path)) for path in self.commit.tails}
+        self._names: dict[str, list[str]] = {}
+        for path in self.commit.tails:
+            self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
 
     def _chunk(self, path: str, start: int) -> np.ndarray:
         column, rows, tail = self._columns[path], self.rows(table_of(path)), self.commit.tails[path]
