@@ -136,12 +136,12 @@ FIFTY = f"count = 50\nradius = {math.sqrt(0.2 / (50 * math.pi))!r}\n"
 GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "temperature = 1\n"
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 THERMAL = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
-SHORT_AND_LONG = ("collisions_per_disc = 400", "collisions_per_disc = 4000")
-OFTEN, SELDOM = "snapshot_every = 0.1\n", "snapshot_every = 0.25\n"
+SHORT_AND_LONG = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
+OFTEN, SELDOM = "snapshot_every = 0.2\n", "snapshot_every = 0.5\n"
 """Samples of the energy: some in the time for which it fluctuates."""
 
-SLOW = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
-"""Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 20 times it."""
+SLOW = ("collisions_per_disc = 3000", "collisions_per_disc = 6000")
+"""Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 60 times it."""
 
 CASES = {
     "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),

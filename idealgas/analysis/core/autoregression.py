@@ -22,7 +22,7 @@ from idealgas._jit import njit
 LEAST_WEIGHT = 1e-3
 """Orders of a smaller weight, relative to the largest one, are left out."""
 
-BLOCKS = 128
+BLOCKS = 256
 """Number of blocks that a long series is divided into, or up to twice as many."""
 
 NOISE = 1e-12

@@ -77,7 +77,8 @@ def temperature(
     momentum takes away in a finite gas.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
-    events are read. Raises UserError if there are no events in the window.
+    events are read. Raises UserError if there are no events in the window, and NotApplicableError if no start is given
+    and the gas has no equilibrium.
     """
     if start is None and len(log.scene.properties.temperatures) > 1 and not why_never_stationary(log):
         raise NotApplicableError(
