@@ -14,10 +14,10 @@ from idealgas.log import open_log
 
 pytestmark = pytest.mark.slow
 
-IN_CI, BY_HAND = 4, 40
+IN_CI, BY_HAND = 3, 40
 SCENES = {
     "fast": ("quickstart", "run.events=2000000", "log.snapshot_every=5"),
-    "slow": ("mixing", "run.method=brute_force", "run.events=15000", 'log.compression="none"'),
+    "slow": ("mixing", "run.method=brute_force", "run.events=10000", 'log.compression="none"'),
 }
 
 
