@@ -16,8 +16,8 @@ pytestmark = pytest.mark.slow
 
 IN_CI, BY_HAND = 3, 40
 SCENES = {
-    "fast": ("quickstart", "run.events=2000000", "log.snapshot_every=5"),
-    "slow": ("mixing", "run.method=brute_force", "run.events=10000", 'log.compression="none"'),
+    "fast": ("quickstart", "run.events=1000000", "log.snapshot_every=5"),
+    "slow": ("mixing", "run.method=brute_force", "run.events=6000", 'log.compression="none"'),
 }
 
 
