@@ -29,9 +29,9 @@ FARTHEST = 1000
 """Largest exponent k of a unit, in size: 2^k and 2^-k are floats."""
 
 U = np.uintp
-HALF = np.int64(32)
-LOW_HALF = np.int64((1 << 32) - 1)
+TOGETHER = 64  # terms that wait for each other
 SMALL = 2.0**62  # terms that are one word
+FITS = SMALL / TOGETHER  # terms of which TOGETHER are one word
 LARGEST = 2.0**100
 FULL = 1 << 61  # of the upper word of a sum, so that it can be stored
 
@@ -72,20 +72,16 @@ def add_large(total, units):
 
 @njit
 def add_all(total, terms):
-    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n < 2^30."""
-    low = np.int64(0)
-    high = np.int64(0)
+    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most TOGETHER."""
+    whole = np.int64(0)
     large = 0
     for i in range(terms.shape[0]):
         units = terms[U(i)] * total.per_unit
-        fits = abs(units) < SMALL
-        one = np.int64(round(units if fits else 0.0))
-        low += one & LOW_HALF
-        high += one >> HALF
+        fits = abs(units) < FITS
+        whole += np.int64(round(units if fits else 0.0))
         large += not fits
     if large == 0:
-        add_words(total, high >> HALF, np.uint64(high) << np.uint64(HALF))
-        add_words(total, np.int64(0), np.uint64(low))
+        add_words(total, whole >> np.int64(63), np.uint64(whole))
     else:
         for i in range(terms.shape[0]):
             add(total, terms[U(i)])
@@ -105,24 +101,24 @@ def make_sums(typical: Sequence[float]) -> np.recarray:
 
 def whole(sums: np.ndarray) -> list[int]:
     """The sums in their units."""
-    return [(int(one["high"]) << 64) + int(one["low"]) for one in sums]
+    return [number for number, _ in _numbers(sums)]
 
 
 def values(sums: np.ndarray) -> np.ndarray:
     """(n,) f8, the sums rounded to floats, in the unit of each sum."""
-    return np.array([math.ldexp(number, k) for number, k in zip(whole(sums), _exponents(sums), strict=True)])
+    return np.array([math.ldexp(number, k) for number, k in _numbers(sums)])
 
 
 def stored(sums: np.ndarray) -> np.ndarray:
     """(n, 3) i8, the sums as they are stored: (high, low, k) for (high * 2^63 + low) * 2^k, with 0 <= low < 2^63."""
-    numbers = zip(whole(sums), _exponents(sums), strict=True)
-    return np.array([(number >> WORD, number & (1 << WORD) - 1, k) for number, k in numbers], np.int64).reshape(-1, 3)
+    words = [(number >> WORD, number & (1 << WORD) - 1, k) for number, k in _numbers(sums)]
+    return np.array(words, np.int64).reshape(-1, 3)
 
 
 def restore(sums: np.ndarray, entry: np.ndarray) -> None:
     """Set sums to what `stored` gave, units included; or to floats (n,), rounded to their own units."""
     if entry.dtype.kind == "f":
-        exponents = _exponents(sums)
+        exponents = [k for _, k in _numbers(sums)]
         numbers: Iterable[int] = [
             round(math.ldexp(value, -k)) for value, k in zip(entry.tolist(), exponents, strict=True)
         ]
@@ -133,6 +129,7 @@ def restore(sums: np.ndarray, entry: np.ndarray) -> None:
         one["high"], one["low"], one["per_unit"] = number >> 64, number & (1 << 64) - 1, math.ldexp(1.0, -k)
 
 
-def _exponents(sums: np.ndarray) -> list[int]:
-    """Exponents k of the units 2^k."""
-    return [1 - math.frexp(size)[1] for size in sums["per_unit"].tolist()]
+def _numbers(sums: np.ndarray) -> list[tuple[int, int]]:
+    """Each sum as (number, k): number * 2^k."""
+    fields = np.asarray(sums).tolist()  # at once: a field of a recarray takes microseconds
+    return [((high << 64) + low, 1 - math.frexp(per_unit)[1]) for low, high, per_unit in fields]

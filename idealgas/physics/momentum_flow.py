@@ -13,18 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.physics.exact_sum import add, add_all
+from idealgas.physics.exact_sum import TOGETHER, add, add_all
 from idealgas.physics.periodic import shift_by_images
 
 U = np.uintp
 KINETIC, COLLISION = slice(0, 3), slice(3, None)
 """Which of the sums of the tensor are the two flows: their components xx, xy, yy, and of the collision flow yx."""
 
-WAITING = 64
-"""Number of collisions whose terms are added together."""
-
-
-TERMS = np.dtype([("column", "f8", (WAITING,))])
+TERMS = np.dtype([("column", "f8", (TOGETHER,))])
 """Terms of one of the sums, by collision; a record, so that their place in memory is a constant."""
 
 
@@ -121,7 +117,7 @@ def record_collision_flow(flow, a, b, a_id, b_id, before, periodic, images, rota
         if rotation is not None:
             flow.terms[U(6)].column[k] = py * x
         flow.waiting[0] += 1
-        if flow.waiting[0] == WAITING:
+        if flow.waiting[0] == TOGETHER:
             settle(flow)
         count_pair(flow.pairs, flow.species, a_id, b_id)
 

@@ -34,9 +34,9 @@ class Estimate:
 
     value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
     there are too few samples. independent_samples: number of independent samples that would know the standard error as
-    well, one more than its degrees of freedom; inf for a quantity that is known exactly. theory: value expected by
-    theory, in the same unit; None where no theory applies. theory_error: standard deviation of the error of that value,
-    in the same unit.
+    well, one more than its degrees of freedom; inf if it is known by a law, or 0 as the quantity is known. theory:
+    value expected by theory, in the same unit; None where no theory applies. theory_error: standard deviation of the
+    error of that value, in the same unit.
     """
 
     value: float

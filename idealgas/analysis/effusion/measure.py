@@ -36,8 +36,8 @@ class Effusion(Result):
     temperature: energy. time: (INSTANTS,), times. beyond: (INSTANTS,), number of discs in the other chamber. expected:
     (INSTANTS,), this number by theory. speed: discs per time and open length, divided by the difference of the
     densities, length/time; each density is multiplied by the mean speed in its chamber over that of the gas. Its theory
-    is ⟨v⟩/π, its error that of a Poisson number of passages in both directions. Both theories are None for a slit wider
-    than a mean free path.
+    is ⟨v⟩/π; its error is not estimated, but that of a Poisson number of passages in both directions. Both theories are
+    None for a slit wider than a mean free path.
     """
 
     name: str
@@ -109,7 +109,7 @@ def effusion(
     passed = float(beyond[-1] - beyond[0])
     speed = passed / (slit * drive)
     error = math.sqrt(expected * slit * both) / (slit * drive)
-    found = Estimate(speed, error, max(passed, 1.0), expected, expected * (LAW_OFF + LAW_OFF_PER_PATH * paths))
+    found = Estimate(speed, error, math.inf, expected, expected * (LAW_OFF + LAW_OFF_PER_PATH * paths))
     here = (str(log.path), number / inner, equilibrium.temperature, time, beyond)
     if paths > 1:
         sentence = (

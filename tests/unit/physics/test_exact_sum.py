@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from idealgas._jit import njit
 from idealgas.physics.exact_sum import (
+    FITS,
+    TOGETHER,
     SumRangeError,
     add,
     add_all,
@@ -92,6 +94,13 @@ def test_the_error_of_a_term_is_half_a_unit():
     unit = Fraction(2) ** unit_exponent(1.0)
     (number,) = whole(summed(terms, 1.0))
     assert 0 < abs(number * unit - exact) <= len(terms) * unit / 2
+
+
+@pytest.mark.parametrize("term", [FITS - 8, -(FITS - 8), FITS, -FITS, 0.5, 1.5])
+def test_the_largest_group(term):
+    terms = [term] * TOGETHER
+    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, TOGETHER))
+    assert whole(sums) == [sum(map(round, terms))]
 
 
 @pytest.mark.parametrize("way", [add_each, lambda total, terms: add_in_groups(total, terms, 4)], ids=["add", "add_all"])
