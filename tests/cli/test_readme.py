@@ -222,7 +222,7 @@ def test_every_dataset_of_a_log_is_named(folder):
 # ── engine, analyses, studies ──
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_code_of_the_engine_runs(folder):
     assert all(printed for _, printed in run_blocks(ENGINE, blocks(ENGINE)))
 
@@ -243,7 +243,9 @@ def test_code_of_the_analyses_runs(folder):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["equation-of-state", "heat-capacity", "effusion"])
+@pytest.mark.parametrize(
+    "name", ["equation-of-state", "effusion", pytest.param("heat-capacity", marks=pytest.mark.long)]
+)
 def test_shipped_sweeps_give_their_pictures(folder, name):
     (block,) = (block for block in analysis_blocks()[0] if f"sweeps/{name}.toml" in block.text)
     run_blocks(ANALYSES, [block])
