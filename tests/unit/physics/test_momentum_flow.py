@@ -10,12 +10,11 @@ from idealgas._jit import aligned
 from idealgas.engine.records import DISC
 from idealgas.engine.resolve import resolve_pair, resolve_segment, resolve_side
 from idealgas.physics.effects import Effects
-from idealgas.physics.exact_sum import stored, values
+from idealgas.physics.exact_sum import TOGETHER, stored, values
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.momentum_flow import (
     COLLISION,
     KINETIC,
-    WAITING,
     carried,
     complete_flights,
     copy_of,
@@ -77,7 +76,7 @@ def test_exchanged_discs_give_the_same_bits(rough):
 
 def test_collisions_are_added_together_and_one_by_one():
     flow, other = flow_of(), flow_of()
-    for _ in range(3 * WAITING + 5):
+    for _ in range(3 * TOGETHER + 5):
         for each in (flow, other):
             pair = discs((0, 0, 0.7, 0.1, 0, 1, 1), (2, 0.1, -0.3, 0.2, 0, 1, 2))
             resolve_pair(*pair, 0, 1, 0.05, (0, 0), Effects(flow=each))
