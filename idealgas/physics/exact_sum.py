@@ -99,11 +99,6 @@ def make_sums(typical: Sequence[float]) -> np.recarray:
     return sums
 
 
-def whole(sums: np.ndarray) -> list[int]:
-    """The sums in their units."""
-    return [number for number, _ in _numbers(sums)]
-
-
 def values(sums: np.ndarray) -> np.ndarray:
     """(n,) f8, the sums rounded to floats, in the unit of each sum."""
     return np.array([math.ldexp(number, k) for number, k in _numbers(sums)])

@@ -20,7 +20,6 @@ from idealgas.physics.exact_sum import (
     stored,
     unit_exponent,
     values,
-    whole,
 )
 
 TERMS = st.lists(st.floats(-(2.0**99), 2.0**99), max_size=40)
@@ -38,6 +37,11 @@ def add_in_groups(total, terms, size):
     while start < terms.shape[0]:
         add_all(total, terms[start : start + size])
         start += size
+
+
+def whole(sums):
+    """The sums in their units, from what is stored of them."""
+    return [(high << 63) + low for high, low, _ in stored(sums).tolist()]
 
 
 def summed(terms, typical=2.0**52, way=add_each):
