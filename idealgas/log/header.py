@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.gas.state import Gas
-from idealgas.log.schema import DISC_COLUMNS, Wall
+from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, VERSIONS, Wall
 from idealgas.log.source import Source
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class LogHeader:
         The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5; `trajectory` is the version of
         the laws of motion: a log is resumed only by a program with the same one.
         """
-        return self._source.attributes("/") | self._source.attributes("versions")
+        return self._source.attributes("/", ROOT_ATTRIBUTES) | self._source.attributes("versions", VERSIONS)
 
     @cached_property
     def discs(self) -> Gas:

@@ -55,6 +55,11 @@ DISC_COLUMNS = (
     Column("species", "u2"),
 )
 
+ROOT_ATTRIBUTES = ("format", "format_version", "seed", "created")
+PACKAGES = ("numpy", "numba", "h5py", "isal")
+VERSIONS = ("idealgas", "python", *PACKAGES, "hdf5", "trajectory")
+"""Attributes of the root and of `versions` that say what made a log."""
+
 SHORTEST_CHUNK = 8192
 """Rows of events in a chunk of a run that cannot have many; another one may go on with its log."""
 DISC_RECORDS = 4096
@@ -184,7 +189,7 @@ def _describe_particles(file: h5py.File, objects: Objects) -> None:
 @cache
 def _versions() -> dict[str, np.bytes_]:
     """Of the programs that make a log."""
-    packages = {name: importlib.metadata.version(name) for name in ("numpy", "numba", "h5py", "isal")}
+    packages = {name: importlib.metadata.version(name) for name in PACKAGES}
     versions = {"idealgas": __version__, "python": platform.python_version(), **packages}
     return {name: np.bytes_(version) for name, version in {**versions, "hdf5": h5py.version.hdf5_version}.items()}
 

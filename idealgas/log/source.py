@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,10 +12,12 @@ import numpy as np
 
 from idealgas.log import schema
 from idealgas.log.errors import LogError
+from idealgas.log.hdf5 import gate
 from idealgas.log.hdf5.chunks import keep_freed_memory
+from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
+from idealgas.log.hdf5.gate import open_dataset, open_object
 from idealgas.log.hdf5.superblock import Unmarked, is_locked, is_marked
-from idealgas.log.hdf5.table import StoredColumn, open_dataset
 
 _CACHED_CHUNKS = 8
 ATTEMPTS = 10
@@ -71,25 +73,30 @@ class Source:
         """A dataset that was stored before the run."""
 
         def read() -> np.ndarray:
-            dataset = open_dataset(self._file, name)
-            if not dataset.get_space().get_simple_extent_npoints():
-                return self._file[name][()]
-            return StoredColumn(dataset).read(0, dataset.shape[0])
+            column = StoredColumn(open_dataset(self._file, name))
+            if column.chunk != column.shape:
+                raise ValueError(f"of shape {column.shape} in chunks of {column.chunk} (allowed: in one)")
+            return column.read(0, column.shape[0])
 
         return self._read(read, f"{name}: ")
 
     def texts(self, name: str) -> list[str]:
         """A dataset of strings that was stored before the run."""
-        return [text.decode() for text in self.fixed(name).tolist()]
+        texts = self.fixed(name).tolist()
+        return self._read(lambda: [text.decode() for text in texts], f"{name}: ")
 
     def attribute(self, name: str, attribute: str) -> np.ndarray:
-        """One attribute of a dataset."""
-        return self._read(lambda: np.asarray(self._file[name].attrs[attribute]))
+        """One attribute of a dataset or group."""
+        return self._read(lambda: gate.attribute(open_object(self._file, name), attribute), f"{name}: ")
 
-    def attributes(self, group: str) -> dict[str, str | int]:
-        """Attributes of a group."""
-        values = self._read(lambda: {name: value.item() for name, value in self._file[group].attrs.items()})
-        return {name: value.decode() if isinstance(value, bytes) else value for name, value in values.items()}
+    def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int | float]:
+        """Those of some attributes of a group that it has; each is a text or a number."""
+
+        def read() -> dict[str, str | int | float]:
+            group = open_object(self._file, name)
+            return {key: gate.value(group, key) for key in wanted if h5py.h5a.exists(group, key.encode())}
+
+        return self._read(read, f"{name}: ")
 
     def _open(self) -> None:
         self.close()
@@ -101,18 +108,28 @@ class Source:
             raise LogError(f"{self.path}: not a log of idealgas")
         self.unclosed = marked
         self._file = h5py.File(Unmarked(self.path) if marked else self.path, "r")
-        if self._file.attrs.get("format", b"") != schema.FORMAT.encode():
+        root = open_object(self._file, "/")
+        if not h5py.h5a.exists(root, b"format") or gate.value(root, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas")
-        if (version := int(self._file.attrs["format_version"])) > schema.VERSION:
+        version = gate.value(root, "format_version")
+        if not isinstance(version, int) or version < 1:
+            raise LogError(f"{self.path}: of format {version} (allowed 1 to {schema.VERSION})")
+        if version > schema.VERSION:
             raise LogError(f"{self.path}: of format {version}; this version of idealgas reads up to {schema.VERSION}")
         self.commit = Commit.read(self._file)
         size = self.path.stat().st_size
         if marked and size < self.commit.file_size:
             raise LogError(f"{self.path}: damaged: truncated, {size} bytes of {self.commit.file_size}")
-        self._columns = {path: StoredColumn(open_dataset(self._file, path)) for path in self.commit.tails}
+        self._columns = {path: self._column_at(path) for path in self.commit.tails}
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
+
+    def _column_at(self, path: str) -> StoredColumn:
+        try:
+            return StoredColumn(open_dataset(self._file, path))
+        except (KeyError, ValueError) as error:
+            raise ValueError(f"{path}: {_reason(error)}") from error
 
     def _chunk(self, path: str, start: int) -> np.ndarray:
         column, rows, tail = self._columns[path], self.rows(table_of(path)), self.commit.tails[path]
@@ -135,6 +152,8 @@ class Source:
 
 def _reason(error: Exception) -> str:
     """Why a reading failed, in one line; HDF5 says it in parentheses."""
+    if isinstance(error, UnicodeDecodeError):
+        return "not UTF-8 text"
     text = str(error.args[0] if error.args else error).splitlines()[0]
     inner = re.search(r"\((.*)\)$", text)
     return inner[1] if inner and isinstance(error, OSError | RuntimeError | KeyError) else text

@@ -86,9 +86,11 @@ class LogWriter:
             commit_tables(file, tables, commit.sequence + 1, fsync)
             lock(file.id.get_vfd_handle())
             give_name(part, path, force, fsync)
-        except (OSError, RuntimeError) as error:
+        except (OSError, RuntimeError, ValueError) as error:
             abandon(file)
             part.unlink(missing_ok=True)
+            if isinstance(error, ValueError):  # larger than what is ever read
+                raise LogError(f"{path}: {error}") from error
             raise storage_error(path, error) from error
         self._start(path, file, tables, commit.sequence + 1, fsync)
 

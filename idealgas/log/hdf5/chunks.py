@@ -142,31 +142,43 @@ class Encoder:
     def _grow(self, size: int) -> None:
         if len(self._planes) < size:
             self._planes = np.empty(size, np.uint8)
-            self._bytes = np.empty(size + size // 64 + 1024, np.uint8)  # what cannot be compressed grows a little
+            self._bytes = np.empty(most_stored(size), np.uint8)
 
 
 def _shuffled(items: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(items.view(np.uint8).reshape(-1, items.itemsize).T)
 
 
-def decode(stored: bytes, mask: int, dtype: np.dtype, values: int, verify: bool = True) -> np.ndarray:
+def most_stored(size: int) -> int:
+    """Most bytes that a chunk of `size` bytes takes in the file: what cannot be compressed grows a little."""
+    return size + size // 64 + 1024
+
+
+def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, verify: bool = True) -> np.ndarray:
     """Flat values of a stored chunk whose filters `mask` were left out.
 
-    values: how many it should have. Without `verify` a fletcher32 that does not match is let pass. Raises ValueError on
-    damage.
+    values: how many it has. Without `verify` a fletcher32 that does not match is let pass. Raises ValueError on damage,
+    and where there are fewer values or more, of which no more than one is decompressed.
     """
-    data: bytes | memoryview = stored
+    size = values * dtype.itemsize
+    data: bytes | memoryview = memoryview(stored)
     if not mask & FLETCHER32:
-        data = memoryview(stored)[:-4]
-        if verify and fletcher32(data) != stored[-4:]:
+        if verify and fletcher32(data[:-4]) != data[-4:]:
             raise ValueError("a checksum does not match")
+        data = data[:-4]
     if not mask & DEFLATE:
+        stream = isal_zlib.decompressobj()
         try:
-            data = isal_zlib.decompress(data, bufsize=values * dtype.itemsize + 1)  # a full buffer would be grown
+            data = stream.decompress(data, size + 1)
         except isal_zlib.error as error:  # type: ignore[misc]
             raise ValueError(f"a compressed chunk: {error}") from error
+        if not stream.eof:
+            raise ValueError(f"a compressed chunk: does not end at {size:,} bytes")
+    if len(data) != size:
+        raise ValueError(f"a chunk of {len(data):,} bytes (allowed {size:,})")
     if not mask & SHUFFLE and dtype.itemsize > 1:
         planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, -1)
+        planes.flags.writeable = False  # of one type, to be compiled once
         if dtype.itemsize in _WIDTHS:
             items = np.empty(planes.shape[1], f"u{dtype.itemsize}")
             unshuffle(planes, items)

@@ -13,6 +13,8 @@ import numpy as np
 from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
+from idealgas.log.hdf5.column import StoredColumn
+from idealgas.log.hdf5.gate import attribute, open_dataset
 
 DATASET = "commit"
 
@@ -53,13 +55,15 @@ class Commit(NamedTuple):
     @classmethod
     def read(cls, file: h5py.File) -> Self:
         """The newest whole record. Raises ValueError when neither slot is."""
-        dataset = file[DATASET]
-        paths = [path.decode() for path in dataset.attrs["datasets"]]
+        dataset = open_dataset(file, DATASET)
+        paths = [path.decode() for path in attribute(dataset, "datasets").tolist()]
         tables = list(dict.fromkeys(map(table_of, paths)))
+        stored, width = StoredColumn(dataset), 2 + len(tables) + len(paths) + 1
+        if (stored.dtype, stored.shape, stored.chunk) != (np.dtype("u8"), (2, width), (1, width)):
+            raise ValueError(f"{DATASET}: not a record of {len(paths)} datasets")
         slots = []
         for slot in range(2):
-            _, stored = dataset.id.read_direct_chunk((slot, 0))
-            values = chunks.decode(stored, chunks.PLAIN, dataset.dtype, dataset.shape[1], verify=False)
+            values = stored.whole(slot, verify=False)[0]
             if isal_zlib.crc32(values[:-1]) == values[-1]:
                 slots.append(values[:-1].tolist())
         if not slots:

@@ -11,6 +11,7 @@ import numpy as np
 from h5py import h5a, h5d, h5f, h5g, h5p, h5s, h5t
 
 from idealgas.log.hdf5 import chunks
+from idealgas.log.hdf5.gate import check_chunk
 
 
 class Objects:
@@ -56,6 +57,10 @@ class Objects:
         above, _, name = path.rpartition("/")
         space = h5s.create_simple(shape, (h5s.UNLIMITED if growing else shape[0], *shape[1:]))
         kind = h5t.py_create(np.dtype(dtype), logical=True)
+        try:
+            check_chunk(chunk, np.dtype(dtype))
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from error
         dataset = h5d.create(self.group(above), name.encode(), kind, space, _dataset_layout(chunk, self._compressed))
         if unit:
             set_attributes(dataset, unit=np.bytes_(unit))

@@ -5,9 +5,11 @@ HDF5 File Format Specification 3.0, II.A: version 3 has the status flags in byte
 35, and the lookup3 checksum of all before it in bytes 44 to 47.
 """
 
+import errno
 import fcntl
 import io
 import os
+import stat
 import struct
 import time
 from contextlib import suppress
@@ -26,9 +28,31 @@ _FAR = 1 << 50
 _MASK = 0xFFFFFFFF
 
 
+def open_regular(path: Path) -> IO[bytes]:
+    """Open a file for reading. OSError for what is not a regular file, of which nothing is touched.
+
+    To open a device may do something to it, and to open a FIFO waits for its other end.
+    """
+    _check_regular(path.stat())
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    try:
+        _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
+    except OSError:
+        os.close(descriptor)
+        raise
+    return os.fdopen(descriptor, "rb", buffering=0)
+
+
+def _check_regular(found: os.stat_result) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "not a regular file")
+
+
 def is_marked(path: Path) -> bool | None:
     """Whether a writer has left its mark; None if this is not an HDF5 file of version 3."""
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         block = file.read(_SIZE)
     return block[11] != 0 if len(block) == _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
@@ -53,7 +77,7 @@ class Unmarked(io.RawIOBase):
 
     def __init__(self, path: Path) -> None:
         """Raises ValueError where the superblock is damaged."""
-        self._file = path.open("rb", buffering=0)
+        self._file = open_regular(path)
         self._place = 0
         try:
             self._head = _unmarked(self._file.read(_SIZE), _FAR)
@@ -125,7 +149,7 @@ def lock(file: int | IO) -> None:
 def is_locked(path: Path) -> bool:
     """Whether another process holds the file with `lock`."""
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except OSError as error:
         return isinstance(error, BlockingIOError)

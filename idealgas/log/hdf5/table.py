@@ -1,6 +1,5 @@
-"""Columns of the file by whole chunks, and tables of them that grow."""
+"""Tables of columns that grow together: rows of any number in, whole chunks out."""
 
-import math
 import os
 from collections.abc import Mapping, Sequence
 
@@ -9,54 +8,9 @@ import numpy as np
 from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
+from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import DATASET, Commit, table_of
-
-
-class StoredColumn:
-    """A dataset, read and written in whole chunks past HDF5's own filters and cache."""
-
-    def __init__(self, dataset: h5py.h5d.DatasetID, encoder: chunks.Encoder | None = None) -> None:
-        self.id = dataset
-        layout = dataset.get_create_plist()
-        self.chunk: tuple[int, ...] = layout.get_chunk()
-        self.dtype = np.dtype(dataset.dtype.str)
-        self._encoder = encoder or chunks.Encoder()
-        self.extent: int = dataset.shape[0]  # asking HDF5 each time takes as long as storing some planes
-        self._compressed = layout.get_filter_by_id(h5py.h5z.FILTER_DEFLATE) is not None
-        self._origin = (0,) * (len(self.chunk) - 1)
-
-    def read(self, start: int, rows: int, tail: int = 0) -> np.ndarray:
-        """Those of the first `rows` rows that lie in the chunk at row `start`; `tail` is their CRC-32 if not all do.
-
-        Raises whatever numpy and HDF5 raise where they are damaged or missing.
-        """
-        growing = rows - start < self.chunk[0]  # its own checksum fails if it was caught while being rewritten
-        mask, stored = self.id.read_direct_chunk((start, *self._origin))
-        if not self._compressed:  # bit 0 of its pipeline is the checksum's
-            mask = chunks.PLAIN
-        values = chunks.decode(stored, mask, self.dtype, math.prod(self.chunk), verify=not growing)
-        data = values.reshape(self.chunk)[: rows - start]
-        if growing and isal_zlib.crc32(data) != tail:
-            raise ValueError("a checksum does not match")
-        return data
-
-    def write(self, start: int, rows: int, data: np.ndarray, plain: bool = False) -> None:
-        """Store the chunk at row `start`, of which `rows` count. HDF5 demands that the extent grows first."""
-        if self.extent < start + rows:
-            self.resize(start + rows)
-        offset = (start, *self._origin)
-        data = np.asarray(data, self.dtype)
-        if not self._compressed:
-            self.id.write_direct_chunk(offset, self._encoder.plain(data), 0)
-        elif plain:
-            self.id.write_direct_chunk(offset, self._encoder.plain(data), chunks.PLAIN)
-        else:
-            self.id.write_direct_chunk(offset, self._encoder.compressed(data), chunks.COMPRESSED)
-
-    def resize(self, rows: int) -> None:
-        """Give the dataset so many rows."""
-        self.id.set_extent((rows, *self.chunk[1:]))
-        self.extent = rows
+from idealgas.log.hdf5.gate import open_dataset
 
 
 class Table:
@@ -142,11 +96,6 @@ class Table:
     def _write(self, data: Sequence[np.ndarray], rows: int) -> None:
         for column, values in zip(self.columns.values(), data, strict=True):
             column.write(self.whole, rows, values, self._plain)
-
-
-def open_dataset(file: h5py.File, path: str) -> h5py.h5d.DatasetID:
-    """A dataset through HDF5's C interface. Raises KeyError where there is none."""
-    return h5py.h5d.open(file.id, path.encode())
 
 
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, Table]:

@@ -1,0 +1,89 @@
+"""Crafted logs: sound ones changed by h5py, with check sums made anew, so that only the gate can refuse them."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+from isal import isal_zlib
+
+from idealgas.log import Log, open_log
+from idealgas.log.hdf5.commit import Commit, table_of
+
+Edit = Callable[[h5py.File], object]
+
+
+def craft(path: Path, edit: Edit, rows: dict[str, int] | None = None) -> Path:
+    """Change a log in place, and make its commit record fit. rows: of tables, if the record is to have others."""
+    with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+        record = Commit.read(file)
+        edit(file)
+        if "commit" in file and isinstance(file.get("commit", getlink=True), h5py.HardLink):
+            seal(file, record._replace(rows=record.rows | (rows or {})))
+    return path
+
+
+def seal(file: h5py.File, record: Commit) -> None:
+    """Write the commit record with right check sums, wherever they can be made."""
+    tails = {}
+    for path in record.tails:
+        link = file.get(path, getlink=True)
+        dataset = file[path] if isinstance(link, h5py.HardLink) else None
+        fits = isinstance(dataset, h5py.Dataset) and dataset.chunks and dataset.dtype.kind != "O"
+        tails[path] = _tail(dataset, record.rows[table_of(path)]) if fits else 0
+    for sequence in (1, 2):
+        try:
+            record._replace(sequence=record.sequence + sequence, tails=tails).write(file["commit"].id)
+        except (ValueError, OSError):  # there is no such record any more
+            return
+
+
+def _tail(dataset: h5py.Dataset, rows: int) -> int:
+    whole = rows // dataset.chunks[0] * dataset.chunks[0]
+    rows = min(rows, len(dataset))
+    return isal_zlib.crc32(np.ascontiguousarray(dataset[whole:rows])) if whole < rows else 0
+
+
+def put(path: str, index: object, value: object) -> Edit:
+    """Other values in a dataset."""
+    return lambda file: file[path].__setitem__(index, value)
+
+
+def swap(path: str, **options: object) -> Edit:
+    """Another dataset in place of one, of which the options (of `create_dataset`) say all that differs."""
+
+    def edit(file: h5py.File) -> None:
+        old = file[path]
+        given = {"data": old[()], "chunks": old.chunks, "maxshape": old.maxshape, "shuffle": old.shuffle}
+        given |= {"compression": old.compression, "fletcher32": old.fletcher32}
+        del file[path]
+        file.create_dataset(path, **(given | options))
+
+    return edit
+
+
+def link(path: str, target: object) -> Edit:
+    """A link in place of an object."""
+
+    def edit(file: h5py.File) -> None:
+        if path in file:
+            del file[path]
+        file[path] = target
+
+    return edit
+
+
+def read_all(log: Log) -> None:
+    """Read everything that a log has."""
+    for name in ("attributes", "runs", "discs", "walls", "inertia", "observables", "snapshot_times", "summary"):
+        getattr(log, name)
+    list(log.checkpoints)
+    rows = sum(len(block.time) for block in log.chunks())
+    assert rows == len(log)
+    log.state_at(log.end_time)
+
+
+def read_path(path: Path) -> None:
+    """Open a log and read everything."""
+    with open_log(path) as log:
+        read_all(log)
