@@ -1,0 +1,51 @@
+"""Crafted logs and damaged ones by hand: which cases, which commands; prints the failures and the table of outcomes.
+
+python tests/fuzz_logs.py --cases 0:500 --commands info,pressure
+python tests/fuzz_logs.py --damages 0:500
+"""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from log_fuzz.campaign import crafted_outcomes, damaged_outcomes
+from log_fuzz.commands import forms, reading_commands
+from log_fuzz.judge import FAILURES, Table
+from log_fuzz.sound import ALL
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", metavar="A:B", help="Numbers of crafted logs.")
+    parser.add_argument("--damages", metavar="A:B", help="Numbers of damaged logs.")
+    parser.add_argument("--commands", metavar="NAME,...", help="Commands to run; by default all that read a log.")
+    parser.add_argument("--without", metavar="NAME,...", default="", help="Commands to leave out.")
+    parser.add_argument("--logs", metavar="NAME,...", default=",".join(ALL), help="Sound logs to begin with.")
+    parser.add_argument("--failures", metavar="FILE", type=Path, help="Append failures as lines of JSON.")
+    given = parser.parse_args()
+    names = given.commands.split(",") if given.commands else reading_commands()
+    chosen = [form for name in names if name not in given.without.split(",") for form in forms(name)]
+    run = damaged_outcomes if given.damages else crafted_outcomes
+    first, last = map(int, (given.damages or given.cases).split(":"))
+    table, begun = Table(), time.monotonic()
+    for number, what, form, verdict in run(range(first, last), lambda _: chosen, given.logs.split(",")):
+        table.add(number, form, verdict)
+        if verdict.name in FAILURES:
+            line = {"case": number, "log": what[0], "command": " ".join(form), "verdict": verdict.name,
+                    "why": verdict.why, "done": what[1]}  # fmt: skip
+            if given.failures:
+                with given.failures.open("a") as file:
+                    file.write(json.dumps(line) + "\n")
+            else:
+                print(json.dumps(line), flush=True)
+        if sum(table.counts.values()) % 2000 == 0:
+            print(f"{len(table.logs)} logs, {table.failures} failures, {time.monotonic() - begun:.0f} s",
+                  file=sys.stderr, flush=True)  # fmt: skip
+    print(table)
+    print(f"{time.monotonic() - begun:.0f} s")
+
+
+if __name__ == "__main__":
+    main()
