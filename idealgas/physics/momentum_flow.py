@@ -156,9 +156,16 @@ def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
 
 @njit
 def complete_flights(record, time, gravity, flow):
-    """Add the flights of all discs from their records to a local time."""
-    for i in range(record.shape[0]):
-        record_flight(flow, record[U(i)], time, gravity)
+    """Add the flights of all discs from their records to a local time; no collisions may wait to be added."""
+    for first in range(0, record.shape[0], TOGETHER):
+        number = min(TOGETHER, record.shape[0] - first)
+        for k in range(number):
+            xx, xy, yy = carried(record[U(first + k)], time, gravity)
+            flow.terms[U(0)].column[U(k)] = xx
+            flow.terms[U(1)].column[U(k)] = xy
+            flow.terms[U(2)].column[U(k)] = yy
+        for k in range(3):
+            add_all(flow.tensor[U(k)], flow.terms[U(k)].column[:number])
 
 
 def copy_of(flow: MomentumFlow | None) -> MomentumFlow | None:

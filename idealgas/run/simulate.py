@@ -24,7 +24,7 @@ from idealgas.physics.effects import Effects
 from idealgas.run.effects.bundle import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
-from idealgas.run.sums import observed_sums
+from idealgas.run.sums import kept_before
 from idealgas.run.watch import Watch
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
@@ -265,8 +265,7 @@ class LoggedRun:
         simulation = self._simulation
         effects = simulation.effects
         state = by_name(disc_state(simulation.gas, effects, simulation.method.without_positions))
-        sums = by_name(observed_sums(effects))  # logs of before keep what walls gave as samples have it
-        whole = sums | by_name(whole_state(effects)) | by_name(simulation.method.kept)
+        whole = kept_before(effects) | by_name(whole_state(effects)) | by_name(simulation.method.kept)
         self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals) | whole)
 
     def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:

@@ -72,9 +72,10 @@ def test_failing_points_do_not_stop_the_others(plan, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (
+        pytest.param(
             ("-o", "out", "--scheduler", "tcp://127.0.0.1:9"),
             "tcp://127.0.0.1:9: no scheduler answers there within 10 s",
+            marks=pytest.mark.slow,
         ),
         (("-o", "out", "--scheduler", "nowhere"), "nowhere: no address of a scheduler"),
         ((), "-o DIR: missing"),

@@ -145,6 +145,7 @@ def test_many_scenes_with_any_effects():
     print(f"{count} scenes, {max_errors}")
 
 
+@pytest.mark.slow
 def test_what_once_broke(once_broke):
     """Scenes whose first line says what went wrong."""
     text = once_broke.read_text()

@@ -14,7 +14,7 @@ from idealgas.log import open_log
 
 pytestmark = pytest.mark.slow
 
-IN_CI, BY_HAND = 3, 40
+IN_CI, BY_HAND = 2, 40
 SCENES = {
     "fast": ("quickstart", "run.events=1000000", "log.snapshot_every=5"),
     "slow": ("mixing", "run.method=brute_force", "run.events=6000", 'log.compression="none"'),

@@ -181,6 +181,7 @@ PARTED = (
 """A rough gas under gravity on both sides of a wall without ends that discs could touch."""
 
 
+@pytest.mark.slow
 def test_the_same_mechanical_pressure_without_events(tmp_path):
     paths = tmp_path / "events.h5", tmp_path / "samples.h5"
     for path, events in zip(paths, ("true", "false"), strict=True):
@@ -204,6 +205,7 @@ def test_the_same_mechanical_pressure_without_events(tmp_path):
         assert push.y.value == pytest.approx(awaited.y.value, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_samples_do_not_follow_a_piston(tmp_path):
     run("everything", tmp_path / "run.h5", "log.events=false", "run.events=3000")
     with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="do not follow a piston"):

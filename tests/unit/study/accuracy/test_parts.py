@@ -102,6 +102,7 @@ def test_steps_miss_less_the_shorter_they_are(start):
     assert Missed(100, 0).error == 0.01
 
 
+@pytest.mark.slow
 def test_the_way_back_shows_the_digits(start):
     """After a collision or two a disc: 7, 16 and 32 digits, and in double precision by both methods the same."""
     error = {case.name: error_on_return(start, case, 1.5) for case in compared_cases(start.gas, precise=True)}
