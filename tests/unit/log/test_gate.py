@@ -57,7 +57,7 @@ def bomb(name, chunk=0, size=2**26):
 
 def external(file):
     del file["discs/radius"]
-    file.create_dataset("discs/radius", data=np.ones(25), external=[("other.bin", 0, 200)])
+    file.create_dataset("discs/radius", data=np.ones(25), external=[(f"{file.filename}.bin", 0, 200)])
 
 
 def virtual(file):
