@@ -3,13 +3,15 @@
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from idealgas.errors import NotApplicableError, UserError
+from idealgas.files import check_output
 
-from ._options import json_option
+from ._options import force_option, json_option
 from ._tables import print_tables
 
 if TYPE_CHECKING:
@@ -107,6 +109,7 @@ def _common_options(analysis: "Analysis") -> Iterator[Callable]:
         yield click.option(name, variable, type=float, metavar="T", help=words)
     words = "Draw a picture (.png, .pdf or .svg)."
     yield click.option("--plot", metavar="FILE.png", callback=_check_ending, help=words)
+    yield force_option
     yield json_option
     words = "Print the rows of the tables as CSV with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
@@ -121,6 +124,7 @@ def _analyse(
     start: float | None,
     end: float | None,
     plot: str | None,
+    force: bool,
     as_json: bool,
     as_csv: bool,
     check: bool = False,
@@ -129,6 +133,8 @@ def _analyse(
     """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
         raise UserError("--csv: not together with --json")
+    if plot:
+        check_output(plot, Path(plot).suffix.lower(), force, paths)
     try:
         with reading(analysis.reads) as progress:
             results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
@@ -142,7 +148,7 @@ def _analyse(
     if plot:
         from idealgas.analysis.core.style import save
 
-        save(analysis.figure(result), plot)
+        save(analysis.figure(result), plot, force)
     if as_json:
         unasked = {"agrees": None} if analysis.checked else {}
         print_json(result.as_dict() | (verdict.as_dict() if verdict else unasked))

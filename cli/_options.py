@@ -14,4 +14,6 @@ def scene_argument(command: Callable) -> Callable:
     return click.argument("path", metavar="SCENE.toml")(overrides(command))
 
 
+force_option = click.option("--force", is_flag=True, help="Replace what the same command has written there before.")
+
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables.")

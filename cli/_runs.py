@@ -1,6 +1,7 @@
 """Common parts of commands that simulate: Ctrl-C, progress bar and summary."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import click
@@ -64,5 +65,6 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
         table.add_row("compilation (once for these effects)", f"{summary.compile_seconds:.1f} s")
     if from_start:
         table.add_row("events per second", f"{summary.events / summary.seconds:,.0f}")
-    table.add_row("file size", decimal(os.path.getsize(output)))
+    with suppress(FileNotFoundError):  # moved while it was written
+        table.add_row("file size", decimal(os.path.getsize(output)))
     Console().print(table)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ._analysis import print_json
-from ._options import json_option, scene_argument
+from ._options import force_option, json_option, scene_argument
 
 if TYPE_CHECKING:
     from idealgas.study.accuracy.orbit import OrbitStudy
@@ -17,8 +17,11 @@ if TYPE_CHECKING:
 @scene_argument
 @click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and a picture (PNG).")
 @click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
+@force_option
 @json_option
-def accuracy(path: str, overrides: tuple[str, ...], output: str | None, repeats: int, as_json: bool) -> None:
+def accuracy(
+    path: str, overrides: tuple[str, ...], output: str | None, repeats: int, force: bool, as_json: bool
+) -> None:
     """Measure errors and CPU time of a scene event-driven, with time steps and in several precisions.
 
     Three discs on their unstable periodic orbit (configs/three-discs.toml) are followed until the orbit breaks, in
@@ -33,20 +36,23 @@ def accuracy(path: str, overrides: tuple[str, ...], output: str | None, repeats:
 
     scene = load_scene(path, overrides)
     gas = make_gas(scene)
-    folder = accuracy_report.make_folder(output) if output is not None else None
-    if not scene.effects and is_on_orbit(gas):
+    on_orbit = not scene.effects and is_on_orbit(gas)
+    name = "orbit" if on_orbit else "accuracy"
+    paths = [] if output is None else accuracy_report.outputs(output, name, force)
+    if on_orbit:
         with _progress_bar() as progress:
             orbit = study_orbit(gas, seed=scene.scene.seed, progress=progress)
-        name, result = "orbit", accuracy_report.orbit_dict(orbit)
+        result = accuracy_report.orbit_dict(orbit)
         rows = [{key: value for key, value in row.items() if key != "times"} for row in result["survivals"]]
         figure, show = accuracy_figure.orbit_figure(orbit), lambda: _print_orbit(orbit)
     else:
         with _progress_bar() as progress:
             found = study_accuracy(scene, repeats, progress)
-        name, result = "accuracy", accuracy_report.accuracy_dict(found)
+        result = accuracy_report.accuracy_dict(found)
         rows = [accuracy_report.flat_row(row, found) for row in found.rows]
         figure, show = accuracy_figure.accuracy_figure(found), lambda: _print_rows(rows)
-    paths = accuracy_report.write_files(folder, name, result, rows, figure) if folder else []
+    if paths:
+        accuracy_report.write_files(paths, result, rows, figure, force)
     if as_json:
         print_json(result)
         return

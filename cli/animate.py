@@ -1,10 +1,12 @@
 """Command `idealgas animate`: film of a log."""
 
 import re
+from pathlib import Path
 
 import click
 
 from ._analysis import log_argument, open_log, reading
+from ._options import force_option
 
 
 def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
@@ -37,6 +39,7 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species"]),
     help="Quantity shown by the colour of a disc.",
 )  # fmt: skip
+@force_option
 def animate(
     path: str,
     output: str,
@@ -46,6 +49,7 @@ def animate(
     speed: float | None,
     size: tuple[int, int],
     colour: str,
+    force: bool,
 ) -> None:
     """Make a film of a log: the discs at their exact positions, and beside them the distribution of their speeds.
 
@@ -63,8 +67,9 @@ def animate(
             speed=speed,
             size=size,
             by_species=colour == "species",
+            force=force,
             on_frame=progress,
         )
-    instead = "" if str(film.path) == output else f" instead of {output}, as there is no ffmpeg"
+    instead = "" if film.path == Path(output) else f" instead of {output}, as there is no ffmpeg"
     window = f"t = {film.start:.6g} to {film.end:.6g}"
     click.echo(f"{film.path}{instead}: {film.frames} frames, {window}, {film.fps:g} frames per second")

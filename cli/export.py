@@ -3,6 +3,7 @@
 import click
 
 from ._analysis import log_argument, open_log
+from ._options import force_option
 
 KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
@@ -17,7 +18,7 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
     help="Write all discs at N times from start to end, or every DT in simulated time.",
 )
 @click.option("-o", "--output", metavar="OUT", help="The file to write.  [default: RUN with the format's ending]")
-@click.option("--force", is_flag=True, help="Replace the file if it exists.")
+@force_option
 def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:
     """Write the events of a log, or frames of all discs, into a file that other programs read.
 

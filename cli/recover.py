@@ -3,17 +3,19 @@
 import click
 
 from ._analysis import log_argument
+from ._options import force_option
 
 
 @click.command()
 @log_argument
 @click.option("-o", "--output", metavar="OUT.h5", help="Write the closed log to OUT.h5 and leave RUN.h5 unchanged.")
-def recover(path: str, output: str | None) -> None:
+@force_option
+def recover(path: str, output: str | None, force: bool) -> None:
     """Close the log of a run that was killed, so that every HDF5 program can read its committed rows.
 
     The commands of idealgas do not need this: they read such a log without it.
     """
     from idealgas.log import recover as close
 
-    rows = close(path, output)
+    rows = close(path, output, force)
     click.echo(f"{output or path}: {rows:,} event rows kept")

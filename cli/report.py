@@ -3,6 +3,7 @@
 import click
 
 from ._analysis import log_argument, open_log, reading
+from ._options import force_option
 
 
 @click.command()
@@ -15,7 +16,8 @@ from ._analysis import log_argument, open_log, reading
     metavar="T",
     help="First time in the player, in simulated time.  [default: the log's start]",
 )
-def report(path: str, output: str, start: float | None) -> None:
+@force_option
+def report(path: str, output: str, start: float | None, force: bool) -> None:
     """Write one page with every analysis that applies, and a player that moves the discs.
 
     The page needs no network and no other file. A long run is shown in part: the player says which times it shows.
@@ -23,5 +25,5 @@ def report(path: str, output: str, start: float | None) -> None:
     from idealgas.analysis.report.page import write_report
 
     with open_log(path) as log, reading("analyses") as progress:
-        write_report(log, output, start=start, on_step=progress)
+        write_report(log, output, start=start, force=force, on_step=progress)
     click.echo(output)

@@ -2,22 +2,22 @@
 
 import click
 
-from ._options import json_option, scene_argument
+from ._options import force_option, json_option, scene_argument
 
 
 @click.command()
 @scene_argument
 @click.option("-o", "--output", required=True, metavar="RUN.h5", help="The log to write.")
-@click.option("--force", is_flag=True, help="Replace the log if it exists.")
+@force_option
 @json_option
 def run(path: str, overrides: tuple[str, ...], output: str, force: bool, as_json: bool) -> None:
     """Run a scene and write every event into an HDF5 log. After Ctrl-C, `resume` continues the run from its log."""
     from idealgas.scene import load_scene
 
     scene = load_scene(path, overrides)
-    from idealgas.log import check_output
+    from idealgas.files import LOG, check_output
 
-    check_output(output, force)
+    check_output(output, LOG, force, [path])
     from functools import partial
 
     from idealgas.run.simulate import simulate

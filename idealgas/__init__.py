@@ -14,8 +14,8 @@
 `load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` goes on with a run; both
 return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
 it. Results are dataclasses with `as_dict()`, which gives plain values for JSON; a measured number is an `Estimate`, a
-value with its standard error. An error that a user can mend is a `UserError`, in one plain line; `SceneError` and
-`LogError` are kinds of it.
+value with its standard error. An error that a user can mend is a `UserError`, in one plain line; `SceneError`,
+`LogError` and `OutputError` are kinds of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
 used, so that `import idealgas` itself is quick.
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from idealgas.analysis.relaxation.measure import relaxation
     from idealgas.analysis.temperature.measure import temperature
     from idealgas.analysis.transport.measure import transport
-    from idealgas.errors import UserError
+    from idealgas.errors import OutputError, UserError
     from idealgas.events import EventBatch, Kind
     from idealgas.log import Log, LogError, LogState, open_log
     from idealgas.run.resume import resume
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "idealgas.analysis.core.statistics": ("Estimate",),
     "idealgas.analysis.registry": ("analyse",),
-    "idealgas.errors": ("UserError",),
+    "idealgas.errors": ("OutputError", "UserError"),
     "idealgas.events": ("EventBatch", "Kind"),
     "idealgas.log": ("Log", "LogError", "LogState", "open_log"),
     "idealgas.run.resume": ("resume",),
@@ -64,6 +64,7 @@ __all__ = [
     "Log",
     "LogError",
     "LogState",
+    "OutputError",
     "Progress",
     "Scene",
     "SceneError",

@@ -1,7 +1,7 @@
 """The event log: one HDF5 file that survives its writer, and the exact state of the gas at any time from it."""
 
 from idealgas.events import Column
-from idealgas.log.errors import LogError, check_output
+from idealgas.log.errors import LogError
 from idealgas.log.reader import Log, open_log
 from idealgas.log.recovery import recover
 from idealgas.log.replay import Checkpoint, LogState
@@ -18,7 +18,6 @@ __all__ = [
     "LogWriter",
     "Wall",
     "box_walls",
-    "check_output",
     "open_log",
     "recover",
 ]

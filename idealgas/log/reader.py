@@ -41,9 +41,9 @@ from typing import TYPE_CHECKING, Any, Literal, Self, overload
 import numpy as np
 
 from idealgas.events import EventBatch, Kind
+from idealgas.files import is_locked
 from idealgas.log.errors import LogError
 from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
-from idealgas.log.hdf5.superblock import is_locked
 from idealgas.log.header import LogHeader
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.source import ATTEMPTS, PAUSE, Source

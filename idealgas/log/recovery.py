@@ -7,31 +7,27 @@ from pathlib import Path
 
 import h5py
 
-from idealgas.log.errors import LogError, check_output, storage_error
+from idealgas.files import LOG, lock, storage_error, written
+from idealgas.log.errors import LogError
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.superblock import abandon, clear_mark, is_marked, lock
+from idealgas.log.hdf5.superblock import abandon, clear_mark, is_marked
 from idealgas.log.hdf5.table import Table, commit_tables, open_tables
 from idealgas.log.reader import open_log
 from idealgas.log.schema import FILE_OPTIONS
 
 
-def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None) -> int:
+def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None, force: bool = False) -> int:
     """Make a log whose writer died open normally, in place or as a copy `output`; returns the event rows kept.
 
-    A log that was closed stays as it is. Raises LogError if the file is damaged or its writer lives.
+    A log that was closed stays as it is. Another log under the name of the copy is replaced only with `force`. Raises
+    LogError if the file is damaged, OutputError if its writer lives or the copy cannot be written.
     """
     path = Path(path)
     if output is None:
         return _recover(path)
-    copy = Path(output)
-    check_output(copy)
-    with open_log(path):
-        pass
-    try:
+    with open_log(path), written(output, LOG, force, [path]) as copy:
         shutil.copyfile(path, copy)
         return _recover(copy)
-    except OSError as error:
-        raise storage_error(copy, error) from error
 
 
 def _recover(path: Path) -> int:

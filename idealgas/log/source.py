@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import h5py
 import numpy as np
 
+from idealgas.files import is_locked
 from idealgas.log import schema
 from idealgas.log.errors import LogError
 from idealgas.log.hdf5 import gate
@@ -17,7 +18,7 @@ from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
 from idealgas.log.hdf5.gate import open_dataset, open_object
-from idealgas.log.hdf5.superblock import Unmarked, is_locked, is_marked
+from idealgas.log.hdf5.superblock import Unmarked, is_marked
 
 _CACHED_CHUNKS = 8
 ATTEMPTS = 10

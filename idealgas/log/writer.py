@@ -1,5 +1,6 @@
 """Writing a log while the run goes on: buffers go round between an engine and a thread that stores them."""
 
+import errno
 import json
 import math
 import os
@@ -13,12 +14,13 @@ from typing import Any, NamedTuple, Self
 import h5py
 import numpy as np
 
+from idealgas.errors import OutputError
 from idealgas.events import BLOCK, EventBatch, columns_named, empty_batch
+from idealgas.files import LOG, beside, check_output, give_name, lock, storage_error
 from idealgas.gas.state import Gas
 from idealgas.log import schema
-from idealgas.log.errors import LogError, check_output, give_name, storage_error
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.superblock import abandon, lock
+from idealgas.log.hdf5.superblock import abandon
 from idealgas.log.hdf5.table import Table, commit_tables, open_tables
 from idealgas.log.schema import LogLayout
 
@@ -45,7 +47,8 @@ class LogWriter:
 
     Whatever is handed over is stored in order. It is committed every 2¹⁸ rows or every second, whichever comes first:
     what is committed survives the death of the process, and with `fsync` that of the machine. Failures to store (a full
-    disk) come up as LogError with exit code 1 in the next call; what was committed before stays readable.
+    disk, a file that was removed) come up as OutputError with exit code 1 in the next call; what was committed before a
+    disk was full stays readable.
     """
 
     def __init__(
@@ -61,13 +64,13 @@ class LogWriter:
         fsync: bool = False,
         force: bool = False,
     ) -> None:
-        """Make the file with all its datasets. An existing one is replaced only with `force`.
+        """Make the file with all its datasets. An existing log is replaced only with `force`.
 
         gas: the start state. scene_text: the resolved scene, TOML. trajectory: version of the laws that move the discs.
         """
-        check_output(path, force)
         path = Path(path)
-        part = path.with_name(f".{path.name}.{os.getpid()}")
+        check_output(path, LOG, force)
+        part = beside(path)
         sizes = {"scene": len(scene_text.encode()) + schema.SCENE_SLACK, "command": schema.COMMAND_SIZE}
         try:
             file = h5py.File(part, "w", **schema.FILE_OPTIONS, **schema.PAGES)
@@ -90,7 +93,7 @@ class LogWriter:
             abandon(file)
             part.unlink(missing_ok=True)
             if isinstance(error, ValueError):  # larger than what is ever read
-                raise LogError(f"{path}: {error}") from error
+                raise OutputError(f"{path}: {error}") from error
             raise storage_error(path, error) from error
         self._start(path, file, tables, commit.sequence + 1, fsync)
 
@@ -106,8 +109,8 @@ class LogWriter:
         """Continue a log after one of its checkpoints; later rows, checkpoints, samples and snapshots are cut off.
 
         checkpoint: index into `Log.checkpoints`, None to start over. scene_text: of the run as it goes on, if that is a
-        run of its own. Raises LogError (exit code 2) where there is no such checkpoint, or where another process still
-        writes the file.
+        run of its own. Raises LogError where there is no such checkpoint, OutputError where another process is still
+        writing the file.
         """
         from idealgas.log.recovery import reopen
 
@@ -195,7 +198,7 @@ class LogWriter:
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         try:
             self.close()
-        except LogError:
+        except OutputError:
             if error is None:
                 raise
 
@@ -257,6 +260,8 @@ class LogWriter:
 
     def _commit(self, tails: bool, last: bool = False) -> None:
         """Commit all rows, or, without `tails`, of the events those in full chunks."""
+        if not os.fstat(self._file.id.get_vfd_handle()).st_nlink:
+            raise FileNotFoundError(errno.ENOENT, "the file was removed")
         for table in self._tables.values():
             if tails or table is not self._events:
                 table.store_tail(last)

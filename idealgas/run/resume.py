@@ -38,8 +38,9 @@ def resume(
     "run.events=1000000" (any of STOP_RULES; the others stay as they are unless set to nothing, as in "run.until=").
     command, on_progress, interrupted: as in `simulate`.
 
-    Raises SceneError for an override that is wrong; LogError if another process is writing the log, if this program or
-    a change of the scene would go on otherwise than the run began, or if the log goes beyond the end asked for.
+    Raises SceneError for an override that is wrong; LogError or OutputError if another process is writing the log, if
+    this program or a change of the scene would go on otherwise than the run began, if the log goes beyond the end asked
+    for, or if it cannot be written.
     """
     with compile_timer() as compilation:
         with open_log(path) as log:

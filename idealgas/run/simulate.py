@@ -127,16 +127,16 @@ def simulate(
     """Run a scene to the end that its table [run] asks for, and write its log.
 
     scene: from `load_scene` or `parse_scene`. path: of the log to write, an HDF5 file that `open_log` reads. force:
-    replace an existing file. command: text to keep in the log as the command of the run. on_progress: called several
+    replace an existing log. command: text to keep in the log as the command of the run. on_progress: called several
     times a second with the `Progress` of the run. interrupted: asked as often; once it says True, the run ends after
     its last event and the summary says that it is not completed. After that, as after Ctrl-C (KeyboardInterrupt), the
     log can be read and resumed.
 
     The first run with a set of effects compiles its machine code, which takes some seconds and is kept on disk.
 
-    Raises SceneError if the discs find no place, LogError if the log exists (without `force`) or cannot be written;
-    UserError, with a log that can be read and resumed, if a disc collides without end at one instant, or if the events
-    that are to end the run do not come (see `idealgas.run.watch`).
+    Raises SceneError if the discs find no place, OutputError if the log exists (without `force`), cannot be written or
+    is removed during the run; UserError, with a log that can be read and resumed, if a disc collides without end at one
+    instant, or if the events that are to end the run do not come (see `idealgas.run.watch`).
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)

@@ -93,6 +93,6 @@ def test_options_out_of_range(folder, arguments, tmp_path):
 def test_a_film_that_cannot_be_written(folder, tmp_path):
     (tmp_path / "film.gif").mkdir()
     result = idealgas("animate", folder / "run.h5", "-o", tmp_path / "film.gif", "--to", 1, *SMALL)
-    assert (result.exit_code, result.stdout) == (1, "")
-    assert result.stderr == f"{tmp_path}/film.gif: cannot be written: Is a directory\n"
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == f"{tmp_path}/film.gif: is a folder\n"
     assert os.listdir(tmp_path) == ["film.gif"]

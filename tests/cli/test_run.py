@@ -3,6 +3,7 @@
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -84,16 +85,32 @@ def test_shipped_scenes(shipped_scene, tmp_path):
         assert summary["energy_change"] < 0
 
 
+NO_LOG = "is no log of idealgas: --force replaces no other files"
+
+
 def test_an_existing_output_is_refused_and_left_alone(tmp_path):
     output = tmp_path / "run.h5"
     output.write_bytes(b"precious")
-    result = idealgas("run", CORNER, "-o", "run.h5", folder=tmp_path)
-    assert (result.returncode, result.stdout) == (2, "")
-    assert result.stderr == "run.h5: exists already (--force replaces it)\n"
+    for force, why in (((), "exists already (--force replaces it)"), (("--force",), NO_LOG)):
+        result = called("run", CORNER, "-o", "run.h5", *force, folder=tmp_path)
+        assert (result.returncode, result.stdout) == (2, "")
+        assert result.stderr == f"run.h5: {why}\n"
     assert output.read_bytes() == b"precious"
-    assert idealgas("run", CORNER, "-o", "run.h5", "--force", folder=tmp_path).returncode == 0
+    output.unlink()
+    for _ in range(2):
+        assert called("run", CORNER, "-o", "run.h5", "--force", folder=tmp_path).returncode == 0
     with open_log(output) as log:
         assert len(log) == 10
+
+
+def test_a_scene_is_not_replaced_by_its_log(tmp_path):
+    scene = Path(shutil.copy(CORNER, tmp_path))
+    (tmp_path / "link.h5").symlink_to(scene)
+    for name in (scene.name, "link.h5"):
+        result = called("run", scene.name, "-o", name, "--force", folder=tmp_path)
+        assert (result.returncode, result.stdout) == (2, "")
+        assert result.stderr == f"{name}: is an input too: another name is needed for the output\n"
+    assert scene.read_bytes() == Path(CORNER).read_bytes()
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,19 @@ from idealgas.analysis import registry
 HEAVY = {"numpy", "numba", "h5py", "scipy", "pydantic", "matplotlib", "pandas", "pymbar", "rich", "click"}
 LOGS = ROOT / "tests" / "cases" / "logs"
 PACKED = ".h5.xz"
-TYPES = ("Estimate", "EventBatch", "Kind", "Log", "LogError", "LogState", "Progress", "Scene", "SceneError", "Summary")
+TYPES = (
+    "Estimate",
+    "EventBatch",
+    "Kind",
+    "Log",
+    "LogError",
+    "LogState",
+    "OutputError",
+    "Progress",
+    "Scene",
+    "SceneError",
+    "Summary",
+)
 
 
 def python(code, *arguments, folder=None):
@@ -129,7 +141,7 @@ def test_run_resume_and_analyse(tmp_path):
     )
     assert not stopped.completed
     assert shares
-    with pytest.raises(idealgas.LogError, match="exists already"):
+    with pytest.raises(idealgas.OutputError, match="exists already"):
         idealgas.simulate(scene, path)
     idealgas.resume(path)
     summary = idealgas.resume(path, "run.until=500")

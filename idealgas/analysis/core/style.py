@@ -2,11 +2,12 @@
 
 import os
 from collections.abc import Iterable
+from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.errors import UserError
+from idealgas.files import written
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
@@ -14,18 +15,15 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 GREY = "#767676"
 
 
-def save(figure: Figure, path: str | os.PathLike[str]) -> None:
-    """Write a picture in the format given by the ending of its path.
+def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> None:
+    """Write a picture in the format given by the ending of its path; an existing one is replaced only with `force`.
 
     Raises:
-        UserError: with exit code 1, if the file cannot be written.
+        OutputError: if the file cannot be written.
     """
-    try:
-        figure.savefig(path, dpi=150)
-    except OSError as error:
-        failure = UserError(f"{path}: cannot be written: {error.strerror}")
-        failure.exit_code = 1
-        raise failure from error
+    kind = Path(path).suffix.lower()
+    with written(path, kind, force) as part:
+        figure.savefig(part, dpi=150, format=kind.removeprefix("."))
 
 
 def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Axes]]:

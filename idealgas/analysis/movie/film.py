@@ -16,7 +16,8 @@ from idealgas.analysis.core.window import span
 from idealgas.analysis.movie.gif import GifWriter
 from idealgas.analysis.movie.painter import CROSSING, Painter
 from idealgas.analysis.movie.piston_track import piston_track
-from idealgas.errors import UserError
+from idealgas.errors import OutputError, UserError
+from idealgas.files import check_output, written
 from idealgas.log import Log
 
 ENDINGS = (".mp4", ".gif")
@@ -40,13 +41,11 @@ def film_path(output: str | os.PathLike[str]) -> Path:
     """Path of the film to write: `output`, or a .gif instead of an .mp4 if ffmpeg is not installed.
 
     Raises:
-        UserError: for another ending than .mp4 or .gif, or if the folder does not exist.
+        UserError: for another ending than .mp4 or .gif.
     """
     path = Path(output)
     if path.suffix.lower() not in ENDINGS:
         raise UserError(f"{output}: unknown kind of film (allowed: {', '.join(ENDINGS)})")
-    if not path.parent.is_dir():
-        raise UserError(f"{output}: no folder {path.parent}")
     if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
         return path.with_suffix(".gif")
     return path
@@ -62,6 +61,7 @@ def animate(
     speed: float | None = None,
     size: tuple[int, int] = (960, 540),
     by_species: bool = False,
+    force: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
 ) -> Film:
     """Make a film of a log between two times, with exact positions in every frame.
@@ -75,13 +75,16 @@ def animate(
         speed: simulated time per second of film; None for a disc of typical speed to cross the box in CROSSING seconds.
         size: width and height of a frame in pixels, made even.
         by_species: whether colours show the species instead of the speed of discs.
+        force: whether to replace an existing film.
         on_frame: called with the number of painted frames and the number of all frames.
 
     Raises:
-        UserError: if the log has no positions or no events, or the window is empty; with exit code 1, if the film
-            cannot be written.
+        UserError: if the log has no positions or no events, or the window is empty.
+        OutputError: if the film cannot be written.
     """
     path = film_path(output)
+    kind = path.suffix.lower()
+    check_output(path, kind, force)
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
     if not log.has_events:
@@ -91,7 +94,7 @@ def animate(
     typical, thermal = (max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, drift(log)))
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
-    gif = path.suffix.lower() == ".gif"
+    gif = kind == ".gif"
     if gif:
         fps = 100 / max(round(100 / fps), 2)  # delays are in hundredths of a second; viewers ignore a delay of 1
     number = round((last - first) * fps / speed) + 1
@@ -103,7 +106,7 @@ def animate(
     piston = piston_track(log, first, last)
     painter = Painter(log.scene, log.discs, piston, (width, height), float(thermal), by_species)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
-    with _replacing(path) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
+    with written(path, kind, force) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
         for k, state in enumerate(log.frames(times)):
             write(painter.paint(state))
             on_frame(k + 1, number)
@@ -140,7 +143,7 @@ def mp4_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Writ
             _close(pipe)
         said = messages.read().decode(errors="replace").strip().splitlines()
         if ffmpeg.wait() != 0:
-            raise _failure(f"ffmpeg: {said[-1] if said else 'failed'}")
+            raise OutputError(f"ffmpeg: {said[-1] if said else 'failed'}", exit_code=1)
 
 
 def _streams(process: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
@@ -152,22 +155,3 @@ def _streams(process: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
 def _close(pipe: IO[bytes]) -> None:
     with suppress(BrokenPipeError):
         pipe.close()
-
-
-@contextmanager
-def _replacing(path: Path) -> Iterator[Path]:
-    """Yield a path beside this one, which it replaces once it is complete."""
-    part = path.with_name(f"{path.name}.part")
-    try:
-        yield part
-        part.replace(path)
-    except OSError as error:
-        raise _failure(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def _failure(message: str) -> UserError:
-    error = UserError(message)
-    error.exit_code = 1
-    return error

@@ -17,6 +17,7 @@ from idealgas.analysis.info import info
 from idealgas.analysis.report.player import MOST_DISCS, Player, player
 from idealgas.analysis.report.sections import Section, make_sections
 from idealgas.errors import UserError
+from idealgas.files import check_output, written
 from idealgas.log import Log
 
 SCRIPTS = ("gas.js", "views.js", "player.js")
@@ -69,6 +70,7 @@ def write_report(
     output: str | os.PathLike[str],
     *,
     start: float | None = None,
+    force: bool = False,
     on_step: Callable[[int, int], None] = lambda done, total: None,
 ) -> Path:
     """Write the report page of a log and return its path.
@@ -77,25 +79,22 @@ def write_report(
         log: the log to show.
         output: path of the page, with the ending .html or .htm.
         start: first time in the player; None for the start of the log.
+        force: whether to replace an existing report.
         on_step: called with the number of finished sections and the number of all sections.
 
     Raises:
-        UserError: for another ending, or if the log does not cover `start`; with exit code 1, if the page cannot be
-            written.
+        UserError: for another ending, or if the log does not cover `start`.
+        OutputError: if the page cannot be written.
     """
     path = Path(output)
-    if path.suffix.lower() not in (".html", ".htm"):
+    kind = path.suffix.lower()
+    if kind not in (".html", ".htm"):
         raise UserError(f"{output}: unknown kind of report (allowed: .html)")
-    if not path.parent.is_dir():
-        raise UserError(f"{output}: no folder {path.parent}")
+    check_output(path, kind, force)
     played = player(log, start)
     sections = make_sections(log, on_step)
-    try:
-        path.write_text(_page(log, played, sections), encoding="utf-8")
-    except OSError as error:
-        failure = UserError(f"{path}: cannot be written: {error.strerror}")
-        failure.exit_code = 1
-        raise failure from error
+    with written(path, kind, force) as part:
+        part.write_text(_page(log, played, sections), encoding="utf-8")
     return path
 
 

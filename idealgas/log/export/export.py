@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.log.errors import LogError, check_output, give_name, storage_error
+from idealgas.files import written
+from idealgas.log.errors import LogError
 from idealgas.log.export import frames, tables
 from idealgas.log.reader import Log
 
@@ -34,32 +35,25 @@ def export(
 ) -> int:
     """Write the states at some times, or without `times` all events, to a file of one of FORMATS.
 
-    The file appears when it is whole; an existing one is replaced only with `force`. Returns the number of frames or
-    event rows. Raises LogError for what this kind of file or this log does not have, or when a package is missing.
+    The file appears when it is whole; an existing one of its kind is replaced only with `force`. Returns the number of
+    frames or event rows. Raises LogError for what this kind of file or this log does not have, or when a package is
+    missing, and OutputError if the file cannot be written.
     """
-    path, written = Path(output), FORMATS[kind]
-    check_output(path, force)
-    if times is None and written.write_events is None:
+    made = FORMATS[kind]
+    if times is None and made.write_events is None:
         raise LogError(f"{kind} has no room for events (allowed frames; events go into csv or parquet)")
     if times is None and not log.has_events:
         raise LogError(f"{log.path}: has no events (made with log.events = false)")
     if times is not None and kind not in ("csv", "parquet") and not log.has_positions:
         raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        if times is not None:
-            number = written.write_frames(log, times, part)
-        else:
-            assert written.write_events is not None
-            number = written.write_events(log, part)
-        give_name(part, path, force, fsync=False)
-    except ModuleNotFoundError as error:
-        raise LogError(f"{kind} needs {error.name}: pip install 'idealgas[export]'") from error
-    except OSError as error:
-        raise storage_error(path, error) from error
-    finally:
-        part.unlink(missing_ok=True)
-    return number
+    with written(output, made.ending, force, [log.path]) as part:
+        try:
+            if times is not None:
+                return made.write_frames(log, times, part)
+            assert made.write_events is not None
+            return made.write_events(log, part)
+        except ModuleNotFoundError as error:
+            raise LogError(f"{kind} needs {error.name}: pip install 'idealgas[export]'") from error
 
 
 def frame_times(log: Log, choice: str) -> np.ndarray:

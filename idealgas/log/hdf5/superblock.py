@@ -1,53 +1,25 @@
-"""The first bytes of an HDF5 file: who has it open, and where it ends.
+"""The first bytes of an HDF5 file: whether a writer has it open, and where it ends.
 
 A writer that lives or died has its mark there, and HDF5 then refuses to open the file in the common way.
 HDF5 File Format Specification 3.0, II.A: version 3 has the status flags in byte 11, the end of the file in bytes 28 to
 35, and the lookup3 checksum of all before it in bytes 44 to 47.
 """
 
-import errno
-import fcntl
 import io
 import os
-import stat
 import struct
-import time
 from contextlib import suppress
 from pathlib import Path
-from typing import IO
 
 import h5py
 
-PATIENCE = 0.5
-"""Seconds for which a reader that asks may be in a writer's way."""
+from idealgas.files import lock, open_regular
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SIZE = 48
 _PAGE = 4096
 _FAR = 1 << 50
 _MASK = 0xFFFFFFFF
-
-
-def open_regular(path: Path) -> IO[bytes]:
-    """Open a file for reading. OSError for what is not a regular file, of which nothing is touched.
-
-    To open a device may do something to it, and to open a FIFO waits for its other end.
-    """
-    _check_regular(path.stat())
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    try:
-        _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
-    except OSError:
-        os.close(descriptor)
-        raise
-    return os.fdopen(descriptor, "rb", buffering=0)
-
-
-def _check_regular(found: os.stat_result) -> None:
-    if stat.S_ISDIR(found.st_mode):
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if not stat.S_ISREG(found.st_mode):
-        raise OSError(errno.EINVAL, "not a regular file")
 
 
 def is_marked(path: Path) -> bool | None:
@@ -129,31 +101,6 @@ def abandon(file: h5py.File) -> None:
     os.close(nowhere)
     with suppress(OSError, RuntimeError):
         file.close()
-
-
-def lock(file: int | IO) -> None:
-    """Hold a file open for writing as its only writer, as long as the process lives. Raises OSError if another does.
-
-    HDF5 gives up its own lock in SWMR mode. This one is advisory; readers only ask for a moment whether it is held.
-    """
-    deadline = time.monotonic() + PATIENCE
-    while True:
-        try:
-            return fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.001)
-
-
-def is_locked(path: Path) -> bool:
-    """Whether another process holds the file with `lock`."""
-    try:
-        with open_regular(path) as file:
-            fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError as error:
-        return isinstance(error, BlockingIOError)
-    return False
 
 
 def _unmarked(block: bytes, end: int) -> bytes:

@@ -4,7 +4,7 @@ import csv
 import json
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import save
-from idealgas.errors import UserError
+from idealgas.files import check_output, storage_error, written
 from idealgas.study.accuracy.orbit import OrbitStudy
 from idealgas.study.accuracy.study import Accuracy, Row
 
@@ -200,42 +200,36 @@ def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
     return asdict(found) | {"sentences": found.sentences()}
 
 
-def make_folder(path: str | os.PathLike[str]) -> Path:
-    """Make the folder for the files if it does not exist.
+def outputs(path: str | os.PathLike[str], name: str, force: bool = False) -> list[Path]:
+    """Paths NAME.csv, NAME.json and NAME.png in a folder, which is made if it does not exist.
 
     Raises:
-        UserError: with exit code 1, if it cannot be made.
+        OutputError: if the folder cannot be made, or one of the files not be written.
     """
     folder = Path(path)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise _failure(folder, error) from error
-    return folder
-
-
-def write_files(
-    folder: Path, name: str, result: dict[str, Any], rows: list[dict[str, Any]], figure: Figure
-) -> list[Path]:
-    """Write NAME.csv, NAME.json and NAME.png into a folder, replacing existing files, and return their paths.
-
-    Raises:
-        UserError: with exit code 1, if a file cannot be written.
-    """
-    paths = [folder / f"{name}.{ending}" for ending in ("csv", "json", "png")]
-    try:
-        with paths[0].open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, list(rows[0]), restval="")
-            writer.writeheader()
-            writer.writerows(rows)
-        paths[1].write_text(json.dumps(result, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise _failure(folder, error) from error
-    save(figure, paths[2])
+        raise storage_error(folder, error) from error
+    paths = [folder / f"{name}{kind}" for kind in (".csv", ".json", ".png")]
+    for found in paths:
+        check_output(found, found.suffix, force)
     return paths
 
 
-def _failure(path: Path, error: OSError) -> UserError:
-    failure = UserError(f"{path}: cannot be written: {error.strerror}")
-    failure.exit_code = 1
-    return failure
+def write_files(
+    paths: Sequence[Path], result: dict[str, Any], rows: list[dict[str, Any]], figure: Figure, force: bool = False
+) -> None:
+    """Write the files that `outputs` gave; existing ones are replaced only with `force`.
+
+    Raises:
+        OutputError: if a file cannot be written.
+    """
+    table, numbers, picture = paths
+    with written(table, ".csv", force) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]), restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    with written(numbers, ".json", force) as part:
+        part.write_text(json.dumps(result, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    save(figure, picture, force)

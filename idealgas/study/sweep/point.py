@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from idealgas.analysis import registry
+from idealgas.files import replacing
 from idealgas.scene import parse_scene
 
 
@@ -71,6 +72,5 @@ def run_point(task: Task) -> None:
     }
     found = {**labels, "values": task.values, "scene": task.scene, "summary": summary, "analyses": results}
     text = json.dumps(found, indent=1, allow_nan=False)
-    unfinished = done.with_name(f"{done.name}.part")
-    unfinished.write_text(text)
-    unfinished.replace(done)
+    with replacing(done) as unfinished:
+        unfinished.write_text(text)

@@ -11,6 +11,7 @@ from typing import Any
 from idealgas.analysis.core.premises import origin_of
 from idealgas.analysis.core.result import Origin
 from idealgas.errors import UserError
+from idealgas.files import replacing
 from idealgas.scene import parse_scene
 from idealgas.study.sweep.point import points_folder
 
@@ -54,19 +55,18 @@ def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
         key=lambda name: name in ("analysis", "quantity", *ESTIMATE)
     )  # columns that identify the point come first
     tables = [Path(folder) / "results.csv"]
-    part = tables[0].with_name("results.csv.part")
-    with part.open("w", newline="") as file:
+    with replacing(tables[0]) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, names, restval="")
         writer.writeheader()
         writer.writerows(rows)
-    part.replace(tables[0])
     if find_spec("pyarrow"):
         import pyarrow
         from pyarrow import parquet
 
         tables.append(Path(folder) / "results.parquet")
         columns = {name: [row.get(name) for row in rows] for name in names}
-        parquet.write_table(pyarrow.table(columns), tables[-1])
+        with replacing(tables[-1]) as part:
+            parquet.write_table(pyarrow.table(columns), part)
     return tables
 
 

@@ -12,6 +12,7 @@ from crafted import craft, link, put, read_path, swap
 from isal import isal_zlib
 from log_samples import write_log
 
+from idealgas.errors import OutputError
 from idealgas.log import LogError, LogWriter, open_log, recover
 from idealgas.log.hdf5 import gate
 
@@ -179,7 +180,7 @@ def test_what_is_not_a_regular_file(tmp_path):
 @pytest.mark.parametrize(("limit", "what"), [("MOST_CHUNK", "a chunk"), ("MOST_TEXT", "text")])
 def test_no_log_is_written_that_would_not_be_read(tmp_path, monkeypatch, limit, what):
     monkeypatch.setattr(gate, limit, 1000)
-    with pytest.raises(LogError, match=rf"{what} of .* bytes \(allowed up to 1,000\)") as caught:
+    with pytest.raises(OutputError, match=rf"{what} of .* bytes \(allowed up to 1,000\)") as caught:
         write_log(tmp_path / "run.h5", STOP)
     assert caught.value.exit_code == 2
     assert not list(tmp_path.iterdir())

@@ -12,6 +12,7 @@ import pytest
 from log_samples import STEP, check, rows, write_log, write_rows
 from support import ROOT
 
+from idealgas.errors import OutputError
 from idealgas.events import BLOCK, EventBatch
 from idealgas.log import LogError, LogWriter, open_log, recover
 
@@ -68,7 +69,7 @@ def test_a_living_writer_is_left_alone(tmp_path):
             log.refresh()
             assert check(log) >= before
         for refused in (recover, LogWriter.resume):
-            with pytest.raises(LogError, match="another process has this file open"):
+            with pytest.raises(OutputError, match="another process has this file open"):
                 refused(path)
         assert child.poll() is None
     finally:
@@ -107,7 +108,7 @@ def test_recovery_of_a_copy(left, tmp_path):
     stop = recover(left, tmp_path / "copy.h5")
     assert left.read_bytes() == before
     assert_plain(tmp_path / "copy.h5", stop)
-    with pytest.raises(LogError, match="exists already"):
+    with pytest.raises(OutputError, match="exists already"):
         recover(left, tmp_path / "copy.h5")
 
 

@@ -199,16 +199,16 @@ def test_a_video_that_fails_says_why_and_leaves_nothing(path, tmp_path, monkeypa
 
 
 def test_an_old_film_survives_a_failure(path, tmp_path, monkeypatch):
-    (tmp_path / "film.gif").write_bytes(b"old")
+    (tmp_path / "film.gif").write_bytes(b"GIF89a old")
 
     def fail(self, frame):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(GifWriter, "write", fail)
     with open_log(path) as log, pytest.raises(UserError, match="cannot be written: No space left") as caught:
-        animate(log, tmp_path / "film.gif", end=2.0, size=(240, 240))
+        animate(log, tmp_path / "film.gif", end=2.0, size=(240, 240), force=True)
     assert caught.value.exit_code == 1
-    assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("film.gif", b"old")]
+    assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("film.gif", b"GIF89a old")]
 
 
 def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from log_compare import scene_of
 
+from idealgas.errors import OutputError
 from idealgas.log import LogError, open_log
 from idealgas.log.export.export import FORMATS, export, frame_times
 from idealgas.run.simulate import simulate
@@ -131,12 +132,22 @@ def test_choices_of_frames(log):
 
 def test_an_existing_file_stays(log, tmp_path):
     (tmp_path / "run.csv").write_text("precious")
-    with pytest.raises(LogError, match="exists already"):
+    with pytest.raises(OutputError, match="exists already"):
         export(log, "csv", tmp_path / "run.csv")
+    with pytest.raises(OutputError, match=r"run\.csv: is no \.csv file of idealgas"):
+        export(log, "csv", tmp_path / "run.csv", force=True)
     assert (tmp_path / "run.csv").read_text() == "precious"
-    pytest.importorskip("pyarrow")
-    assert export(log, "csv", tmp_path / "run.csv", force=True) == len(log)
-    assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
+
+
+@pytest.mark.parametrize(("kind", "made"), FORMATS.items())
+def test_a_file_of_the_same_kind_is_replaced(log, kind, made, tmp_path):
+    path = tmp_path / f"out{made.ending}"
+    for events in [False] * 2 + [True] * (2 * bool(made.write_events)):
+        try:
+            export(log, kind, path, None if events else [0.0], force=True)
+        except LogError as error:
+            pytest.skip(str(error))
+    assert list(tmp_path.iterdir()) == [path]
 
 
 @pytest.mark.parametrize("kind", ["gsd", "extxyz", "h5md3d"])

@@ -1,0 +1,223 @@
+"""Files of the program: where one may be written, how a whole one gets its name, who holds one, what may be read."""
+
+import errno
+import fcntl
+import os
+import re
+import secrets
+import stat
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO
+
+from idealgas.errors import OutputError
+
+LOG = "log"
+"""Kind of a log; the other kinds are the endings of their files."""
+
+HEAD = 4096  # bytes of a file that tell its kind
+
+_HTML = rb'<!doctype html>.*<meta name="generator" content="idealgas'
+_HDF5 = rb"\x89HDF\r\n\x1a\n"
+_BEGINNINGS = {
+    LOG: _HDF5 + rb".*idealgas log",
+    ".csv": rb'"time","disc"|case,|precision,',
+    ".extxyz": rb"\d+\nLattice=",
+    ".gif": rb"GIF8[79]a",
+    ".gsd": rb"\xdf\x65" * 4,
+    ".h5md": _HDF5,
+    ".htm": _HTML,
+    ".html": _HTML,
+    ".json": rb'\{\s*"(title|period)"',
+    ".mp4": rb"....ftyp",
+    ".parquet": rb"PAR1",
+    ".pdf": rb"%PDF-",
+    ".png": rb"\x89PNG\r\n\x1a\n",
+    ".svg": rb"<\?xml.*<svg",
+}
+"""How files of each kind begin that this program has written."""
+
+PATIENCE = 0.5
+"""Seconds for which a reader that asks may be in a writer's way."""
+
+Name = str | os.PathLike[str]
+
+
+def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> None:
+    """Raise OutputError where a file of a kind cannot be written.
+
+    A file that is there is replaced only with `force`, and only if it is empty or of the same kind, so that a slip of
+    the hand destroys nothing else. inputs: files that the output must not replace, by whatever name.
+    """
+    path = Path(path)
+    try:
+        found = _stat(path)
+        place = path.resolve()
+        if found is None and not place.parent.is_dir():
+            raise OutputError(f"{path}: no folder {path.parent}")
+        if found is not None:
+            _check_replaceable(path, found, kind, force, inputs)
+        for needed in (place.parent, *([place] if found else [])):
+            if not os.access(needed, os.R_OK | os.W_OK):
+                raise OutputError(f"{path}: cannot be written: {os.strerror(errno.EACCES)}", exit_code=1)
+        if found is not None and is_locked(place):
+            raise OutputError(f"{path}: another process has this file open")
+    except OSError as error:
+        raise storage_error(path, error) from error
+
+
+def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool, inputs: Iterable[Name]) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise OutputError(f"{path}: is a folder")
+    if not stat.S_ISREG(found.st_mode):
+        raise OutputError(f"{path}: is no regular file")
+    if any(os.path.samestat(found, there) for there in map(_stat, inputs) if there):
+        raise OutputError(f"{path}: is an input too: another name is needed for the output")
+    if not force:
+        raise OutputError(f"{path}: exists already (--force replaces it)")
+    with open_regular(path) as file:
+        head = file.read(HEAD)
+    if head and not re.match(_BEGINNINGS[kind], head, re.DOTALL):
+        what = "log" if kind == LOG else f"{kind} file"
+        raise OutputError(f"{path}: is no {what} of idealgas: --force replaces no other files")
+
+
+def _stat(path: Name) -> os.stat_result | None:
+    with suppress(FileNotFoundError, NotADirectoryError):
+        return os.stat(path)
+    return None
+
+
+@contextmanager
+def written(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> Iterator[Path]:
+    """As `replacing`, where `check_output` has nothing against it; it raises OutputError."""
+    check_output(path, kind, force, inputs)
+    with replacing(Path(path), force) as part:
+        yield part
+
+
+@contextmanager
+def replacing(path: Path, force: bool = True) -> Iterator[Path]:
+    """Yield a path beside another: what is written there gets the other's name once it is whole.
+
+    Raises OutputError where that fails; then nothing is left of it.
+    """
+    part = beside(path)
+    try:
+        yield part
+        give_name(part, path, force)
+    except OSError as error:
+        raise storage_error(path, error) from error
+    finally:
+        with suppress(OSError):
+            part.unlink()
+
+
+def beside(path: Path) -> Path:
+    """A hidden name in the folder where the file is, or that a link leads to, which nobody else uses."""
+    place = path.resolve()
+    return place.with_name(f".{place.name}.{secrets.token_hex(4)}")
+
+
+def give_name(part: Path, path: Path, force: bool, fsync: bool = False) -> None:
+    """Let a file that is whole appear under its name, in one step.
+
+    Without `force` never in place of another, and never in place of one that another process holds.
+    """
+    place = path.resolve()
+    while not _named(part, place, force):
+        pass  # the file that was to be replaced has gone, or been replaced, in between
+    if fsync:
+        folder = os.open(place.parent, os.O_RDONLY)
+        os.fsync(folder)
+        os.close(folder)
+
+
+def _named(part: Path, place: Path, force: bool) -> bool:
+    try:
+        os.link(part, place)
+    except FileExistsError:
+        if not force:
+            raise
+    except OSError:  # a file system without links
+        if not place.exists():
+            part.replace(place)
+            return True
+        if not force:
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST)) from None
+    else:
+        part.unlink()
+        return True
+    try:
+        with place.open("r+b") as old:
+            lock(old)
+            if not os.path.samestat(os.fstat(old.fileno()), place.stat()):
+                return False
+            part.replace(place)
+    except FileNotFoundError:
+        if not part.exists():
+            raise
+        return False
+    return True
+
+
+def storage_error(path: Path, error: Exception) -> OutputError:
+    """Why a file could not be written; HDF5 tells the system's reason only within its text."""
+    number = error.errno if isinstance(error, OSError) else None
+    if number is None and (found := re.search(r"errno = (\d+)", str(error))):
+        number = int(found[1])
+    if number == errno.EEXIST:
+        return OutputError(f"{path}: exists already (--force replaces it)")
+    if number in (errno.EAGAIN, errno.EWOULDBLOCK):
+        return OutputError(f"{path}: another process has this file open")
+    reason = os.strerror(number) if number else str(error).splitlines()[0]
+    return OutputError(f"{path}: cannot be written: {reason}", exit_code=1)
+
+
+def lock(file: int | IO) -> None:
+    """Hold a file open for writing as its only writer, as long as the process lives. Raises OSError if another does.
+
+    HDF5 gives up its own lock in SWMR mode. This one is advisory; readers only ask for a moment whether it is held.
+    """
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        try:
+            return fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.001)
+
+
+def is_locked(path: Path) -> bool:
+    """Whether another process holds the file with `lock`."""
+    try:
+        with open_regular(path) as file:
+            fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError as error:
+        return isinstance(error, BlockingIOError)
+    return False
+
+
+def open_regular(path: Path) -> IO[bytes]:
+    """Open a file for reading. OSError for what is not a regular file, of which nothing is touched.
+
+    To open a device may do something to it, and to open a FIFO waits for its other end.
+    """
+    _check_regular(path.stat())
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    try:
+        _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
+    except OSError:
+        os.close(descriptor)
+        raise
+    return os.fdopen(descriptor, "rb", buffering=0)
+
+
+def _check_regular(found: os.stat_result) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "not a regular file")
