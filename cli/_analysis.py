@@ -13,6 +13,7 @@ from idealgas.files import check_output
 
 from ._options import force_option, json_option
 from ._tables import print_tables
+from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.declaration import Analysis, Option
@@ -31,17 +32,16 @@ def open_log(path: str) -> "Log":
     opened = log.open_log(path)
     if opened.unclosed:
         state = "is being written" if opened.live else "its writer died; `idealgas resume` would go on with it"
-        click.echo(f"{path}: {state}; read up to t = {opened.end_time:g}, {len(opened):,} event rows", err=True)
+        echo(f"{path}: {state}; read up to t = {opened.end_time:g}, {len(opened):,} event rows", err=True)
     return opened
 
 
 @contextmanager
 def reading(what: str = "events") -> Iterator[Callable[[int, int], None]]:
     """Yield progress(done, total), which shows a progress bar on a terminal; what: what is counted."""
-    from rich.console import Console
     from rich.progress import Progress
 
-    console = Console(stderr=True)
+    console = terminal(err=True)
     with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
         task = bar.add_task(f"reading {what}", total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
@@ -51,7 +51,7 @@ def print_json(result: dict[str, Any]) -> None:
     """Print a result as JSON."""
     import json
 
-    click.echo(json.dumps(result, indent=2, allow_nan=False))
+    echo(json.dumps(result, indent=2, allow_nan=False))
 
 
 # ── one command an analysis ──
@@ -156,12 +156,12 @@ def _analyse(
         from idealgas.analysis.core import tables
 
         for sentence in result.premises:
-            click.echo(f"premise: {sentence}", err=True)
-        click.echo(tables.as_csv(analysis.tables(result)), nl=False)
+            echo(f"premise: {sentence}", err=True)
+        echo(tables.as_csv(analysis.tables(result)), nl=False)
     else:
         print_tables(analysis.tables(result))
         if verdict:
-            click.echo(f"{verdict}")
+            echo(f"{verdict}")
     if verdict and verdict.agrees is False:
         raise SystemExit(1)
 
@@ -174,7 +174,7 @@ def _print_no_theory(error: NotApplicableError, as_json: bool) -> None:
     if as_json:
         print_json(verdict.as_dict())
     else:
-        click.echo(f"{verdict}")
+        echo(f"{verdict}")
 
 
 def _results(

@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from ._terminal import terminal
+
 if TYPE_CHECKING:
     from idealgas.run.simulate import Progress
 
@@ -16,7 +18,6 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
     """
     import time
 
-    from rich.console import Console
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bars
 
@@ -26,7 +27,7 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
         TextColumn("{task.description}"),
         TimeRemainingColumn(),
     )
-    console = Console(stderr=True)
+    console = terminal(err=True)
     started = time.perf_counter()
     first: list[int] = []  # number of events at the first call, not 0 for a resumed run
     with Bars(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
@@ -38,7 +39,7 @@ def progress_bar() -> Iterator[Callable[["Progress"], None]]:
             rate = (progress.events - first[0]) / (time.perf_counter() - started)
             doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}, remaining"
             if progress.notice:
-                bar.console.print(progress.notice, markup=False, highlight=False, soft_wrap=True)
+                bar.console.print(progress.notice, highlight=False, soft_wrap=True)
             bar.update(task, completed=progress.share, description=doing)
 
         yield show

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-import click
+from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
     from idealgas.run.simulate import Summary
@@ -29,7 +29,7 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
         command = shlex.join(["idealgas", *sys.argv[1:]])
         summary = simulate(command=command, on_progress=show, interrupted=lambda: bool(asked_to_stop))
     if as_json:
-        click.echo(json.dumps(summary.as_dict(), indent=2))
+        echo(json.dumps(summary.as_dict(), indent=2))
     else:
         _print(summary, path, from_start)
     if asked_to_stop:
@@ -39,7 +39,6 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
 def _print(summary: "Summary", output: str, from_start: bool) -> None:
     import os
 
-    from rich.console import Console
     from rich.filesize import decimal
     from rich.table import Table
 
@@ -67,4 +66,4 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
         table.add_row("events per second", f"{summary.events / summary.seconds:,.0f}")
     with suppress(FileNotFoundError):  # moved while it was written
         table.add_row("file size", decimal(os.path.getsize(output)))
-    Console().print(table)
+    terminal().print(table)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-import click
+from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.tables import Table
@@ -15,13 +15,12 @@ MANY_COLUMNS = 8
 def print_tables(tables: "Iterable[Table]") -> None:
     """Print tables one below another, each after its notes."""
     from rich import box
-    from rich.console import Console
     from rich.table import Table
 
-    console = Console()
+    console = terminal()
     for found in tables:
         for note in found.notes:
-            click.echo(note)
+            echo(note)
         if not found.rows:
             continue
         table = Table(title=found.title, title_justify="left")

@@ -8,6 +8,7 @@ import click
 
 from ._analysis import print_json
 from ._options import force_option, json_option, scene_argument
+from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
     from idealgas.study.accuracy.orbit import OrbitStudy
@@ -58,18 +59,17 @@ def accuracy(
         return
     show()
     for sentence in result["sentences"]:
-        click.echo(f"- {sentence}")
+        echo(f"- {sentence}")
     if paths:
-        click.echo(", ".join(map(str, paths)))
+        echo(", ".join(map(str, paths)))
 
 
 @contextmanager
 def _progress_bar() -> Iterator[Callable[[str, float], None]]:
     """Yield the function that shows on a terminal which work is being done, and its share that is done."""
-    from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-    console = Console(stderr=True)
+    console = terminal(err=True)
     columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}, elapsed"), TimeElapsedColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
         task = bar.add_task("starting", total=1.0)
@@ -77,7 +77,6 @@ def _progress_bar() -> Iterator[Callable[[str, float], None]]:
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
-    from rich.console import Console
     from rich.table import Column, Table
 
     averages = Table(Column("", no_wrap=True), title="Time and averages", title_justify="left")
@@ -103,16 +102,14 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
             _number(row["trajectory_lost_after"], "{:.2g}"),
             _number(row["way_back_error"], "{:.1e}"),
         )
-    console = Console()
+    console = terminal()
     console.print(averages)
     console.print(motion)
-    click.echo(
+    echo(
         "path error: distance from the double-double motion after 1 collision per disc; lost after: collisions per disc"
     )
-    click.echo(
-        "until this distance is 0.1; way back: distance from the start after reversing all velocities at 1 collision"
-    )
-    click.echo("per disc. All distances are rms, in diameters.")
+    echo("until this distance is 0.1; way back: distance from the start after reversing all velocities at 1 collision")
+    echo("per disc. All distances are rms, in diameters.")
 
 
 def _number(value: float | None, form: str, factor: float = 1.0) -> str:
@@ -125,7 +122,6 @@ def _percent(row: dict[str, Any], name: str) -> str:
 
 
 def _print_orbit(orbit: "OrbitStudy") -> None:
-    from rich.console import Console
     from rich.table import Table
 
     title = f"Unstable periodic orbit, period {orbit.period:.6g}, {orbit.placements} boxes and radii"
@@ -138,4 +134,4 @@ def _print_orbit(orbit: "OrbitStudy") -> None:
         table.add_row(
             found.precision, f"{found.digits:.1f}", own, f"{found.median:.4g}", least, most, f"{found.unbroken}"
         )
-    Console().print(table)
+    terminal().print(table)

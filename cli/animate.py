@@ -7,6 +7,7 @@ import click
 
 from ._analysis import log_argument, open_log, reading
 from ._options import force_option
+from ._terminal import echo
 
 
 def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
@@ -72,4 +73,4 @@ def animate(
         )
     instead = "" if film.path == Path(output) else f" instead of {output}, as there is no ffmpeg"
     window = f"t = {film.start:.6g} to {film.end:.6g}"
-    click.echo(f"{film.path}{instead}: {film.frames} frames, {window}, {film.fps:g} frames per second")
+    echo(f"{film.path}{instead}: {film.frames} frames, {window}, {film.fps:g} frames per second")

@@ -3,6 +3,7 @@
 import click
 
 from ._options import json_option
+from ._terminal import echo, terminal
 
 
 def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) -> list[float]:
@@ -38,12 +39,11 @@ def bench(
 def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, repeats: int, as_json: bool) -> None:
     import json
 
-    from rich.console import Console
     from rich.table import Table
 
     from idealgas.study.bench.bench import bench as measure
 
-    console = Console(stderr=True)
+    console = terminal(err=True)
     with console.status("compiling") as status:
         found = measure(
             numbers,
@@ -54,7 +54,7 @@ def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, rep
         )
     if as_json:
         rows = [row._asdict() for row in found.rows]
-        click.echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
+        echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
         return
     table = Table("N", "φ", "log", "M collisions/s", "slowest – fastest", "log / no log")
     for row in found.rows:
@@ -62,26 +62,25 @@ def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, rep
         spread = f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"
         rate = f"{row.collisions_per_s / 1e6:.3f}"
         table.add_row(f"{row.N:,}", f"{row.phi:g}", "on" if row.log else "off", rate, spread, share)
-    Console().print(table)
-    click.echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")
+    terminal().print(table)
+    echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")
 
 
 def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
     import json
 
-    from rich.console import Console
     from rich.table import Table
 
     from idealgas.study.bench.effects import bench_effects
 
-    console = Console(stderr=True)
+    console = terminal(err=True)
     with console.status("compiling") as status:
         rows = bench_effects(events, repeats, lambda row: status.update(f"{row.effect}: {row.ratio:.2f}"))
     if as_json:
-        click.echo(json.dumps({"rows": [row._asdict() for row in rows]}, indent=2))
+        echo(json.dumps({"rows": [row._asdict() for row in rows]}, indent=2))
         return
     table = Table("effect", "time per event / plain box", "smallest – largest", "compiling or loading, s")
     for row in rows:
         spread = f"{row.smallest:.2f} – {row.largest:.2f}"
         table.add_row(row.effect, f"{row.ratio:.2f}", spread, f"{row.compile_seconds:.1f}")
-    Console().print(table)
+    terminal().print(table)

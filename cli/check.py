@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ._options import json_option, scene_argument
+from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -29,8 +30,6 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     import json
     from dataclasses import asdict
 
-    from rich.console import Console
-
     from idealgas.analysis.theory.forecast import forecast
     from idealgas.gas.build import make_gas
 
@@ -38,21 +37,21 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
-        click.echo(json.dumps({"scene": tables, **effects, **asdict(expected)}, indent=2))
+        echo(json.dumps({"scene": tables, **effects, **asdict(expected)}, indent=2))
         return
-    click.echo(dump_document(scene))
-    console = Console()
+    echo(dump_document(scene))
+    console = terminal()
     console.print(_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until))
     if expected.rough:
-        click.echo(f"about: {expected.rough}")
+        echo(f"about: {expected.rough}")
     for sentence in expected.premises:
-        click.echo(f"premise: {sentence}")
+        echo(f"premise: {sentence}")
     if expected.beyond:
-        click.echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
+        echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:
-        click.echo("\n".join(_rest_lines(expected.rest, expected.number)))
-    click.echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
-    click.echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
+        echo("\n".join(_rest_lines(expected.rest, expected.number)))
+    echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
+    echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
 
 
 def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:

@@ -4,6 +4,7 @@ import click
 
 from ._analysis import log_argument, open_log
 from ._options import force_option
+from ._terminal import echo
 
 KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
@@ -35,4 +36,4 @@ def export(path: str, kind: str, events: bool, frames: str | None, output: str |
     with open_log(path) as log:
         target = output or str(Path(path).with_suffix(FORMATS[kind].ending))
         number = write(log, kind, target, None if frames is None else frame_times(log, frames).tolist(), force)
-    click.echo(f"{target}: {number:,} {'event rows' if events else 'frames'}")
+    echo(f"{target}: {number:,} {'event rows' if events else 'frames'}")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ._analysis import log_argument
+from ._terminal import terminal
 
 if TYPE_CHECKING:
     from rich.console import Group
@@ -26,13 +27,12 @@ def follow(path: str, once: bool) -> None:
     """
     import time
 
-    from rich.console import Console
     from rich.live import Live
 
     from idealgas.analysis.status import status
     from idealgas.log import open_log
 
-    console = Console()
+    console = terminal()
     rate: float | None = None
     with open_log(path) as log, Live(console=console, auto_refresh=False, transient=True) as screen:
         seen, looked = status(log), time.monotonic()
@@ -56,7 +56,6 @@ def follow(path: str, once: bool) -> None:
 def _view(log: "Log", seen: "Status", rate: float | None) -> "Group":
     from rich.console import Group
     from rich.table import Table
-    from rich.text import Text
 
     state = (
         "complete" if log.complete else "running" if log.live else "its writer died" if log.unclosed else "interrupted"
@@ -71,7 +70,7 @@ def _view(log: "Log", seen: "Status", rate: float | None) -> "Group":
     for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility)):
         table.add_row(name, "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}")
     table.add_row("KS distance of speeds", "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}")
-    return Group(*(Text(f"premise: {sentence}") for sentence in seen.premises), table, Text(_histogram(seen)))
+    return Group(*(f"premise: {sentence}" for sentence in seen.premises), table, _histogram(seen))
 
 
 def _histogram(seen: "Status") -> str:

@@ -6,6 +6,7 @@ import click
 
 from ._analysis import log_argument, open_log, print_json
 from ._options import json_option
+from ._terminal import terminal
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 @json_option
 def info(path: str, as_json: bool) -> None:
     """Show the contents of a log: its scene, its discs, and the state of its run."""
-    from rich.console import Console
-
     from idealgas.analysis.info import info as describe_log
 
     with open_log(path) as log:
@@ -25,7 +24,7 @@ def info(path: str, as_json: bool) -> None:
     if as_json:
         print_json(found)
         return
-    console = Console()
+    console = terminal()
     for name, values in found.items():
         console.print(_table(name, {key: value for key, value in values.items() if key != "species"}))
     for species in found["gas"]["species"]:
@@ -34,11 +33,10 @@ def info(path: str, as_json: bool) -> None:
 
 def _table(title: str, values: dict[str, Any]) -> "Table":
     from rich.table import Table
-    from rich.text import Text
 
     table = Table(title=title, title_justify="left", show_header=False, min_width=60)
     for key, value in values.items():
-        table.add_row(key.replace("_", " "), Text(_text(value)))
+        table.add_row(key.replace("_", " "), _text(value))
     return table
 
 

@@ -17,6 +17,7 @@ from idealgas.errors import UserError
 
 from . import __path__ as folder
 from ._analysis import analysis_command
+from ._terminal import echo
 
 
 class Commands(click.Group):
@@ -42,10 +43,10 @@ class Commands(click.Group):
         try:
             return super().invoke(ctx)
         except UserError as error:
-            click.echo(str(error), err=True)
+            echo(str(error), err=True)
             ctx.exit(error.exit_code)
         except MemoryError:
-            click.echo("out of memory: the scene is too large for this machine", err=True)
+            echo("out of memory: the scene is too large for this machine", err=True)
             ctx.exit(1)
 
 

@@ -4,6 +4,7 @@ import click
 
 from ._analysis import log_argument
 from ._options import force_option
+from ._terminal import echo
 
 
 @click.command()
@@ -18,4 +19,4 @@ def recover(path: str, output: str | None, force: bool) -> None:
     from idealgas.log import recover as close
 
     rows = close(path, output, force)
-    click.echo(f"{output or path}: {rows:,} event rows kept")
+    echo(f"{output or path}: {rows:,} event rows kept")

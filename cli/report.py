@@ -4,6 +4,7 @@ import click
 
 from ._analysis import log_argument, open_log, reading
 from ._options import force_option
+from ._terminal import echo
 
 
 @click.command()
@@ -26,4 +27,4 @@ def report(path: str, output: str, start: float | None, force: bool) -> None:
 
     with open_log(path) as log, reading("analyses") as progress:
         write_report(log, output, start=start, force=force, on_step=progress)
-    click.echo(output)
+    echo(output)

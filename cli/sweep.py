@@ -8,6 +8,8 @@ import click
 
 from idealgas.errors import UserError
 
+from ._terminal import echo, terminal
+
 if TYPE_CHECKING:
     from idealgas.study.sweep.plan import Sweep
     from idealgas.study.sweep.run import Progress
@@ -46,13 +48,13 @@ def sweep(path: str, output: str | None, workers: int | None, scheduler: str | N
     except KeyboardInterrupt:
         interrupted = True
     if interrupted or outcome is None:
-        click.echo("interrupted; the same command goes on where this one stopped", err=True)
+        echo("interrupted; the same command goes on where this one stopped", err=True)
         raise SystemExit(130)
     for index, reason in outcome.failures.items():
-        click.echo(f"point {index} failed: {reason}", err=True)
+        echo(f"point {index} failed: {reason}", err=True)
     if outcome.ran or outcome.before:
         tables = " and ".join(map(str, write_tables(output)))
-        click.echo(f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed: {tables}")
+        echo(f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed: {tables}")
     if outcome.failures:
         raise SystemExit(1)
 
@@ -60,7 +62,6 @@ def sweep(path: str, output: str | None, workers: int | None, scheduler: str | N
 @contextmanager
 def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
     """Yield the function that shows on a terminal how many points are finished and failed."""
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -68,7 +69,7 @@ def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
         BarColumn(), MofNCompleteColumn(), TextColumn("points, {task.fields[failed]} failed, remaining"),
         TimeRemainingColumn(),
     )  # fmt: skip
-    console = Console(stderr=True)
+    console = terminal(err=True)
     with Bar(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
         task = bar.add_task("sweep", total=None, failed=0)
 
@@ -82,7 +83,6 @@ def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
 def _print_plan(plan: "Sweep", workers: int | None) -> None:
     import os
 
-    from rich.console import Console
     from rich.filesize import decimal
     from rich.table import Table
 
@@ -95,8 +95,8 @@ def _print_plan(plan: "Sweep", workers: int | None) -> None:
         values = (f"{value:.6g}" if isinstance(value, float) else str(value) for value in point.values.values())
         sizes = (f"{cost.number}", f"{cost.packing_fraction:.4g}", f"{cost.events:,.0f}", decimal(int(cost.bytes)))
         table.add_row(str(point.index), str(point.replicate), *values, *sizes)
-    Console().print(table)
+    terminal().print(table)
     size = sum(cost.bytes for cost in costs)
     kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
     seconds = sum(cost.seconds for cost in costs) / workers
-    click.echo(f"{len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")
+    echo(f"{len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-FREE = {"_version", "errors", "events", "files", "sides", ""}
-"""The version, the errors of the user, files to write, the columns of events and the numbers of walls are for all."""
+FREE = {"_version", "errors", "events", "files", "plain", "sides", ""}
+"""Version, errors of the user, files to write, plain text, columns of events and numbers of walls are for all."""
 
 ALLOWED = {
     "document": set(),
@@ -25,6 +25,7 @@ ALLOWED = {
     "errors": set(),
     "events": set(),
     "files": set(),
+    "plain": set(),
     "sides": set(),
     "": {"scene", "log", "run", "analysis"},  # the Python interface, imported when it is asked for
     "__main__": set(),

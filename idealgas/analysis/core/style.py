@@ -1,13 +1,16 @@
 """Common style of all pictures: colours that colour-blind readers can distinguish, and panels."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from idealgas.files import written
+from idealgas.plain import plain
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
@@ -22,8 +25,22 @@ def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> N
         OutputError: if the file cannot be written.
     """
     kind = Path(path).suffix.lower()
+    show_names(figure)
     with written(path, kind, force) as part:
         figure.savefig(part, dpi=150, format=kind.removeprefix("."))
+
+
+def name_rows(ax: Axes, names: Sequence[str], **options: Any) -> None:
+    """Names at 0, 1, … of the vertical axis."""
+    ax.set_yticks(range(len(names)), list(map(plain, names)), **options)
+
+
+def show_names(figure: Figure) -> None:
+    """Show every text of a figure as it is: `$` and control characters in names have no meaning."""
+    for text in figure.findobj(Text):
+        text.set_text(plain(text.get_text()))
+        if "$" in text.get_text():
+            text.set_parse_math(False)
 
 
 def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Axes]]:

@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, panels
+from idealgas.analysis.core.style import COLOURS, name_rows, panels
 from idealgas.analysis.heat_capacity.combine import HeatCapacity
 
 
@@ -15,7 +15,7 @@ def heat_capacity_figure(result: HeatCapacity) -> Figure:
         if route.value.theory is not None:
             ax.plot([route.value.theory] * 2, [k - 0.35, k + 0.35], color=COLOURS[1])
     names = [f"{route.name}\n({', '.join(filter(None, (route.kind, route.gas)))})" for route in routes]
-    ax.set_yticks(range(len(routes)), names, fontsize="small")
+    name_rows(ax, names, fontsize="small")
     ax.plot([], [], "o", color=COLOURS[0], label="measured")
     ax.plot([], [], color=COLOURS[1], label="theory")
     ax.set_xlabel("C/N, and γ (no unit, k_B = 1)")

@@ -18,7 +18,7 @@ from matplotlib.patches import StepPatch
 from matplotlib.ticker import MaxNLocator
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.style import COLOURS
+from idealgas.analysis.core.style import COLOURS, show_names
 from idealgas.analysis.movie.piston_track import PistonTrack
 from idealgas.analysis.theory.conserved import common_motion
 from idealgas.analysis.theory.distributions import SpeedLaw
@@ -113,6 +113,7 @@ class Painter:
         self._title = self._figure.text(LEFT / page[0], 1 - 0.65 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
         self._draw_speeds(self._add_axes(place.speeds, page))
+        show_names(self._figure)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, _repeated, panels
+from idealgas.analysis.core.style import COLOURS, GREY, _repeated, name_rows, panels
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
@@ -24,7 +24,7 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
     held = [(k, wall.pressure.theory) for k, wall in enumerate(walls) if wall.pressure.theory is not None]
     for k, theory in held:
         ax.plot(theory, k, "|", ms=18, color=COLOURS[1], label="outer pressure")
-    ax.set_yticks(range(len(walls)), [wall.name for wall in walls])
+    name_rows(ax, [wall.name for wall in walls])
     ax.set_xlabel("P on the wall (energy/length²)")
     ax.set_ylabel("wall")
     if held:
@@ -41,7 +41,7 @@ def _of_log(result: Pressure) -> Figure:
     values = [route.compressibility.value for route in routes]
     errors = [route.compressibility.standard_error for route in routes]
     ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3)
-    ax.set_yticks(range(len(routes)), [route.name for route in routes])
+    name_rows(ax, [route.name for route in routes])
     for (name, theory), colour, style in zip(
         result.theories.items(), (GREY, *COLOURS[1:]), _repeated(("-", "--", ":")), strict=False
     ):

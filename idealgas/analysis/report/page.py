@@ -1,17 +1,18 @@
 """Report of a log as one HTML page without other files: the run, all analyses that apply to it, and a player."""
 
 import base64
+import html
 import io
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from html import escape
 from importlib import resources
 from pathlib import Path
 from string import Template
 
 from matplotlib.figure import Figure
 
+from idealgas.analysis.core.style import show_names
 from idealgas.analysis.core.tables import Number, Table
 from idealgas.analysis.info import info
 from idealgas.analysis.report.player import MOST_DISCS, Player, player
@@ -19,6 +20,7 @@ from idealgas.analysis.report.sections import Section, make_sections
 from idealgas.errors import UserError
 from idealgas.files import check_output, written
 from idealgas.log import Log
+from idealgas.plain import plain
 
 SCRIPTS = ("gas.js", "views.js", "player.js")
 """The program of the page, in order."""
@@ -129,6 +131,11 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     )
 
 
+def escape(text: str) -> str:
+    """A text as HTML that shows it as it is, in an element or in an attribute."""
+    return html.escape(plain(text))
+
+
 def _text(name: str) -> str:
     return resources.files("idealgas.analysis.report").joinpath(name).read_text(encoding="utf-8")
 
@@ -156,7 +163,7 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
 
 
 def _data(played: Player) -> str:
-    head = json.dumps(played.head, allow_nan=False).replace("</", "<\\/")
+    head = json.dumps(played.head, allow_nan=False).replace("<", "\\u003c")
     arrays = (f'<script type="text/plain" id="data-{name}">{packed}</script>' for name, packed in played.arrays.items())
     return "\n".join([f'<script type="application/json" id="data-head">{head}</script>', *arrays])
 
@@ -191,6 +198,7 @@ def _section(section: Section) -> str:
 
 def _picture(figure: Figure, caption: str) -> str:
     file = io.BytesIO()
+    show_names(figure)
     figure.savefig(file, format="svg", metadata={"Date": None})
     source = base64.b64encode(file.getvalue()).decode()
     text = escape(caption)
