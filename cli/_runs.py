@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
-    from idealgas.run.simulate import Summary
+    from idealgas.log.summary import Summary
 
 
 def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:

@@ -41,8 +41,9 @@ if TYPE_CHECKING:
     from idealgas.errors import OutputError, UserError
     from idealgas.events import EventBatch, Kind
     from idealgas.log import Log, LogError, LogState, open_log
+    from idealgas.log.summary import Summary
     from idealgas.run.resume import resume
-    from idealgas.run.simulate import Progress, Summary, simulate
+    from idealgas.run.simulate import Progress, simulate
     from idealgas.scene import Scene, SceneError, load_scene, parse_scene
 
 _HOMES = {
@@ -52,7 +53,8 @@ _HOMES = {
     "idealgas.events": ("EventBatch", "Kind"),
     "idealgas.log": ("Log", "LogError", "LogState", "open_log"),
     "idealgas.run.resume": ("resume",),
-    "idealgas.run.simulate": ("Progress", "Summary", "simulate"),
+    "idealgas.log.summary": ("Summary",),
+    "idealgas.run.simulate": ("Progress", "simulate"),
     "idealgas.scene": ("Scene", "SceneError", "load_scene", "parse_scene"),
 }
 """Where the names lie that are no analysis; the analyses are those of the registry."""

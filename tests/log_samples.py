@@ -32,7 +32,7 @@ def gas(discs: int = DISCS) -> Gas:
         radius=np.full(discs, 0.1),
         mass=np.linspace(1, 2, discs),
         species=np.arange(discs, dtype=np.uint16) % 2,
-        species_names=("light", "schwer — ü"),
+        species_names=("light", "schwer — ü")[:discs],
     )
 
 
@@ -82,7 +82,7 @@ def mark(writer: LogWriter) -> None:
 
 
 def checkpoint_arrays(row: int) -> dict[str, np.ndarray]:
-    return {"position": row + np.arange(2.0 * DISCS).reshape(-1, 2), "velocity": np.full((DISCS, 2), row / 7)}
+    return {"position": (row + np.arange(2.0 * DISCS).reshape(-1, 2)) % 5, "velocity": np.full((DISCS, 2), row / 7)}
 
 
 def write_log(path: Path, stop: int, summary: dict | None = None, **options) -> Path:

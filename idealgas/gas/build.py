@@ -16,13 +16,7 @@ def make_gas(scene: Scene) -> Gas:
     1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or if one is in static contact
     with a wall or the piston to which it is pressed.
     """
-    kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
-    count = [len(scene.disc), *(s.count for s in scene.species)]
-    radius = np.repeat([s.radius for s in scene.species], count[1:])
-    mass = np.repeat([s.mass for s in scene.species], count[1:])
-    explicit = np.array([kinds.index((disc.radius, disc.mass)) for disc in scene.disc], np.uint16)
-    names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
-    radius = np.concatenate(([disc.radius for disc in scene.disc], radius))
+    radius, mass, species, names = disc_constants(scene)
     gas = Gas(
         box=scene.box.size,
         position=_positions(scene, radius),
@@ -33,15 +27,34 @@ def make_gas(scene: Scene) -> Gas:
             ]
         ),
         radius=radius,
-        mass=np.concatenate(([disc.mass for disc in scene.disc], mass)),
-        species=np.concatenate(
-            (explicit, np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count[1:]))
-        ),
-        species_names=(*names, *(s.name for s in scene.species)),
+        mass=mass,
+        species=species,
+        species_names=names,
     )
     if issues := list(static_contact_issues(scene, gas)):
         raise SceneError(scene.report(issues))
     return gas
+
+
+def number_of_discs(scene: Scene) -> int:
+    """Number N of discs of a scene."""
+    return len(scene.disc) + sum(species.count for species in scene.species)
+
+
+def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...]]:
+    """Radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
+    kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
+    count = [s.count for s in scene.species]
+    radius, mass = (np.repeat([getattr(s, name) for s in scene.species], count) for name in ("radius", "mass"))
+    explicit = np.array([kinds.index((disc.radius, disc.mass)) for disc in scene.disc], np.uint16)
+    others = np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count)
+    names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
+    return (
+        np.concatenate(([disc.radius for disc in scene.disc], radius)),
+        np.concatenate(([disc.mass for disc in scene.disc], mass)),
+        np.concatenate((explicit, others)),
+        (*names, *(s.name for s in scene.species)),
+    )
 
 
 def stream(seed: int, use: str) -> np.random.Generator:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.events import EVENT_COLUMNS, EventBatch, Kind, columns_named, empty_batch
+from idealgas.events import EventBatch, Kind, columns_named, empty_batch
 from idealgas.gas.state import Gas
+from idealgas.log.components import VECTORS, components
 from idealgas.log.errors import LogError
 from idealgas.log.replay import LogState
 from idealgas.log.schema import Wall
-from idealgas.sides import face_names
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -20,14 +20,6 @@ Columns = dict[str, np.ndarray]
 
 KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
 """What the numbers in the column `kind` of events stand for."""
-
-VECTORS: dict[str, Sequence[str]] = {
-    **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},
-    "momentum": ("momentum_x", "momentum_y"),
-    "kinetic_flow": tuple(f"kinetic_flow_{part}" for part in ("xx", "xy", "yy")),
-    "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
-}
-"""Names of the columns that the components of a vector become."""
 
 CHOSEN_BY = {"events": ("disc", "t0", "t1"), "discs": ("disc", "times"), "observables": ("t0", "t1")}
 """Tables that a log has, and the arguments of `Log.to_pandas` that choose rows of them."""
@@ -86,12 +78,10 @@ def flat_samples(
     """Samples at times t0 ≤ t < t1, with their times; observables: times and values, by name."""
     time = next((time for time, _ in observables.values()), np.empty(0))
     some = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
-    names = [wall.name for wall in walls]
-    faces = {name: [f"{name}_{face}" for face in face_names(names)] for name in ("face_push", "face_drag", "face_hits")}
-    given = [f"wall_energy_{name}" for name in names]
-    lost = [f"dissipated_energy_{name}" for name in ("discs", *names)]
-    vectors = {**VECTORS, **faces, "wall_energy": given, "dissipated_energy": lost}
-    return flat({"time": time[some]} | {name: values[some] for name, (_, values) in observables.items()}, vectors)
+    return flat(
+        {"time": time[some]} | {name: values[some] for name, (_, values) in observables.items()},
+        components([wall.name for wall in walls]),
+    )
 
 
 def check_choice(path: Path, what: str, choice: Mapping[str, Any]) -> None:

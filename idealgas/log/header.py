@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.gas.state import Gas
-from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, VERSIONS, Wall
+from idealgas.log.rules import check_boundary, check_species, check_walls
+from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, RUN_COLUMNS, VERSIONS, Wall
 from idealgas.log.source import Source
 
 if TYPE_CHECKING:
@@ -22,7 +23,9 @@ class LogHeader:
         self.unclosed = source.unclosed
         self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
         self.gravity: tuple[float, float] = tuple(source.fixed("gravity").tolist())
-        self.periodic = tuple(word == b"periodic" for word in source.attribute("box", "boundary").tolist())
+        words = source.attribute("box", "boundary").tolist()
+        source.checked(lambda: check_boundary(words), "box")
+        self.periodic = tuple(word == b"periodic" for word in words)
 
     @cached_property
     def runs(self) -> list[tuple[str, str]]:
@@ -30,10 +33,7 @@ class LogHeader:
 
         The first one is the run that made it, the others went on with it; their scenes differ only in where they end.
         """
-        texts = (
-            [text.decode() for text in self._source.column(f"runs/{name}").tolist()] for name in ("scene", "command")
-        )
-        return list(zip(*texts, strict=True))
+        return list(zip(*(self._source.texts(f"runs/{column.name}") for column in RUN_COLUMNS), strict=True))
 
     @property
     def scene_text(self) -> str:
@@ -43,9 +43,16 @@ class LogHeader:
     @cached_property
     def scene(self) -> "Scene":
         """Scene of the last run, with all defaults filled in."""
-        from idealgas.scene import parse_scene
+        from idealgas.log.agreement import check_scene
+        from idealgas.scene import Scene, parse_scene
 
-        return parse_scene(self.scene_text, name=f"{self.path}: scene")
+        def read() -> Scene:
+            scene = parse_scene(self.scene_text, "scene")
+            kept = {*self._source.names("events"), *self._source.names("checkpoints")}
+            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, kept)
+            return scene
+
+        return self._source.checked(read, "runs/scene")
 
     @property
     def command(self) -> str:
@@ -65,7 +72,9 @@ class LogHeader:
     def discs(self) -> Gas:
         """The discs at the start of the run: constants of each disc, and position and velocity at time 0."""
         columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
-        return Gas(box=self.box, species_names=tuple(self._source.texts("discs/species_name")), **columns)
+        names = tuple(self._source.texts("discs/species_name"))
+        self._source.checked(lambda: check_species(columns["species"], len(names)), "discs/species")
+        return Gas(box=self.box, species_names=names, **columns)
 
     @cached_property
     def inertia(self) -> np.ndarray | None:
@@ -76,5 +85,7 @@ class LogHeader:
     @cached_property
     def walls(self) -> list[Wall]:
         """Sides of the box (left, right, bottom, top), then the wall segments; events name wall k as partner -1 - k."""
-        ends = self._source.fixed("walls/endpoints").tolist()
-        return [Wall(name, *map(tuple, end)) for name, end in zip(self._source.texts("walls/name"), ends, strict=True)]
+        ends, names = self._source.fixed("walls/endpoints").tolist(), self._source.texts("walls/name")
+        walls = [Wall(name, *map(tuple, end)) for name, end in zip(names, ends, strict=True)]
+        self._source.checked(lambda: check_walls(walls, self.box), "walls/endpoints")
+        return walls

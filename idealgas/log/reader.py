@@ -29,10 +29,9 @@ Without this package the columns are plain datasets:
         print(dict(zip(log["summary/name"], log["summary/value"])) or "interrupted")
 """
 
-import json
 import os
 from collections import namedtuple
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
 from time import sleep
@@ -46,7 +45,10 @@ from idealgas.log.errors import LogError
 from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
 from idealgas.log.header import LogHeader
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
+from idealgas.log.rules import check_pairs
+from idealgas.log.schema import SUMMARY_COLUMNS
 from idealgas.log.source import ATTEMPTS, PAUSE, Source
+from idealgas.log.summary import parse_summary
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -72,6 +74,17 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
 def _rows(columns: tuple[str, ...]) -> Any:
     """Type of blocks of rows with these columns; to make it takes longer than to read a short block."""
     return namedtuple("Rows", columns)
+
+
+class Entries(dict[str, Any]):
+    """What a table of a log has, by name; LogError for what it lacks."""
+
+    def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
+        super().__init__(entries)
+        self._where = f"{path}: {table}"
+
+    def __missing__(self, name: str) -> Any:
+        raise LogError(f"{self._where}: has no {name}")
 
 
 class Log(LogHeader):
@@ -136,7 +149,16 @@ class Log(LogHeader):
     @cached_property
     def checkpoints(self) -> Checkpoints:
         """States at the starts of epochs, from which the run can be resumed; read when they are indexed."""
-        return Checkpoints(self._source, len(self))
+        found = Checkpoints(self._source, len(self), self._check_checkpoint)
+        if self.complete and len(found) < self._source.rows("checkpoints"):
+            row = self._source.column("checkpoints/row")[-1]
+            raise LogError(f"{self.path}: damaged: checkpoints/row: {row} (allowed up to {len(self)}, all events)")
+        return found
+
+    def _check_checkpoint(self, time: float, row: int) -> None:
+        """That the event rows before a checkpoint are those before its time."""
+        if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
+            raise LogError(f"{self.path}: damaged: checkpoints/row: {row} at t = {time:g} (got other events before it)")
 
     @cached_property
     def observables(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -152,10 +174,11 @@ class Log(LogHeader):
         """
         names = [name.partition("/")[0] for name in self._source.names("observables") if name.endswith("/value")]
         times = next((name for name in self._source.names("observables") if name.endswith("/time")), "")
-        return {
+        found = {
             name: (self._source.column(f"observables/{times}"), self._source.column(f"observables/{name}/value"))
             for name in names
         }
+        return Entries(self.path, "observables", found)
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
@@ -166,20 +189,24 @@ class Log(LogHeader):
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The fields of the run's `Summary` by name; empty if the run did not come to its end."""
-        names, values = (self._source.column(f"summary/{name}").tolist() for name in ("name", "value"))
-        return {name.decode(): json.loads(value) for name, value in zip(names, values, strict=True)}
+        names, values = (self._source.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
+        found = self._source.checked(lambda: parse_summary(names, values), "summary/value")
+        if self.has_events and found.get("rows", len(self)) != len(self):
+            raise LogError(f"{self.path}: damaged: summary/value: {found['rows']} rows (events: {len(self)})")
+        return Entries(self.path, "summary", found)
 
     @cached_property
     def end_time(self) -> float:
         """Time up to which the log covers the motion of the gas."""
-        if "end_time" in self.summary:
-            return self.summary["end_time"]
         last = [self.start_time]
         if len(self.checkpoints):
             last.append(self.checkpoints.times[-1].item())
         if len(self):
             last.append(self._times((len(self) - 1) // self._block * self._block)[-1].item())
-        return max(last)
+        end = self.summary.get("end_time", max(last))
+        if end < max(last):
+            raise LogError(f"{self.path}: damaged: summary/value: end_time {end:g} (allowed from {max(last):g} on)")
+        return end
 
     @property
     def has_positions(self) -> bool:
@@ -207,8 +234,10 @@ class Log(LogHeader):
             raise LogError(f"{self.path}: its events have no {' and no '.join(missing)} ({self.scene.run.method})")
         stop = len(self) if stop is None else min(stop, len(self))
         for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
+            rows = {name: self._source.chunk(f"events/{name}", first) for name in names}
+            self._source.checked(partial(check_pairs, rows, first), "events")
             some = slice(max(start - first, 0), stop - first)
-            yield block(**{name: self._source.chunk(f"events/{name}", first)[some] for name in names})
+            yield block(**{name: column[some] for name, column in rows.items()})
 
     def row_at(self, time: float, side: str = "left") -> int:
         """Number of the first event row at `time` or later; with side "right", of the first one later than `time`."""

@@ -1,6 +1,6 @@
 """States of the gas from what a log holds: checkpoints, and between them the discs' records and free flight."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, overload
 
 import numpy as np
@@ -49,8 +49,9 @@ class Checkpoint(NamedTuple):
 class Checkpoints(Sequence[Checkpoint]):
     """The checkpoints of a log up to event row `rows`, read when asked for."""
 
-    def __init__(self, source: Source, rows: int) -> None:
-        self._source = source
+    def __init__(self, source: Source, rows: int, check: Callable[[float, int], None]) -> None:
+        """check: raises LogError where a time and a row cannot be those of one checkpoint."""
+        self._source, self._check = source, check
         self.times = source.column("checkpoints/time")
         self.rows = source.column("checkpoints/row")
         if source.rows("events"):
@@ -70,6 +71,7 @@ class Checkpoints(Sequence[Checkpoint]):
         row = range(len(self))[index]
         entries = {name: self._entry(name, row) for name in self._source.names("checkpoints")}
         time, at, epoch = (entries.pop(column.name).item() for column in CHECKPOINT_COLUMNS)
+        self._check(time, at)
         arrays = {name: entry for name, entry in entries.items() if entry.ndim}
         values = {name: entry.item() for name, entry in entries.items() if not entry.ndim}
         return Checkpoint(time, at, epoch, arrays, values)

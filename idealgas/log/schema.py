@@ -45,6 +45,8 @@ CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
 """What a checkpoint has of each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
 """Shared by all observables, whose step is the number of epochs, and by all that snapshots have of a disc."""
+RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
+"""Texts of each run that wrote into the log."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """One row for each thing that a run tells of itself at its end; the values are JSON."""
 DISC_COLUMNS = (
@@ -54,6 +56,11 @@ DISC_COLUMNS = (
     Column("mass", "f8", (), "mass"),
     Column("species", "u2"),
 )
+ID = Column("id", "u4")
+BOX, GRAVITY = Column("box", "f8", (2,), "length"), Column("gravity", "f8", (2,), "length/time^2")
+ENDPOINTS = Column("endpoints", "f8", (2, 2), "length")
+NAME = Column("name", "S")
+"""What is known before a run: of each disc, of the whole, and of each wall; species have names too."""
 
 ROOT_ATTRIBUTES = ("format", "format_version", "seed", "created")
 PACKAGES = ("numpy", "numba", "h5py", "isal")
@@ -116,16 +123,17 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
     set_attributes(objects.group("h5md/author"), name=np.bytes_("unknown"))
     set_attributes(objects.group("h5md/creator"), name=np.bytes_("idealgas"), version=np.bytes_(__version__))
     walls, store = layout.walls, objects.constant
-    box = store("box", np.array(gas.box, "f8"), "length")
+    box = store(BOX.name, np.array(gas.box, BOX.dtype), BOX.unit)
     set_attributes(box, boundary=np.array(layout.boundary, "S"))
-    store("gravity", np.array(layout.gravity, "f8"), "length/time^2")
-    store("discs/id", np.arange(len(gas), dtype="u4"))
+    store(GRAVITY.name, np.array(layout.gravity, GRAVITY.dtype), GRAVITY.unit)
+    store("discs/id", np.arange(len(gas), dtype=ID.dtype))
     given = {column: getattr(gas, column.name) for column in DISC_COLUMNS} | dict(layout.disc_columns)
     for column, values in given.items():
         store(f"discs/{column.name}", np.asarray(values, column.dtype), column.unit)
     store("discs/species_name", _text(gas.species_names))
     store("walls/name", _text([wall.name for wall in walls]))
-    store("walls/endpoints", np.array([(wall.start, wall.end) for wall in walls], "f8").reshape(-1, 2, 2), "length")
+    ends = np.array([(wall.start, wall.end) for wall in walls], ENDPOINTS.dtype).reshape(-1, *ENDPOINTS.shape)
+    store("walls/endpoints", ends, ENDPOINTS.unit)
 
 
 def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:

@@ -19,6 +19,7 @@ from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
 from idealgas.log.hdf5.gate import open_dataset, open_object
 from idealgas.log.hdf5.superblock import Unmarked, is_marked
+from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
 _CACHED_CHUNKS = 8
 ATTEMPTS = 10
@@ -75,16 +76,21 @@ class Source:
 
         def read() -> np.ndarray:
             column = StoredColumn(open_dataset(self._file, name))
-            if column.chunk != column.shape:
-                raise ValueError(f"of shape {column.shape} in chunks of {column.chunk} (allowed: in one)")
-            return column.read(0, column.shape[0])
+            self.rules.check_fixed(name, column)
+            data = column.read(0, column.shape[0])
+            self.rules.check(name, data)
+            return data
 
         return self._read(read, f"{name}: ")
 
     def texts(self, name: str) -> list[str]:
-        """A dataset of strings that was stored before the run."""
-        texts = self.fixed(name).tolist()
-        return self._read(lambda: [text.decode() for text in texts], f"{name}: ")
+        """A dataset of strings: one that was stored before the run, or a column of a table."""
+        texts = (self.column(name) if name in self._columns else self.fixed(name)).tolist()
+        return self.checked(lambda: [text.decode() for text in texts], name)
+
+    def checked(self, action: Callable[[], Result], what: str) -> Result:
+        """Do what raises ValueError where data break a rule. what: the data's name."""
+        return self._read(action, f"{what}: ")
 
     def attribute(self, name: str, attribute: str) -> np.ndarray:
         """One attribute of a dataset or group."""
@@ -125,6 +131,22 @@ class Source:
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
+        self.rules = self._rules(size)
+
+    def _rules(self, size: int) -> Rules:
+        """The rules for this log, which its tables keep; size: of the file, bytes."""
+        discs, species, walls = (self._column_at(name) for name in ("discs/id", "discs/species_name", "walls/name"))
+        counts = (discs.extent, species.extent, walls.extent)
+        check_sizes(*counts, size)
+        box = self._column_at("box")
+        rules = Rules(box_of(box.whole(0) if box.chunk == (2,) else np.empty(0)), *counts)
+        for table, names in self._names.items():
+            columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
+            rules.check_table(columns, self.rows(table), size)
+        check_names(self._names)
+        if not self.rows("runs"):
+            raise ValueError("runs/scene: no rows")
+        return rules
 
     def _column_at(self, path: str) -> StoredColumn:
         try:
@@ -134,7 +156,13 @@ class Source:
 
     def _chunk(self, path: str, start: int) -> np.ndarray:
         column, rows, tail = self._columns[path], self.rows(table_of(path)), self.commit.tails[path]
-        data = self._read(lambda: column.read(start, rows, tail), f"{path} from row {start}: ")
+
+        def read() -> np.ndarray:
+            data = column.read(start, rows, tail)
+            self.rules.check(path, data, start)
+            return data
+
+        data = self._read(read, f"{path} from row {start}: ")
         data.flags.writeable = False
         return data
 

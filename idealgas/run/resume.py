@@ -9,10 +9,11 @@ from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
 from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
+from idealgas.log.summary import Summary
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
 from idealgas.run.layout import TOTALS, restore, row_columns
-from idealgas.run.simulate import LoggedRun, Progress, RunHistory, Summary, method_of, stop_of
+from idealgas.run.simulate import LoggedRun, Progress, RunHistory, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
 
 TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again

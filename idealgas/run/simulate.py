@@ -5,7 +5,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba.core.event import TimingListener
@@ -20,6 +20,7 @@ from idealgas.errors import UserError
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
 from idealgas.log import LogWriter
+from idealgas.log.summary import Summary
 from idealgas.physics.effects import Effects
 from idealgas.run.effects.bundle import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
@@ -30,44 +31,6 @@ from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
-
-
-@dataclass(frozen=True)
-class Summary:
-    """What a run came to, all of the log included if it was resumed.
-
-    completed: whether the run reached the end that its scene asks for. end_time: time at which it ended. events: number
-    of events, the sum of disc_collisions (of two discs) and wall_hits (of discs with walls and the piston). trials:
-    number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision. epochs: number of them.
-
-    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston, with
-    what collisions lost and less what walls gave, relative to the largest of these: rounding errors only. None where
-    collisions lose energy in a log of before, which has no account of that.
-    deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
-    in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
-    the overlap is that of all collisions, each of which has one.
-
-    seconds: wall time of this run without start-up and compilation; compile_seconds: that of compilation.
-    """
-
-    completed: bool
-    end_time: float
-    events: int
-    disc_collisions: int
-    wall_hits: int
-    trials: int
-    rows: int
-    epochs: int
-    energy_change: float
-    energy_drift: float | None
-    deepest_overlap: float
-    farthest_outside: float
-    seconds: float
-    compile_seconds: float
-
-    def as_dict(self) -> dict[str, Any]:
-        """The fields by name, ready for JSON."""
-        return asdict(self)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import PAIRS, WALLS, Pressure, pressure
 from idealgas.errors import UserError
 from idealgas.log import Log, open_log
-from idealgas.run.simulate import Summary, simulate
+from idealgas.log.summary import Summary
+from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
 
 

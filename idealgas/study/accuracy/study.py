@@ -13,7 +13,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.errors import UserError
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
-from idealgas.run.simulate import Summary
+from idealgas.log.summary import Summary
 from idealgas.scene import Scene
 from idealgas.study.accuracy.averages import Averages, measure_averages
 from idealgas.study.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated

@@ -8,7 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from idealgas.run.simulate import Summary, simulate
+from idealgas.log.summary import Summary
+from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
 
 NUMBER, RADIUS, PACKING_FRACTION = 1000, 0.5, 0.1

@@ -120,6 +120,7 @@ def test_half_a_pair_does_not_count(tmp_path):
             if values is not None:
                 column[:6] = values
         batch.kind[:6] = Kind.DISC
+        batch.time[:6] = np.repeat([1, 3, 5], 2) * STEP
         batch.disc[:6] = [3, 9, 4, 8, 2, 7]
         batch.partner[:6] = [9, 3, 8, 4, 7, 2]
         writer.write(5)

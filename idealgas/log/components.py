@@ -1,0 +1,22 @@
+"""Names of the components of what a log has more than one number of."""
+
+from collections.abc import Mapping, Sequence
+
+from idealgas.events import EVENT_COLUMNS
+from idealgas.sides import face_names
+
+VECTORS: dict[str, Sequence[str]] = {
+    **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},
+    "momentum": ("momentum_x", "momentum_y"),
+    "kinetic_flow": tuple(f"kinetic_flow_{part}" for part in ("xx", "xy", "yy")),
+    "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
+}
+"""Those that all logs have in common."""
+
+
+def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
+    """Components of events and observables, in a log whose walls have these names."""
+    faces = {name: [f"{name}_{face}" for face in face_names(walls)] for name in ("face_push", "face_drag", "face_hits")}
+    given = [f"wall_energy_{name}" for name in walls]
+    lost = [f"dissipated_energy_{name}" for name in ("discs", *walls)]
+    return {**VECTORS, **faces, "wall_energy": given, "dissipated_energy": lost}

@@ -1,0 +1,244 @@
+"""What the datasets of a log may say: types and shapes as declared, numbers that are finite, in range and in order.
+
+Every column is checked as it is read: no number of a file is used before. What breaks a rule raises ValueError.
+"""
+
+import math
+import sys
+from bisect import bisect
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from idealgas.events import EVENT_COLUMNS, VELOCITY, Column, Kind
+from idealgas.log.components import components
+from idealgas.log.hdf5.column import StoredColumn
+from idealgas.log.schema import (
+    BOX,
+    CHECKPOINT_COLUMNS,
+    DISC_COLUMNS,
+    ENDPOINTS,
+    GRAVITY,
+    ID,
+    NAME,
+    RUN_COLUMNS,
+    SAMPLE_COLUMNS,
+    SUMMARY_COLUMNS,
+    Wall,
+)
+from idealgas.sides import SIDES, side_ends
+
+NEEDED: dict[str, Sequence[Column]] = {
+    "runs": RUN_COLUMNS,
+    "events": [column for column in EVENT_COLUMNS if not column.when],
+    "checkpoints": (*CHECKPOINT_COLUMNS, VELOCITY),
+    "summary": SUMMARY_COLUMNS,
+}
+"""Columns that a table has in any case; only that of the events may not be there at all."""
+
+ORDERED = ("time", "row", "epoch", "step", "trial")
+"""Columns that never decrease, and are never negative."""
+
+MOST_PACKED = 1100
+"""Bytes that one byte of a file may become: deflate gives no more than 1032."""
+
+LARGEST = sys.float_info.max
+
+Range = tuple[float, float | tuple[float, float]]
+
+
+class Rules:
+    """The rules for one log."""
+
+    def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int) -> None:
+        """box: width and height, length. discs, species, walls: how many there are."""
+        width, height = box
+        self._ranges: dict[str, Range] = {
+            **dict.fromkeys(ORDERED, (0, LARGEST)),
+            "disc": (0, discs - 1),
+            "partner": (-walls, discs - 1),
+            "kind": (0, max(Kind)),
+            "position": (0, width if width == height else box),
+            "species": (0, species - 1),
+            **dict.fromkeys(("radius", "mass"), (math.ulp(0.0), LARGEST)),
+            "inertia": (0, LARGEST),
+        }
+        each = lambda column: column._replace(shape=(discs, *column.shape))  # noqa: E731
+        shapes = {name: (len(parts),) for name, parts in components(["wall"] * walls).items()}
+        self._observed = {**shapes, "pair_collisions": (species, species)}
+        self._declared = {
+            **{column.name: column for column in (BOX, GRAVITY)},
+            **{f"discs/{column.name}": each(column) for column in (*EVENT_COLUMNS, *DISC_COLUMNS, ID)},
+            "discs/inertia": Column("inertia", "f8", (discs,)),
+            "discs/species_name": NAME._replace(shape=(species,)),
+            "walls/name": NAME._replace(shape=(walls,)),
+            "walls/endpoints": ENDPOINTS._replace(shape=(walls, *ENDPOINTS.shape)),
+            **{f"runs/{column.name}": column for column in RUN_COLUMNS},
+            **{f"summary/{column.name}": column for column in SUMMARY_COLUMNS},
+            **{f"events/{column.name}": column for column in EVENT_COLUMNS},
+            **{f"checkpoints/{column.name}": each(column) for column in EVENT_COLUMNS},
+            **{f"checkpoints/{column.name}": column for column in CHECKPOINT_COLUMNS},
+            **{f"particles/discs/{column.name}/value": each(column) for column in EVENT_COLUMNS},
+        }
+        self._edges: dict[str, tuple[list[int], list[tuple[float, float]]]] = {}
+
+    def check_fixed(self, name: str, stored: StoredColumn) -> None:
+        """Type and shape of a dataset that was stored before the run, in one chunk."""
+        column = self._declared[name]
+        self._check_type(column, stored)
+        if stored.shape != column.shape or stored.chunk != column.shape:
+            raise ValueError(f"of shape {stored.shape} (allowed {column.shape}, in one chunk)")
+
+    def check_table(self, columns: Mapping[str, StoredColumn], rows: int, file_size: int) -> None:
+        """Types, shapes and sizes of the datasets of a table, of which `rows` rows are valid."""
+        (chunk, *others) = {column.chunk[0] for column in columns.values()}
+        if others:
+            raise ValueError(f"{next(iter(columns))}: chunks of {chunk} and {others[0]} rows in one table")
+        for path, stored in columns.items():
+            try:
+                self._check_column(path, stored)
+                if rows > stored.extent:
+                    raise ValueError(f"{rows:,} rows (allowed {stored.extent:,}, as many as there are)")
+                if rows * math.prod(stored.chunk[1:]) * stored.dtype.itemsize > MOST_PACKED * file_size:
+                    raise ValueError(f"{rows:,} rows in a file of {file_size:,} bytes")
+            except ValueError as error:
+                raise ValueError(f"{path}: {error}") from error
+
+    def _check_column(self, path: str, stored: StoredColumn) -> None:
+        table, *names = path.split("/")
+        column = self._declared.get(path)
+        if column is None and table in ("observables", "particles"):
+            shared = {column.name: column for column in SAMPLE_COLUMNS}.get(names[-1])
+            shape = self._observed.get(names[0], ())
+            column = shared or (
+                Column(names[0], "", shape) if table == "observables" and names[-1] == "value" else None
+            )
+        elif column is None and table == "checkpoints" and len(names) == 1:
+            column = Column(names[0], "", stored.chunk[1:])  # of an effect or of a sum
+        if column is None:
+            raise ValueError("not a column of a log")
+        self._check_type(column, stored)
+        if stored.chunk[1:] != column.shape:
+            raise ValueError(f"entries of shape {stored.chunk[1:]} (allowed {column.shape})")
+
+    def _check_type(self, column: Column, stored: StoredColumn) -> None:
+        if column.dtype in ("", "S"):
+            fits = (stored.dtype.kind == "S") == (column.dtype == "S")
+        else:
+            fits = stored.dtype == np.dtype(column.dtype)
+        if not fits:
+            raise ValueError(
+                f"of type {stored.dtype} (allowed {np.dtype(column.dtype) if column.dtype else 'numbers'})"
+            )
+
+    def check(self, path: str, data: np.ndarray, start: int = 0) -> None:
+        """The rows of a column from row `start` on."""
+        name = path.rpartition("/")[2]
+        if not data.size or data.dtype.kind == "S":
+            return
+        unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
+        low, high = self._ranges.get(name, (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST))
+        if isinstance(high, tuple):
+            for axis, most in enumerate(high):
+                _check_range(data[..., axis], low, most, start)
+        else:
+            _check_range(data, low, high, start)
+        if name in ORDERED:
+            self._check_order(path, data, start)
+
+    def _check_order(self, path: str, data: np.ndarray, start: int) -> None:
+        """Rows of a chunk among themselves, and against those of the chunks that were read before."""
+        if (falls := data[1:] < data[:-1]).any():
+            raise ValueError(f"decreases in row {start + 1 + int(falls.argmax())}")
+        starts, edges = self._edges.setdefault(path, ([], []))
+        place = bisect(starts, start)
+        if place and starts[place - 1] == start:
+            return
+        if (place and edges[place - 1][1] > data[0]) or (place < len(starts) and data[-1] > edges[place][0]):
+            raise ValueError("decreases from one chunk to the next")
+        starts.insert(place, start)
+        edges.insert(place, (data[0].item(), data[-1].item()))
+
+
+def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
+    """That all numbers are in a range, and none is nan."""
+    if data.min() >= low and data.max() <= high:
+        return
+    wrong = ~((data >= low) & (data <= high))
+    value, row = data[wrong][0].item(), start + int(wrong.reshape(len(data), -1).any(axis=1).argmax())
+    allowed = "finite numbers" if (low, high) == (-LARGEST, LARGEST) else f"{low:g} to {high:g}"
+    raise ValueError(f"{value:g} in row {row} (allowed {allowed})")
+
+
+def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
+    """That a collision of two discs is two rows, one for each, with one time, the smaller id first.
+
+    columns: chunks of some columns of events, from row `start` on. A pair may lie across the edge of a chunk.
+    """
+    if "disc" not in columns or "partner" not in columns:
+        return
+    disc, partner = columns["disc"].view("i4"), columns["partner"]
+    pair, first = partner >= 0, disc < partner
+    second = pair & ~first
+    wrong = second[1:] != first[:-1]
+    wrong |= first[:-1] & ((disc[1:] != partner[:-1]) | (partner[1:] != disc[:-1]))
+    if "time" in columns:
+        wrong |= first[:-1] & (columns["time"][1:] != columns["time"][:-1])
+    if wrong.any() or (second[0] and not start):
+        raise ValueError(f"events/partner: no pair in row {start + int(wrong.argmax()) if wrong.any() else 0}")
+    if "kind" in columns and ((columns["kind"] == Kind.DISC) != pair).any():
+        row = start + int(((columns["kind"] == Kind.DISC) != pair).argmax())
+        raise ValueError(f"events/kind: not that of its partner in row {row}")
+
+
+def box_of(data: np.ndarray) -> tuple[float, float]:
+    """Width and height of the box."""
+    if data.shape != BOX.shape or data.dtype != np.dtype(BOX.dtype) or not ((data > 0) & (data <= LARGEST)).all():
+        raise ValueError("box: not a width and a height, finite numbers > 0")
+    width, height = data.tolist()
+    return width, height
+
+
+def check_names(names: Mapping[str, Sequence[str]]) -> None:
+    """That each table has the columns that it needs. names: of the columns, by table."""
+    for table, columns in NEEDED.items():
+        if table == "events" and table not in names:
+            continue
+        if missing := [column.name for column in columns if column.name not in names.get(table, ())]:
+            raise ValueError(f"{table}/{missing[0]}: not there")
+    for table, found in names.items():
+        if len(set(found)) != len(found):
+            raise ValueError(f"{table}: a column is there twice")
+
+
+def check_species(species: np.ndarray, kinds: int) -> None:
+    """That there is a disc of each of `kinds` species."""
+    if missing := set(range(kinds)) - set(np.unique(species).tolist()):
+        raise ValueError(f"no disc of species {min(missing)}")
+
+
+def check_boundary(words: object) -> None:
+    """What the box says of its sides along x and y."""
+    if not isinstance(words, list) or len(words) != 2 or not set(words) <= {b"none", b"periodic"}:
+        raise ValueError("attribute boundary: not none or periodic along x and along y")
+
+
+def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:
+    """That the first walls are the sides of the box, and the others segments in it."""
+    for wall, ends in zip(walls, side_ends(box), strict=False):
+        if (wall.start, wall.end) != ends:
+            raise ValueError(f"not the sides of a box of {box[0]:g} by {box[1]:g} (got {wall.start} to {wall.end})")
+    for wall in walls[len(SIDES) :]:
+        inside = all(0 <= end[axis] <= box[axis] for end in (wall.start, wall.end) for axis in range(2))
+        if not inside or wall.start == wall.end:
+            raise ValueError(f"not a segment in the box ({wall.start} to {wall.end})")
+
+
+def check_sizes(discs: int, species: int, walls: int, file_size: int) -> None:
+    """That there are as many discs, species and walls as a log may have."""
+    if not 1 <= discs <= file_size:
+        raise ValueError(f"discs/id: {discs:,} discs in a file of {file_size:,} bytes")
+    if not 1 <= species <= discs:
+        raise ValueError(f"discs/species_name: {species} names of {discs} discs")
+    if walls < len(SIDES):
+        raise ValueError(f"walls/name: {walls} walls (allowed {len(SIDES)} and more)")

@@ -1,0 +1,250 @@
+"""Crafted logs of the right structure whose numbers and texts break a rule: one line that names the dataset."""
+
+import re
+import shutil
+
+import h5py
+import numpy as np
+import pytest
+from crafted import craft, put, read_path, swap
+from log_compare import scene_of
+from log_samples import write_log
+
+from idealgas.log import LogError, open_log
+from idealgas.run.simulate import simulate
+
+STOP = 300
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    return write_log(tmp_path_factory.mktemp("log") / "sound.h5", STOP)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    path = tmp_path_factory.mktemp("log") / "run.h5"
+    simulate(scene_of("quickstart", "run.events=3000"), path)
+    return path
+
+
+def refused(path) -> str:
+    with pytest.raises(LogError) as caught:
+        read_path(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ")
+    assert "\n" not in message
+    assert caught.value.exit_code == 2
+    return message.removeprefix(f"{path}: ")
+
+
+def cut(path, rows):
+    """Fewer rows of a dataset that was stored before the run."""
+
+    def edit(file):
+        old = file[path][:rows]
+        swap(path, data=old, chunks=old.shape, maxshape=old.shape)(file)
+
+    return edit
+
+
+def retyped(path, dtype):
+    return lambda file: swap(path, data=file[path][()].astype(dtype))(file)
+
+
+def chunked(path, rows):
+    return lambda file: swap(path, chunks=(rows, *file[path].chunks[1:]))(file)
+
+
+def texts(path, index, text):
+    return put(path, index, np.bytes_(text))
+
+
+def many_discs(file):
+    for name in ("id", "species", "radius", "mass", "position", "velocity"):
+        old = file["discs"][name]
+        shape = (10**7, *old.shape[1:])
+        swap(f"discs/{name}", data=None, shape=shape, dtype=old.dtype, chunks=shape, maxshape=shape)(file)
+
+
+NAN, INF = float("nan"), float("inf")
+VALUES = {
+    "disc N": (put("events/disc", 17, 25), "events/disc .*: 25 in row 17 .allowed 0 to 24"),
+    "disc 4e9": (put("events/disc", 17, 4_000_000_000), "events/disc .*: 4e.09 in row 17"),
+    "partner N": (put("events/partner", 17, 25), "events/partner .*: 25 in row 17 .allowed -4 to 24"),
+    "partner -2e9": (put("events/partner", 17, -2_000_000_000), "events/partner .*in row 17"),
+    "wall W": (put("events/partner", 17, -5), "events/partner .*: -5 in row 17"),
+    "pair of one": (put("events/partner", 17, 3), "events/partner: no pair in row"),
+    "kind": (put("events/kind", 17, 4), r"events/kind .*: 4 in row 17 \(allowed 0 to 3"),
+    "kind of a pair": (put("events/kind", 17, 0), "events/kind: not that of its partner in row 17"),
+    "time nan": (put("events/time", 17, NAN), "events/time .*nan in row 17"),
+    "time inf": (put("events/time", 299, INF), "events/time .*inf in row 299"),
+    "time negative": (put("events/time", 0, -1.0), "events/time .*-1 in row 0"),
+    "time falls": (put("events/time", 17, 0.0), "events/time .*decreases in row 17"),
+    "velocity nan": (put("events/velocity", (17, 1), NAN), "events/velocity .*nan in row 17 .allowed finite"),
+    "velocity inf": (put("events/velocity", (17, 1), -INF), "events/velocity .*-inf in row 17"),
+    "position nan": (put("events/position", (17, 1), NAN), "events/position .*nan in row 17"),
+    "above the box": (put("events/position", (17, 1), 6.0), "events/position .*6 in row 17 .allowed 0 to 5"),
+    "left of the box": (put("events/position", (17, 0), -1e-3), "events/position .*-0.001 in row 17"),
+    "species S": (put("discs/species", 3, 2), r"discs/species: 2 in row 3 \(allowed 0 to 1"),
+    "species of none": (put("discs/species", slice(None), 0), "discs/species: no disc of species 1"),
+    "radius 0": (put("discs/radius", 3, 0.0), "discs/radius: 0 in row 3"),
+    "radius nan": (put("discs/radius", 3, NAN), "discs/radius: nan in row 3"),
+    "mass negative": (put("discs/mass", 3, -1.0), "discs/mass: -1 in row 3"),
+    "disc outside": (put("discs/position", (3, 0), 11.0), "discs/position: 11 in row 3"),
+    "disc velocity": (put("discs/velocity", (3, 0), INF), "discs/velocity: inf in row 3"),
+    "too few masses": (cut("discs/mass", 24), r"discs/mass: of shape \(24,\) .allowed \(25,\)"),
+    "no ids": (
+        swap("discs/id", data=None, shape=(0,), dtype="u4", chunks=(25,), maxshape=(None,)),
+        "discs/id: 0 discs in a file of",
+    ),
+    "many discs": (many_discs, "discs/id: 10,000,000 discs in a file of"),
+    "box 0": (put("box", 0, 0.0), "box: not a width and a height"),
+    "box nan": (put("box", 0, NAN), "box: not a width and a height"),
+    "box of one": (cut("box", 1), "box: not a width and a height"),
+    "boundary": (
+        lambda file: file["box"].attrs.create("boundary", np.array([b"none", b"open"])),
+        "box: attribute boundary: not none or periodic",
+    ),
+    "gravity": (put("gravity", 0, INF), "gravity: inf"),
+    "side of the box": (put("walls/endpoints", (1, 0, 0), 9.0), "walls/endpoints: not the sides of a box"),
+    "three walls": (cut("walls/name", 3), "walls/name: 3 walls"),
+    "name of a wall": (texts("walls/name", 0, b"\xff"), "walls/name: not UTF-8"),
+    "name of a species": (texts("discs/species_name", 0, b"\xff"), "discs/species_name: not UTF-8"),
+    "text of a scene": (texts("runs/scene", 0, b"\xff"), "runs/scene: not UTF-8"),
+    "checkpoint time falls": (put("checkpoints/time", 0, 99.0), "checkpoints/time .*decreases in row 1"),
+    "checkpoint time nan": (put("checkpoints/time", 1, NAN), "checkpoints/time .*nan in row 1"),
+    "checkpoint row falls": (put("checkpoints/row", 0, 5), "checkpoints/row .*decreases in row 1"),
+    "checkpoint behind the end": (put("checkpoints/row", 1, 400), "checkpoints/row: 400 .allowed up to 300"),
+    "checkpoint row": (put("checkpoints/row", 1, 7), "checkpoints/row: 7 at t = .*"),
+    "checkpoint row negative": (put("checkpoints/row", 0, -1), "checkpoints/row .*-1 in row 0"),
+    "checkpoint epoch": (put("checkpoints/epoch", 0, 10**9), "checkpoints/epoch .*decreases in row 1"),
+    "checkpoint position": (put("checkpoints/position", (0, 3, 1), 5.5), "checkpoints/position .*5.5 in row 0"),
+    "checkpoint velocity": (put("checkpoints/velocity", (0, 3, 1), NAN), "checkpoints/velocity .*nan in row 0"),
+    "sample": (put("observables/kinetic_energy/value", 1, NAN), "observables/kinetic_energy/value .*nan in row 1"),
+    "sample time": (put("observables/kinetic_energy/time", 0, 99.0), "observables/kinetic_energy/time .*decreases"),
+    "summary": (texts("summary/value", 0, b"{"), "summary/value"),
+    "summary nan": (texts("summary/value", 0, b"NaN"), "summary/value: end_time: NaN"),
+    "summary text": (texts("summary/value", 1, b'"many"'), "summary/value: rows: \"many\""),
+    "summary negative": (texts("summary/value", 1, b"-1"), "summary/value: rows: -1"),
+    "summary twice": (texts("summary/name", 1, b"end_time"), "summary/value: end_time is there twice"),
+    "early end": (texts("summary/value", 0, b"0.001"), "summary/value: end_time 0.001"),
+    "wrong number of rows": (texts("summary/value", 1, b"299"), "summary/value: 299 rows"),
+    "type of ids": (retyped("events/disc", "i8"), "events/disc: of type int64 .allowed uint32"),
+    "type of times": (retyped("events/time", "i8"), "events/time: of type int64 .allowed float64"),
+    "type of a sample": (retyped("observables/hits/value", "S8"), "observables/hits/value: of type"),
+    "shape of velocities": (
+        lambda file: swap("events/velocity", data=np.zeros((300, 3)), chunks=(65536, 3), maxshape=(None, 3))(file),
+        r"events/velocity: entries of shape \(3,\) .allowed \(2,\)",
+    ),
+    "shape of samples": (
+        lambda file: swap("observables/hits/value", data=np.zeros((99, 3)), chunks=(1024, 3), maxshape=(None, 3))(file),
+        r"observables/hits/value: entries of shape \(3,\) .allowed \(\)",
+    ),
+    "chunks of one table": (chunked("events/disc", 8192), "events/time: chunks of"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", VALUES)
+def test_values(sound, tmp_path, case):
+    edit, expected = VALUES[case]
+    path = craft(shutil.copyfile(sound, tmp_path / "run.h5"), edit)
+    message = refused(path)
+    assert message.startswith("damaged: ")
+    assert re.search(expected, message), message
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ({"events": 301}, "events/time: 301 rows .allowed 300"),
+        ({"events": 2**62}, "events/time: .* rows .allowed 300"),
+        ({"checkpoints": 10**6}, "checkpoints/time: 1,000,000 rows"),
+        ({"runs": 0}, "runs/scene: .*"),
+    ],
+)
+def test_rows_in_the_record(sound, tmp_path, rows, expected):
+    path = craft(shutil.copyfile(sound, tmp_path / "run.h5"), lambda file: None, rows)
+    assert re.search(expected, refused(path))
+
+
+def test_more_rows_than_the_file_has_room_for(sound, tmp_path):
+    def grow(file):
+        for name in file["events"]:
+            file["events"][name].resize(2**40, axis=0)
+
+    path = craft(shutil.copyfile(sound, tmp_path / "run.h5"), grow, {"events": 2**40})
+    assert re.search("events/time: 1,099,511,627,776 rows in a file of", refused(path))
+
+
+# ── a scene and its arrays ──
+
+
+def scene_text(old, new):
+    def edit(file):
+        text = file["runs/scene"][0]
+        assert old in text
+        file["runs/scene"][0] = text.replace(old, new)
+
+    return edit
+
+
+SCENES = {
+    "not TOML": (scene_text(b"[box]", b"[box"), "scene:.*not TOML"),
+    "unknown key": (scene_text(b"[box]", b"[boxx]"), "scene:"),
+    "count": (scene_text(b"count = 1000", b"count = 999"), "999 discs .discs/id: 1000"),
+    "huge count": (scene_text(b"count = 1000", b"count = 2000000000"), "2000000000 discs|scene:"),
+    "mass": (put("discs/mass", 3, 2.0), "not of discs with this discs/mass"),
+    "radius": (put("discs/radius", 3, 1e-3), "not of discs with this discs/radius"),
+    "gravity": (put("gravity", 1, -1.0), "gravity"),
+    "wall": (texts("walls/name", 0, b"west"), "other walls"),
+    "species": (texts("discs/species_name", 0, b"x"), "species"),
+    "sides": (lambda file: file["box"].attrs.create("boundary", np.array([b"periodic", b"none"])), "periodic sides"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_scenes(run, tmp_path, case):
+    edit, expected = SCENES[case]
+    path = craft(shutil.copyfile(run, tmp_path / "run.h5"), edit)
+    with open_log(path) as log, pytest.raises(LogError) as caught:
+        _ = log.scene
+    message = str(caught.value)
+    assert message.startswith(f"{path}: damaged: runs/scene: ")
+    assert "\n" not in message
+    assert re.search(expected, message), message
+
+
+def test_pairs(run, tmp_path):
+    read_path(run)
+    with open_log(run) as log:
+        (block,) = log.chunks()
+    first = int((block.disc < block.partner).argmax())
+    for column, row, value in (
+        ("partner", first + 1, block.partner[first + 1] + 1),
+        ("disc", first + 1, (block.disc[first + 1] + 1) % 1000),
+        ("time", first, np.nextafter(block.time[first], 0)),
+        ("partner", first, -1),
+    ):
+        path = craft(shutil.copyfile(run, tmp_path / "run.h5"), put(f"events/{column}", row, value))
+        assert re.search(f"events/partner: no pair in row ({first}|{first + 1})|events/time", refused(path))
+
+
+def test_what_is_missing_is_said(sound, tmp_path):
+    with open_log(sound) as log:
+        for table, name in (("observables", "momentum"), ("summary", "trials")):
+            with pytest.raises(LogError, match=f"^{sound}: {table}: has no {name}$"):
+                getattr(log, table)[name]
+
+
+def test_chunks_in_order(tmp_path):
+    """Times are compared with those of the chunks that were read before, in whatever order that was."""
+    path = write_log(tmp_path / "run.h5", 200_000)
+
+    def edit(file: h5py.File) -> None:
+        file["events/time"][131072:] -= 100.0
+
+    craft(path, edit)
+    for use in (lambda log: list(log.chunks(("time",))), lambda log: log.row_at(10.0)):
+        with open_log(path) as log, pytest.raises(LogError, match=r"events/time from row \d+: decreases from one"):
+            use(log)
