@@ -211,11 +211,13 @@ class Simulation:
         """Time of the last event, or the epoch's start if there was none in it."""
         return self.time + float(self._counters[0]["time"])
 
-    def state(self) -> tuple[Gas, Effects]:
-        """Copies of the gas, its images and its momentum flow, and the effects, where the last `advance` ended.
+    @property
+    def reached(self) -> float:
+        """Time at which the last `advance` ended: its limit or, if that was not reached, the time of the last event."""
+        return self.time + self._local_now
 
-        That is its time limit or, if it was not reached, the time of the last event.
-        """
+    def state(self) -> tuple[Gas, Effects]:
+        """Copies of the gas, its images and its momentum flow, and the effects, at the time reached."""
         periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
         self._complete_flights(self._local_now, flow)
         effects = self.effects._replace(periodic=periodic, flow=flow)

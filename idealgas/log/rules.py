@@ -50,8 +50,9 @@ Range = tuple[float, float | tuple[float, float]]
 class Rules:
     """The rules for one log."""
 
-    def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int) -> None:
-        """box: width and height, length. discs, species, walls: how many there are."""
+    def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int, complete: bool) -> None:
+        """box: width and height, length. discs, species, walls: how many there are. complete: whether the run ended."""
+        self._complete = complete
         width, height = box
         self._ranges: dict[str, Range] = {
             **dict.fromkeys(ORDERED, (0, LARGEST)),
@@ -147,7 +148,12 @@ class Rules:
             self._check_order(path, data, start)
 
     def _check_order(self, path: str, data: np.ndarray, start: int) -> None:
-        """Rows of a chunk among themselves, and against those of the chunks that were read before."""
+        """Rows of a chunk among themselves, and against those of the chunks that were read before.
+
+        Runs that were interrupted once took their last sample with the time of the last event, after a later one.
+        """
+        if path.startswith("observables/") and not self._complete and not len(data := data[:-1]):
+            return
         if (falls := data[1:] < data[:-1]).any():
             raise ValueError(f"decreases in row {start + 1 + int(falls.argmax())}")
         starts, edges = self._edges.setdefault(path, ([], []))

@@ -139,7 +139,7 @@ class Source:
         counts = (discs.extent, species.extent, walls.extent)
         check_sizes(*counts, size)
         box = self._column_at("box")
-        rules = Rules(box_of(box.whole(0) if box.chunk == (2,) else np.empty(0)), *counts)
+        rules = Rules(box_of(box.whole(0) if box.chunk == (2,) else np.empty(0)), *counts, self.commit.complete)
         for table, names in self._names.items():
             columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
             rules.check_table(columns, self.rows(table), size)

@@ -242,7 +242,7 @@ class LoggedRun:
         """Audit the state at the end; the run may be continued from its last checkpoint as if it had not ended."""
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
-        end_time = stop.time if ended_by_time else simulation.last_event_time
+        end_time = stop.time if ended_by_time else simulation.reached
         gas, effects = simulation.state()
         self._observe(end_time, gas, effects, simulation.audit_of(gas))
         start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)

@@ -48,6 +48,7 @@ def test_interrupted(whole, tmp_path, slices):
     simulate(scene_of(name, SNAPSHOTS, f"run.events={EVENTS}"), path, interrupted=interrupted(slices))
     with open_log(path) as log:
         assert not log.complete
+        assert (np.diff(log.observables["kinetic_energy"][0]) >= 0).all()
     summary = resume(path)
     assert summary.completed
     assert differences(path, expected) == []
