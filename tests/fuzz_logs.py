@@ -10,10 +10,10 @@ import sys
 import time
 from pathlib import Path
 
+from log_fuzz import sound
 from log_fuzz.campaign import crafted_outcomes, damaged_outcomes
 from log_fuzz.commands import forms, reading_commands
 from log_fuzz.judge import FAILURES, Table
-from log_fuzz.sound import ALL
 
 
 def main() -> None:
@@ -22,7 +22,7 @@ def main() -> None:
     parser.add_argument("--damages", metavar="A:B", help="Numbers of damaged logs.")
     parser.add_argument("--commands", metavar="NAME,...", help="Commands to run; by default all that read a log.")
     parser.add_argument("--without", metavar="NAME,...", default="", help="Commands to leave out.")
-    parser.add_argument("--logs", metavar="NAME,...", default=",".join(ALL), help="Sound logs to begin with.")
+    parser.add_argument("--logs", metavar="NAME,...", help="Sound logs to begin with; by default all.")
     parser.add_argument("--failures", metavar="FILE", type=Path, help="Append failures as lines of JSON.")
     given = parser.parse_args()
     names = given.commands.split(",") if given.commands else reading_commands()
@@ -30,7 +30,9 @@ def main() -> None:
     run = damaged_outcomes if given.damages else crafted_outcomes
     first, last = map(int, (given.damages or given.cases).split(":"))
     table, begun = Table(), time.monotonic()
-    for number, what, form, verdict in run(range(first, last), lambda _: chosen, given.logs.split(",")):
+    all_logs = sound.DAMAGED if given.damages else sound.CRAFTED
+    logs = given.logs.split(",") if given.logs else all_logs
+    for number, what, form, verdict in run(range(first, last), lambda _: chosen, logs):
         table.add(number, form, verdict)
         if verdict.name in FAILURES:
             line = {"case": number, "log": what[0], "command": " ".join(form), "verdict": verdict.name,

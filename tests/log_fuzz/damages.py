@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from log_fuzz.sound import unpacked
+from log_fuzz.sound import LIVE, hold
 
 BLOCK = 4096
 
@@ -16,11 +16,6 @@ class Damaged(NamedTuple):
 
     sound: str
     what: str
-
-
-def states(name: str) -> list[bytes]:
-    """A sound log, and for one whose writer died also what it was one commit before: damage may bring that back."""
-    return [unpacked(name)]
 
 
 def damage(case: int, path: Path, sound: dict[str, bytes], names: Sequence[str]) -> Damaged:
@@ -52,4 +47,6 @@ def damage(case: int, path: Path, sound: dict[str, bytes], names: Sequence[str])
             del data[max(1, place) :]
         what.append(f"{way} at {place}")
     path.write_bytes(data)
+    if name == LIVE:
+        hold(path)
     return Damaged(name, ", ".join(what))

@@ -1,7 +1,6 @@
 """A log that is changed piece by piece, and whose check sums are then made right again."""
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Self
 
@@ -10,9 +9,10 @@ import numpy as np
 from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
+from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import DATASET, Commit, table_of
 from idealgas.log.hdf5.superblock import clear_mark, is_marked
-from idealgas.log.hdf5.table import StoredColumn, open_dataset
+from idealgas.log.hdf5.table import open_dataset
 from idealgas.log.schema import FILE_OPTIONS
 
 
@@ -132,9 +132,3 @@ class Editor:
             mask = chunks.PLAIN
         values = chunks.decode(stored, mask, column.dtype, math.prod(column.chunk), verify=False)
         return values.reshape(column.chunk).copy()
-
-
-def listed(editor: Editor, names: Sequence[str]) -> list[str]:
-    """Those of the paths that the log has."""
-    there = set(editor.datasets())
-    return [name for name in names if name in there]

@@ -7,10 +7,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 import h5py
 
-from idealgas.log.hdf5.table import StoredColumn
+from idealgas.log.source import Source
 from log_fuzz.effect import Effect, Expect
 from log_fuzz.workers import Form, Outcome, run_form
 
@@ -44,23 +45,28 @@ class Verdict(NamedTuple):
 
 @contextmanager
 def readings() -> Iterator[set[str]]:
-    """Paths of all datasets that are read meanwhile, and of attributes, as PATH@NAME."""
+    """Paths of all datasets that are read meanwhile for what they say, and of attributes, as PATH@NAME."""
     seen: set[str] = set()
-    read, get = StoredColumn.read, h5py.AttributeManager.__getitem__
+    chunk, fixed, attribute = Source._chunk, Source.fixed, Source.attribute
 
-    def note(self: StoredColumn, *arguments: Any) -> Any:
-        seen.add((h5py.h5i.get_name(self.id) or b"").decode().lstrip("/"))
-        return read(self, *arguments)
+    def note_chunk(self: Source, path: str, start: int) -> Any:
+        seen.add(path)
+        return chunk(self, path, start)
 
-    def note_attribute(self: h5py.AttributeManager, name: str) -> Any:
-        seen.add(f"{(h5py.h5i.get_name(self._id) or b'').decode().lstrip('/')}@{name}")
-        return get(self, name)
+    def note_fixed(self: Source, path: str) -> Any:
+        seen.add(path)
+        return fixed(self, path)
 
-    StoredColumn.read, h5py.AttributeManager.__getitem__ = note, note_attribute  # type: ignore[method-assign]
-    try:
+    def note_attribute(self: Source, path: str, name: str) -> Any:
+        seen.add(f"{path}@{name}")
+        return attribute(self, path, name)
+
+    with (
+        patch.object(Source, "_chunk", note_chunk),
+        patch.object(Source, "fixed", note_fixed),
+        patch.object(Source, "attribute", note_attribute),
+    ):
         yield seen
-    finally:
-        StoredColumn.read, h5py.AttributeManager.__getitem__ = read, get  # type: ignore[method-assign]
 
 
 def reference(form: Form, keep: frozenset[str]) -> Reference:

@@ -1,7 +1,7 @@
 """Commands on logs in a forked process with everything imported, within limits of time and memory.
 
 A process goes through many commands, and is replaced after a crash or a hang, which is then known to be that of the
-command it was at.
+command it was at; only memory that one command spoils may end a later one.
 """
 
 import faulthandler
@@ -9,6 +9,7 @@ import os
 import resource
 import shutil
 import signal
+import subprocess
 import tempfile
 import time
 import traceback
@@ -21,11 +22,14 @@ from typing import Any, NamedTuple
 
 from click.testing import CliRunner
 from idealgas_cli.main import main
+from support import IDEALGAS
 
 from log_fuzz.commands import NAME
 
 MEMORY = 2**30
 """Bytes that a command may map beyond what is mapped before it."""
+ALL_MEMORY = 3 * 2**30
+"""Bytes that a process of its own may map: a third of it are the libraries."""
 SECONDS = 10.0
 """Of the processor's time for a command; a command that waits has three times as many by the clock."""
 COMMANDS_A_PROCESS = 400
@@ -100,20 +104,20 @@ def _one_process(batch: list[tuple[Task, int]], waiting: list) -> Iterator[tuple
         _work(there, batch, folder)
     there.close()
     try:
+        last: tuple[int, Any, Form] | None = None
         for place, (task, first) in enumerate(batch):
-            made: Any = None
-            for at in range(first - 1, len(task.forms)):
-                if at < first:
-                    end, answer = _answer(here, child)
-                    made = answer if end == "exit" else None
-                    outcome = Outcome(end)
-                else:
-                    end, answer = _answer(here, child)
-                    outcome = answer if end == "exit" else Outcome(end, err=_last_words(folder))
-                    yield task.number, made, task.forms[at], outcome
+            end, made = _answer(here, child)
+            if end != "exit":
+                if last is None:
+                    raise RuntimeError(f"log {task.number} could not be made: {end}\n{_last_words(folder)}")
+                yield *last, Outcome(end, err=f"some time after this command\n{_last_words(folder)}")
+                waiting[:0] = [(task, first), *batch[place + 1 :]]
+                return
+            for at in range(first, len(task.forms)):
+                end, answer = _answer(here, child)
+                last = task.number, made, task.forms[at]
+                yield *last, answer if end == "exit" else Outcome(end, err=_last_words(folder))
                 if end != "exit":
-                    if at < first:
-                        raise RuntimeError(f"log {task.number} could not be made: {end}\n{_last_words(folder)}")
                     waiting[:0] = [*([(task, at + 1)] if at + 1 < len(task.forms) else []), *batch[place + 1 :]]
                     return
     finally:
@@ -125,9 +129,10 @@ def _one_process(batch: list[tuple[Task, int]], waiting: list) -> Iterator[tuple
 
 def _answer(pipe: Connection, child: int) -> tuple[str, Any]:
     """How the child's present work ended, and what came out."""
-    begun, used = time.monotonic(), _processor_time(child)
+    begun, (used, _) = time.monotonic(), _processor_time(child)
     while not pipe.poll(0.5):
-        if _processor_time(child) - used > SECONDS or time.monotonic() - begun > 3 * SECONDS:
+        busy, waits = _processor_time(child)
+        if busy - used > SECONDS or (waits and time.monotonic() - begun > 3 * SECONDS):
             os.kill(child, signal.SIGABRT)  # its fault handler says where it is
             pipe.poll(1)
             return "timeout", None
@@ -139,9 +144,10 @@ def _answer(pipe: Connection, child: int) -> tuple[str, Any]:
         return (signal.Signals(number).name if status and status.si_code != os.CLD_EXITED else f"exit {number}"), None
 
 
-def _processor_time(process: int) -> float:
+def _processor_time(process: int) -> tuple[float, bool]:
+    """Seconds that a process has worked, and whether it waits for something else than the processor."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), fields[0] != "R"
 
 
 def _last_words(folder: Path) -> str:
@@ -193,3 +199,21 @@ def _signature(path: Path) -> tuple[int, ...]:
     except FileNotFoundError:
         return ()
     return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def run_command(form: Form, folder: Path) -> Outcome:
+    """The real command in a folder, as `run_form` has it; what it warns of is among its lines."""
+    keep, before = {path.name for path in folder.iterdir()}, _signature(folder / NAME)
+    try:
+        done = subprocess.run(
+            [IDEALGAS, *form], cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL,
+            timeout=6 * SECONDS, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (ALL_MEMORY, ALL_MEMORY)),
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return Outcome("timeout")
+    new = [path for path in folder.iterdir() if path.name not in keep]
+    written = {path.name: path.read_bytes() for path in new if path.is_file()}
+    end = "exit" if done.returncode >= 0 else signal.Signals(-done.returncode).name
+    end = "traceback" if "Traceback (most recent call last)" in done.stderr else end
+    changed = _signature(folder / NAME) != before
+    return Outcome(end, done.returncode, done.stdout, done.stderr, (), written, changed)

@@ -3,18 +3,30 @@
 `python tests/fuzz_logs.py` runs parts of it by hand.
 """
 
+from collections.abc import Iterable, Sequence
+
 import pytest
-from log_fuzz.campaign import crafted_outcomes, damaged_outcomes
-from log_fuzz.commands import forms, reading_commands
+from log_fuzz import sound
+from log_fuzz.campaign import crafted_outcomes, damaged_outcomes, real_outcomes
+from log_fuzz.commands import SLOW, forms, reading_commands
 from log_fuzz.judge import FAILURES, Table
-from log_fuzz.sound import ALL
+from log_fuzz.workers import Form
 
-CRAFTED, DAMAGED = 5_000, 10_000
+CRAFTED, DAMAGED, REAL = 5_000, 10_000, 300
+CRAFTED_IN_CI, DAMAGED_IN_CI = 300, 60
 
-EVERY_FORM = [form for name in reading_commands() for form in forms(name)]
+FORMS = [form for name in reading_commands() for form in forms(name)]
+QUICK = [form for form in FORMS if form[0] not in SLOW]
+REST = [form for form in FORMS if form[0] in SLOW]
 
 
-def tried(outcomes) -> list[str]:
+def in_turn(case: int) -> Sequence[Form]:
+    """Two commands, and now and then a slow one."""
+    some = [QUICK[(2 * case + more) % len(QUICK)] for more in range(2)]
+    return some if case % 20 else [*some, REST[case // 20 % len(REST)]]
+
+
+def tried(outcomes: Iterable) -> list[str]:
     """What went wrong, a line each; prints the table of all."""
     table, wrong = Table(), []
     for number, (log, done), form, verdict in outcomes:
@@ -26,10 +38,25 @@ def tried(outcomes) -> list[str]:
 
 
 @pytest.mark.long
+def test_some_crafted_logs():
+    assert tried(crafted_outcomes(range(CRAFTED_IN_CI), in_turn, sound.SOME)) == []
+
+
+@pytest.mark.long
+def test_some_damaged_logs():
+    assert tried(damaged_outcomes(range(DAMAGED_IN_CI), in_turn, sound.SOME)) == []
+
+
+@pytest.mark.long
 def test_crafted_logs():
-    assert tried(crafted_outcomes(range(CRAFTED), lambda case: EVERY_FORM, ALL)) == []
+    assert tried(crafted_outcomes(range(CRAFTED), lambda case: FORMS, sound.CRAFTED)) == []
 
 
 @pytest.mark.long
 def test_damaged_logs():
-    assert tried(damaged_outcomes(range(DAMAGED), lambda case: EVERY_FORM, ALL)) == []
+    assert tried(damaged_outcomes(range(DAMAGED), lambda case: FORMS, sound.DAMAGED)) == []
+
+
+@pytest.mark.long
+def test_through_the_real_command():
+    assert tried(real_outcomes(range(REAL), lambda case: FORMS[case % len(FORMS)], sound.CRAFTED)) == []

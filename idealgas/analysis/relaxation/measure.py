@@ -129,6 +129,8 @@ def relaxation(
     kurtosis = np.empty(len(time))
     for k, state in enumerate(log.frames(time)):
         energy = reduced_energy(log, state.velocity, equilibrium)
+        if not energy.any():
+            raise UserError(f"{log.path}: no disc moves at t = {state.time:g}")
         distance[k], entropy[k] = ks_distance(energy, reduced_energy_cdf), relative_entropy(energy)
         kurtosis[k] = number * (energy**2).sum() / energy.sum() ** 2
         if progress is not None:

@@ -14,7 +14,7 @@ from idealgas.log.reader import Log
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
     """HOOMD's schema of GSD: two dimensions, the origin in the middle of the box, float32.
 
-    GSD knows no walls: its box counts as periodic.
+    GSD knows no walls: its box counts as periodic. Its names are ASCII.
     """
     import gsd.hoomd
 
@@ -33,7 +33,7 @@ def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
             if state.image is not None:
                 particles.image = _with_zeros(state.image)
             if step == 0:  # frames without them have those of the first
-                particles.types = list(discs.species_names)
+                particles.types = [name.encode("ascii", "backslashreplace").decode() for name in discs.species_names]
                 particles.typeid, particles.mass, particles.diameter = discs.species, discs.mass, 2 * discs.radius
             file.append(frame)
     return len(times)

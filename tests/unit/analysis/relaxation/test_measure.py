@@ -1,9 +1,11 @@
 """Measures of the way to equilibrium, on samples whose law is known and on a small log counted by hand."""
 
 import math
+import shutil
 
 import numpy as np
 import pytest
+from crafted import craft, put
 
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.statistics import ks_distance
@@ -198,3 +200,12 @@ def test_development_by_trials(make_log):
 def test_a_table_without_end_is_refused(make_log):
     with make_log(SCENE) as log, pytest.raises(UserError, match="instants are too many for a table"):
         speed_distributions(log, 1e-9)
+
+
+def test_a_gas_that_comes_to_rest_is_one_line(make_log, tmp_path):
+    path = tmp_path / "run.h5"
+    with make_log(SCENE) as log:
+        shutil.copy(log.path, path)
+    craft(path, put("checkpoints/velocity", ..., 1e-200))
+    with open_log(path) as log, pytest.raises(UserError, match=r"no disc moves at t = 0$"):
+        relaxation(log)

@@ -86,6 +86,15 @@ def test_gsd(log, frames, tmp_path):
             assert np.array_equal(frame.particles.typeid, log.discs.species)
 
 
+def test_gsd_has_names_in_ascii(tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+    simulate(scene_of("mixture", "run.events=20", 'species.0.name="klein_ü"'), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        export(log, "gsd", tmp_path / "run.gsd", [0.0])
+    with hoomd.open(str(tmp_path / "run.gsd")) as file:
+        assert file[0].particles.types[0] == "klein_\\xfc"
+
+
 def test_extended_xyz(log, frames, tmp_path):
     ase = pytest.importorskip("ase.io")
     times, states = frames
