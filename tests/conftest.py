@@ -14,7 +14,7 @@ settings.load_profile("no-deadline")
 
 ROOT = Path(__file__).parent.parent
 CASES = ROOT / "tests" / "cases"
-FOLDERS = {"valid_case": CASES / "valid", "once_broke": CASES / "once_broke", "shipped_scene": ROOT / "configs"}
+FOLDERS = {"valid_case": CASES / "valid", "shipped_scene": ROOT / "configs"}
 
 
 class InvalidCase(NamedTuple):

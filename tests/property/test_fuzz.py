@@ -9,16 +9,16 @@ import os
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fuzz_scenes import scene_and_gas, scene_texts
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from invariants import InvariantChecker, MaxErrors
-from support import batches, joined, record, same_rows
+from support import ROOT, batches, joined, record, same_rows
 
 from idealgas._jit import aligned
 from idealgas.engine.brute_force import BruteForce
@@ -120,6 +120,14 @@ scenes = given(scene_texts())
 quick = settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
+def with_what_once_broke(test: Callable) -> Callable:
+    """A test of texts that begins with the scenes whose first line says what went wrong."""
+    for path in sorted((ROOT / "tests" / "cases" / "once_broke").glob("*.toml")):
+        test = example(path.read_text(encoding="utf-8"))(test)
+    return test
+
+
+@with_what_once_broke
 @quick
 @scenes
 @pytest.mark.slow
@@ -143,11 +151,3 @@ def test_many_scenes_with_any_effects():
 
     run()
     print(f"{count} scenes, {max_errors}")
-
-
-@pytest.mark.slow
-def test_what_once_broke(once_broke):
-    """Scenes whose first line says what went wrong."""
-    text = once_broke.read_text()
-    with watchdog(text):
-        run_scene(text, MaxErrors())
