@@ -331,6 +331,8 @@ class InvariantChecker:
         self.scale = max(self.scale, energy.scale)
         weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
         bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
+        sums = [entry for entry in (effects.wall_energy, effects.dissipated) if entry is not None]
+        bound += sum(self.events / entry.per_unit.min() for entry in sums)  # each event adds a rounded term to each
         kept = energy.balance - energy.lost
         assert kept <= self.lowest + bound, "energy gained"
         self.lowest = min(self.lowest, kept)

@@ -23,6 +23,7 @@ _WORDS = {
     "string_pattern_mismatch": ("not a word", "a letter, then letters, digits, - and _"),
     "greater_than": ("out of range", "> {gt:g}"),
     "greater_than_equal": ("out of range", ">= {ge:g}"),
+    "too_close_to_0": ("too close to 0", "a size >= {smallest:g}"),
     "less_than": ("out of range", "< {lt:g}"),
     "less_than_equal": ("out of range", "<= {le:g}"),
 }

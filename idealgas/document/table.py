@@ -2,14 +2,24 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
-LARGEST = 1e30
-"""Bound on every number, so that no product of a few of them overflows."""
+SMALLEST, LARGEST = 1e-60, 1e30
+"""Bounds on the size of every number but 0, so that no product of a few of them underflows or overflows."""
 
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-Positive = Annotated[float, Field(gt=0, le=LARGEST)]
-NotNegative = Annotated[float, Field(ge=0, le=LARGEST)]
+
+def _not_tiny(number: float) -> float:
+    """The number, if it is 0 or not too small."""
+    if 0 < abs(number) < SMALLEST:
+        raise PydanticCustomError("too_close_to_0", "", {"smallest": SMALLEST})
+    return number
+
+
+Real = Annotated[float, AfterValidator(_not_tiny)]
+Number = Annotated[Real, Field(ge=-LARGEST, le=LARGEST)]
+Positive = Annotated[Real, Field(gt=0, le=LARGEST)]
+NotNegative = Annotated[Real, Field(ge=0, le=LARGEST)]
 Vector = Annotated[tuple[Number, Number], Field(strict=False)]
 Rectangle = tuple[float, float, float, float]
 """x0, y0, x1, y1."""

@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from idealgas.physics.encounters import encounters_of_discs
+from idealgas.physics.encounters import DENSEST, encounters_of_discs
+from idealgas.physics.random_pair import mean_trial_time
 
 if TYPE_CHECKING:
     from idealgas.document.table import Rectangle, Vector
@@ -61,3 +62,14 @@ def mean_free_time(
 def reference_speed(run: Run, largest: float) -> float:
     """As given, or five times the largest speed at the start."""
     return run.v_ref or 5.0 * largest
+
+
+def trial_time(run: Run, species: Sequence[Species], disc: Sequence[Disc], size: tuple[float, float]) -> float:
+    """Expected time between two trials of Monte Carlo, time; infinite if nothing moves. size: of the box, length."""
+    n, speed = number_of_discs(species, disc), reference_speed(run, mean_speed(species, disc))
+    if n < 2 or speed == 0:
+        return math.inf
+    covered = math.pi * math.fsum([s.radius**2 * s.count for s in species] + [d.radius**2 for d in disc])
+    largest = max([s.radius for s in species] + [d.radius for d in disc])
+    area = size[0] * size[1]
+    return mean_trial_time(n, area, min(covered / area, DENSEST), 2 * largest, speed)

@@ -1,5 +1,6 @@
 """Scenes of all kinds survive being written and read: every float to the last bit, every line found."""
 
+import operator
 import string
 import tomllib
 
@@ -8,13 +9,14 @@ from hypothesis import strategies as st
 
 from idealgas.document.dump import dump_document, toml_value
 from idealgas.document.lines import key_lines
+from idealgas.document.table import LARGEST, SMALLEST
 from idealgas.scene import parse_scene
 
 WIDTH, HEIGHT = 1000.0, 500.0
 
-numbers = st.floats(-1e30, 1e30)
-positive = st.floats(1e-300, 1e30)
-not_negative = st.floats(0, 1e30) | st.integers(0, 10**20)
+positive = st.floats(SMALLEST, LARGEST)
+numbers = st.just(0.0) | positive | positive.map(operator.neg)
+not_negative = st.just(0.0) | positive | st.integers(0, 10**20)
 texts = st.text(st.characters(exclude_categories=("Cs",)))
 names = st.text(string.ascii_letters + "äßλ" + "_", min_size=1, max_size=8).filter(lambda name: name != "disc")
 
@@ -33,7 +35,12 @@ def species(draw, name):
     optional = {"mass": positive, "placement": st.sampled_from(["random", "lattice"])}
     table |= {key: draw(values) for key, values in optional.items() if draw(st.booleans())}
     if draw(st.booleans()):
-        table["region"] = [draw(st.floats(0, 400)), draw(st.floats(0, 200)), draw(st.floats(500, 1000)), 500]
+        table["region"] = [
+            draw(st.floats(SMALLEST, 400)),
+            draw(st.floats(SMALLEST, 200)),
+            draw(st.floats(500, 1000)),
+            500,
+        ]
     return table
 
 

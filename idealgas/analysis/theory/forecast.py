@@ -133,6 +133,12 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     )
 
 
+def _has_room(gas: Gas, periodic: tuple[bool, bool]) -> bool:
+    """Whether every disc can move between the sides."""
+    least = min((length for length, on in zip(gas.box, periodic, strict=True) if not on), default=math.inf)
+    return 2 * float(gas.radius.max()) < least
+
+
 def _bytes_a_row(scene: Scene) -> int:
     compression, has = scene.log.compression, scene.properties
     columns = event_columns(*[SPINS] * has.spins, *[IMAGES] * any(has.periodic))
@@ -151,7 +157,8 @@ def _spin_energy(scene: Scene) -> float:
     return energy
 
 
-def _rates(scene: Scene, gas: Gas) -> _Rates:
+def _rates(scene: Scene, gas: Gas) -> _Rates | None:
+    """Rates of a uniform gas; None if a disc has no room to move."""
     freedom = 2 + scene.properties.spins
     frame = conserved.common_motion(scene, gas)
     kinetic = gas.kinetic_energy - float(gas.mass.sum() * (frame @ frame)) / 2
@@ -161,6 +168,8 @@ def _rates(scene: Scene, gas: Gas) -> _Rates:
     radius, mass = gas.radius[first], gas.mass[first]
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, radius, mass, number)
+    if not _has_room(gas, scene.properties.periodic):
+        return None
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
@@ -173,7 +182,7 @@ def _column(scene: Scene, gas: Gas) -> _Rates | None:
     properties, pull = scene.properties, np.abs(scene.properties.acceleration)
     closed = properties.empty and properties.fixed_walls and not any(properties.periodic)
     settles = properties.lossless and properties.isolated and len(gas) > 1
-    if not closed or not settles or np.count_nonzero(pull) != 1 or not gas.radius.all():
+    if not closed or not settles or np.count_nonzero(pull) != 1 or not _has_room(gas, properties.periodic):
         return None
     axis = int(pull[1] > 0)
     falls_to_zero = properties.acceleration[axis] < 0
@@ -269,7 +278,7 @@ def _wall_hit_rate(
 
 
 def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
-    """Simulated time at which the first stop rule is met; None if theory does not know it."""
+    """Simulated time at which the first stop rule is met; None if theory does not know it, or knows no such time."""
     run = scene.run
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None
@@ -280,4 +289,4 @@ def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
         ends.append(run.collisions_per_disc * number / (2 * rates.pairs))
     if run.trials is not None and rates.trials > 0:
         ends.append(run.trials / rates.trials)
-    return min(ends)
+    return end if math.isfinite(end := min(ends)) else None

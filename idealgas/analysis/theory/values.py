@@ -22,6 +22,9 @@ import numpy as np
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.two_discs import two_discs
 
+THINNEST = 1e-12
+"""Smallest packing fraction at which theory has a value: Z - 1 still has four digits there."""
+
 LARGEST_ERROR = 0.1
 """Largest relative error of Z - 1 with which a formula counts as a theory."""
 
@@ -146,6 +149,8 @@ def box_theory(
     try:
         if not ergodic:
             raise NoTheoryError("two equal discs that start without momentum do not reach all states between walls")
+        if math.pi * float((number * radius**2).sum()) / (box[0] * box[1]) < THINNEST:
+            raise NoTheoryError(f"the packing fraction is below {THINNEST:g}, where rounding takes the digits of Z - 1")
         if number.sum() == 2:
             return _two(radius, number, box, periodic)
         if len(radius) > 1 and np.ptp(radius) > 0:

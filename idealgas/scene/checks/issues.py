@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from idealgas.document.error import Issue
 from idealgas.scene.checks import gravity, periodic, piston, restitution, rotation, wall
 from idealgas.scene.checks.discs import overlap_issues, room_issues, species_issues
-from idealgas.scene.checks.run import endless_issues, method_issues
+from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.scene.checks.valid import valid
 
 if TYPE_CHECKING:
@@ -36,5 +36,7 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from room_issues(box, scene.room, kinds, discs, invalid)
     if not {"run", "species", "disc", "gravity", "piston"} & invalid:
         yield from endless_issues(scene)
+        if box is not None and (scene.species or scene.disc):
+            yield from number_issues(scene, invalid)
     if "run" not in invalid:
         yield from method_issues(scene, invalid)

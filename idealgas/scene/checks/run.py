@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
@@ -24,6 +25,10 @@ OWNERS = {
 
 PLAIN = "float64"
 """The precision that everything else has too."""
+
+
+MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e12, 1e12
+"""Bounds on what a run makes for its own sake, however few events it has: those of minutes and of weeks."""
 
 
 def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
@@ -77,6 +82,39 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
             yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
         elif mean_speed(scene.species, scene.disc) == 0:
             yield Issue((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
+        elif scene.run.v_ref is not None:
+            yield from _slow_issues(scene, scene.run.v_ref)
+
+
+def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
+    """A v_ref below what discs of random directions have: the run might end before a trial shows it."""
+    largest = max([s.radius for s in scene.species] + [d.radius for d in scene.disc])
+    for i, s in enumerate(scene.species):
+        least = 0.0 if s.velocities or s.count == 1 else mean_speed([s], []) * s.radius / largest
+        if v_ref < least:
+            keys = (("run", "v_ref"), *(("species", i, key) for key in ("speed", "temperature", "mass", "radius")))
+            yield Issue(
+                keys, "slower than the discs at the start", f"{v_ref}", f">= {least:.6g}, better ten times that"
+            )
+
+
+def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
+    """Times so short, or a v_ref so large, that the run makes snapshots, steps or trials without end."""
+    run, end = scene.run, scene.expected_end
+    every = None if "log" in invalid else scene.log.snapshot_every
+    for key, period, what, most in (
+        (("log", "snapshot_every"), every, "snapshots", MOST_SNAPSHOTS),
+        (("run", "dt"), run.dt, "steps", MOST_STEPS),
+    ):
+        if period is not None and most * period < end < math.inf:
+            allowed = f"<= {most:g}, by a time >= {end / most:.3g}"
+            yield Issue((key, ("run",)), f"too many {what}", f"about {end / period:.3g}", allowed)
+    if run.v_ref is None or run.trials is not None or math.isinf(scene.trial_time):
+        return
+    trials = end / scene.trial_time
+    if MOST_TRIALS < trials < math.inf:
+        allowed = f"<= {MOST_TRIALS:g}, by a speed <= {run.v_ref * MOST_TRIALS / trials:.3g}"
+        yield Issue((("run", "v_ref"), ("run",)), "too many trials", f"about {trials:.3g}", allowed)
 
 
 def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:

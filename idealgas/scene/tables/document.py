@@ -4,13 +4,14 @@ Reduced units, k_B = 1; a whole number will do for any number. An effect is a ta
 a file of its name here says what it changes. It has one field below, `None` when absent, and one line in `CALLS`.
 """
 
+import math
 from collections.abc import Callable
 from typing import Annotated
 
 from pydantic import Field
 
 from idealgas.document.table import Rectangle, Table, Vector
-from idealgas.scene.defaults import mean_free_time
+from idealgas.scene.defaults import mean_free_time, number_of_discs, trial_time
 from idealgas.scene.properties import Effect, Properties, combine, lacking
 from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, wall
 from idealgas.scene.tables.box import Box
@@ -75,6 +76,24 @@ class Document(Table):
     def free_time(self) -> float:
         """Expected time between two collisions of a disc at the start, see `mean_free_time`, time."""
         return mean_free_time(self.species, self.disc, self.room, self.box.periodic, self.press)
+
+    @property
+    def trial_time(self) -> float:
+        """Expected time between two trials of Monte Carlo, see `trial_time`, time."""
+        return trial_time(self.run, self.species, self.disc, self.box.size)
+
+    @property
+    def expected_end(self) -> float:
+        """About when the run ends, by what happens at the start, time; infinite if nothing ends it."""
+        run, n = self.run, number_of_discs(self.species, self.disc)
+        ends = [run.until or math.inf]
+        if run.events is not None:
+            ends.append(run.events * self.free_time / n)
+        if run.collisions_per_disc is not None:
+            ends.append(run.collisions_per_disc * self.free_time)
+        if run.trials is not None:
+            ends.append(run.trials * self.trial_time)
+        return min(ends)
 
     @property
     def contact_duration(self) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from pydantic import Field
 
-from idealgas.document.table import Positive, Rectangle, Table, Vector
+from idealgas.document.table import Positive, Real, Rectangle, Table, Vector
 from idealgas.scene.defaults import mean_free_time, mean_speed, number_of_discs, sum_of_diameters
 from idealgas.scene.properties import Effect, Properties
 from idealgas.scene.tables.discs import Disc, Species
@@ -27,8 +27,8 @@ class Restitution(Table):
     collisions in a finite time (Luding & McNamara, Granular Matter 1, 113 (1998)).
     """
 
-    normal: float = Field(default=1.0, ge=0, le=1, description="of two discs, 0 to 1")
-    wall: float = Field(default=1.0, ge=0, le=1, description="of a disc with a wall or piston, 0 to 1")
+    normal: Real = Field(default=1.0, ge=0, le=1, description="of two discs, 0 to 1")
+    wall: Real = Field(default=1.0, ge=0, le=1, description="of a disc with a wall or piston, 0 to 1")
     contact_duration: Positive | None = Field(
         default=None, description="time > 0; if absent 0.05 of the mean free time, or without a force far less"
     )

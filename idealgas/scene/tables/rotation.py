@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from idealgas.document.table import Table
+from idealgas.document.table import Real, Table
 from idealgas.scene.properties import Effect, Properties
 
 NAME = "rotation"
@@ -14,11 +14,11 @@ class Rotation(Table):
     The coefficient runs from -1 (smooth) to 1 (perfectly rough); energy is conserved at these two. A piston is smooth.
     """
 
-    inertia: float = Field(
+    inertia: Real = Field(
         default=0.5, gt=0, le=1, description="moment of inertia in units of mass * radius²: 0.5 for a uniform disc"
     )
-    roughness: float = Field(default=1.0, ge=-1, le=1, description="of discs, -1 to 1")
-    wall_roughness: float = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")
+    roughness: Real = Field(default=1.0, ge=-1, le=1, description="of discs, -1 to 1")
+    wall_roughness: Real = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")
 
 
 def effect(rotation: Rotation | None) -> Effect | None:
