@@ -46,7 +46,8 @@ def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tu
     kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
     count = [s.count for s in scene.species]
     radius, mass = (np.repeat([getattr(s, name) for s in scene.species], count) for name in ("radius", "mass"))
-    explicit = np.array([kinds.index((disc.radius, disc.mass)) for disc in scene.disc], np.uint16)
+    number = {kind: k for k, kind in enumerate(kinds)}
+    explicit = np.array([number[disc.radius, disc.mass] for disc in scene.disc], np.uint16)
     others = np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count)
     names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
     return (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from idealgas.document.error import Issue, Key
 from idealgas.document.table import Rectangle
 from idealgas.scene.checks.piston import CLOSE_PACKING
-from idealgas.scene.geometry import images
+from idealgas.scene.geometry import images, overlaps
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.box import Box
@@ -21,6 +21,10 @@ RANDOM_PACKING = 0.65
 
 RESOLUTION = 1e-9
 """Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""
+
+
+MOST_OVERLAPS = 1_000
+"""Lines about overlaps after which the others of a scene are not told."""
 
 
 def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
@@ -44,21 +48,20 @@ def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
 
 
 def overlap_issues(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Issue]:
-    """Explicit discs that overlap an earlier one, found by a sweep along x over the discs and their images."""
-    seen: set[tuple[int, int]] = set()
-    active: list[tuple[int, Disc, float, float]] = []
-    placed = [(i, d, x, y) for i, d in discs for x, y in images(d.position, d.radius, box)]
-    for i, d, x, y in sorted(placed, key=lambda item: item[2] - item[1].radius):
-        active = [item for item in active if item[2] + item[1].radius > x - d.radius]
-        for k, a, a_x, a_y in active:
-            dx, dy, contact = a_x - x, a_y - y, a.radius + d.radius
-            low, high = sorted((i, k))
-            if dx * dx + dy * dy < contact * contact and low != high and (low, high) not in seen:
-                seen.add((low, high))
-                keys: tuple[Key, ...] = tuple(("disc", n, key) for key in ("position", "radius") for n in (high, low))
-                distance = f"a distance of {math.hypot(dx, dy)} between centres"
-                yield Issue(keys, f"overlaps disc {low}", distance, f">= {contact}, the sum of the radii")
-        active.append((i, d, x, y))
+    """Explicit discs that overlap an earlier one, be it through periodic sides; the first MOST_OVERLAPS of them."""
+    placed = [(i, d.radius, centre) for i, d in discs for centre in images(d.position, d.radius, box)]
+    found: dict[tuple[int, int], float] = {}
+    for a, b, distance in overlaps([(centre, radius) for _, radius, centre in placed]):
+        pair = placed[a][0], placed[b][0]
+        if pair[0] != pair[1] and len(found) < MOST_OVERLAPS:
+            found.setdefault(pair, distance)
+        elif len(found) == MOST_OVERLAPS:
+            break
+    radius = {i: d.radius for i, d in discs}
+    for (low, high), distance in found.items():
+        keys: tuple[Key, ...] = tuple(("disc", n, key) for key in ("position", "radius") for n in (high, low))
+        got = f"a distance of {distance} between centres"
+        yield Issue(keys, f"overlaps disc {low}", got, f">= {radius[low] + radius[high]}, the sum of the radii")
 
 
 def room_issues(

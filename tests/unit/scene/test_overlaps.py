@@ -1,0 +1,61 @@
+"""Overlaps of explicit discs: exactly those of all pairs and images, in a time that bad layouts do not lengthen."""
+
+import time
+from itertools import combinations, product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from idealgas.scene.checks.discs import MOST_OVERLAPS, overlap_issues
+from idealgas.scene.geometry import overlaps
+from idealgas.scene.tables.box import Box
+from idealgas.scene.tables.discs import Disc
+
+WIDTH, HEIGHT = 8.0, 4.0
+FINEST = 64  # of a length: sums and squares of such numbers are exact, and many discs just touch
+
+coordinates = st.tuples(*(st.integers(0, int(side * FINEST) - 1) for side in (WIDTH, HEIGHT)))
+radii = st.sampled_from([1, 2, 3, 16, 17, 64, 128])
+discs = st.lists(st.tuples(coordinates, radii), max_size=12)
+
+
+def by_brute_force(placed, periodic):
+    """Pairs of which any of the nine images overlap."""
+    shifts = list(
+        product(*((-side, 0, side) if on else (0,) for side, on in zip((WIDTH, HEIGHT), periodic, strict=True)))
+    )
+    return {
+        (low, high)
+        for (low, a), (high, b) in combinations(enumerate(placed), 2)
+        for x, y in shifts
+        if (a.position[0] - b.position[0] + x) ** 2 + (a.position[1] - b.position[1] + y) ** 2
+        < (a.radius + b.radius) ** 2
+    }
+
+
+@given(discs, st.booleans(), st.booleans())
+def test_they_are_those_of_all_pairs(drawn, along_x, along_y):
+    placed = [Disc(position=(x / FINEST, y / FINEST), radius=r / FINEST) for (x, y), r in drawn]
+    sides = ["left", "right"] * along_x + ["bottom", "top"] * along_y
+    box = Box(size=(WIDTH, HEIGHT), **dict.fromkeys(sides, "periodic"))
+    issues = list(overlap_issues(list(enumerate(placed)), box))
+    pairs = [(issue.keys[1][1], issue.keys[0][1]) for issue in issues]
+    assert len(set(pairs)) == len(pairs)
+    assert set(pairs) == by_brute_force(placed, (along_x, along_y))
+
+
+@pytest.mark.parametrize("step", [(0.0, 1.0), (1.0, 0.0), (1.0, 1.0)])
+def test_discs_in_a_line_take_no_time(step):
+    """All pairs of so many discs take minutes."""
+    line = [((k * step[0], k * step[1]), 0.5) for k in range(10_000)]
+    started = time.process_time()
+    assert list(overlaps([*line, ((5.25 * step[0], 5.25 * step[1]), 1e-9)])) == [
+        (5, 10_000, pytest.approx(0.25 * sum(s * s for s in step) ** 0.5))
+    ]
+    assert time.process_time() - started < 10
+
+
+def test_discs_in_one_place_are_told_up_to_a_number():
+    placed = list(enumerate([Disc(position=(1.0, 1.0), radius=0.5)] * 5_000))
+    assert len(list(overlap_issues(placed, None))) == MOST_OVERLAPS
