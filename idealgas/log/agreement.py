@@ -44,7 +44,7 @@ def check_scene(
     has = {
         POSITIONS: scene.run.method != "monte_carlo",
         TRIALS: scene.run.method == "monte_carlo",
-        SPINS: scene.rotation is not None,
+        SPINS: scene.properties.spins,
         IMAGES: any(scene.properties.periodic),
     }
     for column in event_columns(*has):
