@@ -9,7 +9,7 @@ from idealgas.analysis.core.premises import of_log
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
-from idealgas.log import Log
+from idealgas.log import DamageError, Log
 
 ROWS = 2**20
 """Largest number of event rows that are read for the state, and again for the pressure."""
@@ -94,6 +94,8 @@ def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
     start = times[min(first, len(times) - 1)] if len(times) else log.start_time
     try:
         routes = pressure(log, float(start), seen).routes
+    except DamageError:
+        raise
     except UserError:
         return None, None
     return next(((route.pressure, route.compressibility) for route in routes if route.name == PAIRS), (None, None))

@@ -1,7 +1,7 @@
 """The event log: one HDF5 file that survives its writer, and the exact state of the gas at any time from it."""
 
 from idealgas.events import Column
-from idealgas.log.errors import LogError
+from idealgas.log.errors import DamageError, LogError
 from idealgas.log.reader import Log, open_log
 from idealgas.log.recovery import recover
 from idealgas.log.replay import Checkpoint, LogState
@@ -11,6 +11,7 @@ from idealgas.log.writer import LogWriter
 __all__ = [
     "Checkpoint",
     "Column",
+    "DamageError",
     "Log",
     "LogError",
     "LogLayout",

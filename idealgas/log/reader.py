@@ -41,7 +41,7 @@ import numpy as np
 
 from idealgas.events import EventBatch, Kind
 from idealgas.files import is_locked
-from idealgas.log.errors import LogError
+from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
 from idealgas.log.header import LogHeader
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
@@ -152,13 +152,13 @@ class Log(LogHeader):
         found = Checkpoints(self._source, len(self), self._check_checkpoint)
         if self.complete and len(found) < self._source.rows("checkpoints"):
             row = self._source.column("checkpoints/row")[-1]
-            raise LogError(f"{self.path}: damaged: checkpoints/row: {row} (allowed up to {len(self)}, all events)")
+            raise DamageError(self.path, f"checkpoints/row: {row} (allowed up to {len(self)}, all events)")
         return found
 
     def _check_checkpoint(self, time: float, row: int) -> None:
         """That the event rows before a checkpoint are those before its time."""
         if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
-            raise LogError(f"{self.path}: damaged: checkpoints/row: {row} at t = {time:g} (got other events before it)")
+            raise DamageError(self.path, f"checkpoints/row: {row} at t = {time:g} (got other events before it)")
 
     @cached_property
     def observables(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -192,7 +192,7 @@ class Log(LogHeader):
         names, values = (self._source.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
         found = self._source.checked(lambda: parse_summary(names, values), "summary/value")
         if self.has_events and found.get("rows", len(self)) != len(self):
-            raise LogError(f"{self.path}: damaged: summary/value: {found['rows']} rows (events: {len(self)})")
+            raise DamageError(self.path, f"summary/value: {found['rows']} rows (events: {len(self)})")
         return Entries(self.path, "summary", found)
 
     @cached_property
@@ -205,7 +205,7 @@ class Log(LogHeader):
             last.append(self._times((len(self) - 1) // self._block * self._block)[-1].item())
         end = self.summary.get("end_time", max(last))
         if end < max(last):
-            raise LogError(f"{self.path}: damaged: summary/value: end_time {end:g} (allowed from {max(last):g} on)")
+            raise DamageError(self.path, f"summary/value: end_time {end:g} (allowed from {max(last):g} on)")
         return end
 
     @property

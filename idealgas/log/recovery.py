@@ -8,11 +8,11 @@ from pathlib import Path
 import h5py
 
 from idealgas.files import LOG, lock, storage_error, written
-from idealgas.log.errors import LogError
+from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.superblock import abandon, clear_mark, is_marked
+from idealgas.log.hdf5.superblock import Unmarked, abandon, clear_mark, is_marked
 from idealgas.log.hdf5.table import Table, commit_tables, open_tables
-from idealgas.log.reader import open_log
+from idealgas.log.reader import Log, open_log
 from idealgas.log.schema import FILE_OPTIONS
 
 
@@ -25,19 +25,38 @@ def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None 
     path = Path(path)
     if output is None:
         return _recover(path)
-    with open_log(path), written(output, LOG, force, [path]) as copy:
+    with open_log(path) as log, written(output, LOG, force, [path]) as copy:
+        _kept(log)  # what is wrong is said of the log, not of its copy
         shutil.copyfile(path, copy)
         return _recover(copy)
 
 
 def _recover(path: Path) -> int:
     with open_log(path) as log:
-        rows, unclosed = len(log), log.unclosed
-        held = {"events": rows, "checkpoints": len(log.checkpoints)}
-        keep = {table: held.get(table, stored) for table, stored in log.commit.rows.items()}
+        rows, unclosed, keep = len(log), log.unclosed, _kept(log)
     if unclosed:
         _cut(path, keep)[0].close()
     return rows
+
+
+def _kept(log: Log) -> dict[str, int]:
+    """Rows of each table that a log holds."""
+    held = {"events": len(log), "checkpoints": len(log.checkpoints)}
+    keep = {table: held.get(table, stored) for table, stored in log.commit.rows.items()}
+    if log.unclosed:
+        _check(log, keep)
+    return keep
+
+
+def _check(log: Log, keep: Mapping[str, int]) -> None:
+    """Raise DamageError where a log cannot be gone on with after these rows, before a byte of it is changed."""
+    if log.live:
+        return  # it cannot be gone on with anyway, and its writer may be at work on these very bytes
+    try:
+        with h5py.File(Unmarked(log.path) if log.unclosed else log.path, "r") as file:
+            open_tables(file, Commit.read(file), keep)
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise DamageError(log.path, reason(error)) from error
 
 
 def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, Table], int]:
@@ -57,6 +76,7 @@ def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.F
                 first, after = (int(times.searchsorted(time, side)) for side in ("left", "right"))  # type: ignore[call-overload]
                 held["observables"] = min(first + 1, after)
         keep = {table: held.get(table, 0) for table in log.commit.rows}
+        _check(log, keep)
     return _cut(path, keep)
 
 

@@ -1,6 +1,5 @@
 """The file under a log being read: how it is opened, and its columns by chunks. Every failure is a LogError."""
 
-import re
 import time
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -12,7 +11,7 @@ import numpy as np
 
 from idealgas.files import is_locked
 from idealgas.log import schema
-from idealgas.log.errors import LogError
+from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5 import gate
 from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
@@ -126,7 +125,7 @@ class Source:
         self.commit = Commit.read(self._file)
         size = self.path.stat().st_size
         if marked and size < self.commit.file_size:
-            raise LogError(f"{self.path}: damaged: truncated, {size} bytes of {self.commit.file_size}")
+            raise DamageError(self.path, f"truncated, {size} bytes of {self.commit.file_size}")
         self._columns = {path: self._column_at(path) for path in self.commit.tails}
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
@@ -152,7 +151,7 @@ class Source:
         try:
             return StoredColumn(open_dataset(self._file, path))
         except (KeyError, ValueError) as error:
-            raise ValueError(f"{path}: {_reason(error)}") from error
+            raise ValueError(f"{path}: {reason(error)}") from error
 
     def _chunk(self, path: str, start: int) -> np.ndarray:
         column, rows, tail = self._columns[path], self.rows(table_of(path)), self.commit.tails[path]
@@ -174,15 +173,6 @@ class Source:
                 return action()
             except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:
                 if attempt == ATTEMPTS or not is_locked(self.path):
-                    raise LogError(f"{self.path}: damaged: {what}{_reason(error)}") from error
+                    raise DamageError(self.path, f"{what}{reason(error)}") from error
             attempt += 1
             time.sleep(PAUSE)
-
-
-def _reason(error: Exception) -> str:
-    """Why a reading failed, in one line; HDF5 says it in parentheses."""
-    if isinstance(error, UnicodeDecodeError):
-        return "not UTF-8 text"
-    text = str(error.args[0] if error.args else error).splitlines()[0]
-    inner = re.search(r"\((.*)\)$", text)
-    return inner[1] if inner and isinstance(error, OSError | RuntimeError | KeyError) else text

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from idealgas.analysis import registry
 from idealgas.analysis.core.tables import Table
 from idealgas.errors import UserError
-from idealgas.log import Log
+from idealgas.log import DamageError, Log
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,8 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
             result = analysis.combine([analysis.measure(log, **section.options)])
             tables = tuple(analysis.tables(result))
             found.append(Section(section.title, analysis.figure(result), section.caption, tables))
+        except DamageError:
+            raise
         except UserError as error:
             found.append(Section(section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
         on_step(k + 1, len(parts))

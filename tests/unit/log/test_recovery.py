@@ -14,7 +14,7 @@ from support import ROOT
 
 from idealgas.errors import OutputError
 from idealgas.events import BLOCK, EventBatch
-from idealgas.log import LogError, LogWriter, open_log, recover
+from idealgas.log import DamageError, LogError, LogWriter, open_log, recover
 
 SAMPLES = ROOT / "tests" / "log_samples.py"
 
@@ -183,4 +183,22 @@ def test_damage_is_not_recovered(left, tmp_path):
         recover(path)
     with pytest.raises(LogError, match="damaged"):
         recover(path, tmp_path / "copy.h5")
+    assert not os.path.exists(tmp_path / "copy.h5")
+
+
+@pytest.mark.parametrize("damaged", ["events/velocity", "checkpoints/position"])
+def test_damage_is_found_before_anything_is_changed(left, tmp_path, damaged):
+    path = copied(left, tmp_path)
+    with h5py.File(path, swmr=True) as file, open_log(path) as log:
+        column, count = file[damaged], log.commit.rows[damaged.partition("/")[0]]
+        last = (count - 1) // column.chunks[0] * column.chunks[0]
+        place = column.id.get_chunk_info_by_coord((last,) + (0,) * (column.ndim - 1)).byte_offset
+    with path.open("r+b") as raw:
+        raw.seek(place)
+        raw.write(b"\x55")
+    before = path.read_bytes()
+    for refused in (recover, LogWriter.resume, lambda path: recover(path, tmp_path / "copy.h5")):
+        with pytest.raises(DamageError, match=f"{path}: damaged: "):
+            refused(path)
+        assert path.read_bytes() == before
     assert not os.path.exists(tmp_path / "copy.h5")
