@@ -32,12 +32,15 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
     from idealgas.analysis.theory.forecast import forecast
     from idealgas.gas.build import make_gas
+    from idealgas.run.simulate import threads_of
 
-    expected = forecast(scene, make_gas(scene))
+    gas = make_gas(scene)
+    expected, threads = forecast(scene, gas), threads_of(scene, gas)
     if as_json:
         tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
-        echo(json.dumps({"scene": tables, **effects, **asdict(expected)}, indent=2))
+        sharing = {"threads": threads.number, "threads_because": threads.because}
+        echo(json.dumps({"scene": tables, **effects, **sharing, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
     console = terminal()
@@ -50,6 +53,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
+    echo(f"threads: {threads.number} ({threads.because})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
     echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
 

@@ -9,6 +9,9 @@ from support import ROOT
 from idealgas.log import open_log
 from idealgas.scene import Scene, load_scene
 
+OWN = {"seconds", "compile_seconds", "threads", "threads_because", "shared_slices", "given_up_slices"}
+"""What a summary tells of the way a run was computed."""
+
 NO_END = ("run.until=", "run.events=", "run.collisions_per_disc=", "run.trials=")
 
 
@@ -18,9 +21,9 @@ def scene_of(name: str, *overrides: str) -> Scene:
 
 
 def contents(path: Path) -> dict[str, np.ndarray | str | dict]:
-    """Everything that does not tell of the writing: runs, commits, and the seconds it took."""
+    """Everything that does not tell of the writing: runs, commits, the seconds it took and the threads."""
     with open_log(path) as log:
-        summary = {name: value for name, value in log.summary.items() if not name.endswith("seconds")}
+        summary = {name: value for name, value in log.summary.items() if name not in OWN}
         found: dict[str, np.ndarray | str | dict] = {"summary": summary, "scene": log.scene_text}
         rows = len(log)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
-from idealgas.engine.records import NOTHING_KEPT, Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
 from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
 from idealgas.events import EventBatch
@@ -197,6 +197,8 @@ class BruteForce:
 
     without_positions = False
     single_epoch = False
+    pending = False
+    threads = ONE_THREAD
     kept = NOTHING_KEPT
 
     def start(self, gas: Gas, effects: Effects) -> None:

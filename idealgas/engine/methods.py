@@ -17,16 +17,18 @@ def make_method(
     seed: int = 0,
     one_sided: bool = False,
     rises: bool = False,
+    threads: int | None = 1,
 ) -> Method:
     """Make a method by its name in a scene; ValueError for an unknown name or a missing parameter.
 
     precision: number type of `brute_force`. dt: step of `time_driven`, time. v_ref: relative speed at which
     `monte_carlo` accepts a pair of the largest discs for certain, length/time. seed: of its random numbers. one_sided:
-    whether its impact parameters have one sign only. rises: whether v_ref is raised where it is too small.
+    whether its impact parameters have one sign only. rises: whether v_ref is raised where it is too small. threads:
+    number of those of `event_driven`, None for as many as are worth it.
     """
     match name:
         case "event_driven":
-            return EventDriven()
+            return EventDriven(threads=threads)
         case "brute_force":
             return BruteForce() if precision == "float64" else PreciseBruteForce(precision)
         case "time_driven" if dt is not None:

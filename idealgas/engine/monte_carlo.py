@@ -19,7 +19,7 @@ from functools import partial
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.engine.records import Limits, make_discs
+from idealgas.engine.records import ONE_THREAD, Limits, make_discs
 from idealgas.engine.resolve import energy_of_pair, record_pair_loss
 from idealgas.engine.rows import batch_capacity, write_pair, write_trial
 from idealgas.errors import UserError
@@ -146,6 +146,8 @@ class MonteCarlo:
 
     without_positions = True
     single_epoch = False
+    pending = False
+    threads = ONE_THREAD
 
     def __init__(self, seed: int, v_ref: float, one_sided: bool = False, rises: bool = False) -> None:
         """Set the seed and v_ref, the relative speed at which a pair of the largest discs is accepted for certain.

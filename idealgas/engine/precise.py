@@ -11,7 +11,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
-from idealgas.engine.records import NOTHING_KEPT, Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.rows import batch_capacity, write_pair, write_side_hit
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
@@ -274,6 +274,8 @@ class PreciseBruteForce:
 
     without_positions = False
     single_epoch = True
+    pending = False
+    threads = ONE_THREAD
     kept = NOTHING_KEPT
 
     def __init__(self, precision: str, start: Columns | None = None) -> None:

@@ -41,6 +41,27 @@ NOTHING_KEPT: Mapping[Column, float] = MappingProxyType({})
 """What a method keeps whose epochs all follow from the discs and the effects."""
 
 
+class Threads(NamedTuple):
+    """How a method's work is shared, which changes nothing of what comes out.
+
+    Attributes:
+        number: number of threads.
+        because: why it is no other.
+        slices: number of pieces of work that several threads shared.
+        given_up: number of those that one thread had to do again.
+        events: those that `advance` is to be asked for at least, so that it can share the work.
+    """
+
+    number: int = 1
+    because: str = "the method has one"
+    slices: int = 0
+    given_up: int = 0
+    events: int = 1
+
+
+ONE_THREAD = Threads()
+
+
 class EventCascadeError(Exception):
     """A disc has collisions without end at one instant."""
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from idealgas.engine.audit import Audit, audit
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond
-from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, synchronise
+from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
 from idealgas.gas.state import Gas
@@ -37,6 +37,8 @@ class Method(Protocol):
         discs: records of the discs in the present epoch.
         without_positions: whether its discs have no positions; those of the gas then stay as they are.
         single_epoch: whether the run must be one epoch, because its digits would be lost between epochs.
+        pending: whether rows of events that have happened are still to be handed on by `advance`.
+        threads: how its work is shared.
         kept: what of the method itself, beside the discs, the next epochs follow from: numbers by their columns in the
             log; `advance` returns after each change.
     """
@@ -44,6 +46,16 @@ class Method(Protocol):
     discs: Discs
     without_positions: bool
     single_epoch: bool
+
+    @property
+    def pending(self) -> bool:
+        """See above."""
+        ...
+
+    @property
+    def threads(self) -> Threads:
+        """See above."""
+        ...
 
     @property
     def kept(self) -> Mapping[Column, float]:
@@ -189,7 +201,9 @@ class Simulation:
             pass
 
     def finished(self, stop: Stop) -> bool:
-        """Whether the stop is reached."""
+        """Whether the stop is reached, and all rows up to it have been handed on."""
+        if self.method.pending:
+            return False
         done = self.counters
         if done.events >= stop.events or done.disc_collisions >= stop.disc_collisions or done.trials >= stop.trials:
             return True

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import inline, njit
-from idealgas.engine.records import NOTHING_KEPT, Limits, add_to_counters, make_discs
+from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
 from idealgas.engine.rows import batch_capacity, write_pair, write_side_hit
 from idealgas.events import EventBatch
@@ -266,6 +266,8 @@ class TimeDriven:
 
     without_positions = False
     single_epoch = False
+    pending = False
+    threads = ONE_THREAD
     kept = NOTHING_KEPT
 
     def __init__(self, dt: float) -> None:

@@ -23,6 +23,9 @@ class Summary:
     the overlap is that of all collisions, each of which has one.
 
     seconds: wall time of this run without start-up and compilation; compile_seconds: that of compilation.
+
+    threads: number of threads of this run at its end; threads_because: why it is no other. shared_slices: pieces of
+    work that they shared; given_up_slices: those of them that one thread had to do again.
     """
 
     completed: bool
@@ -39,6 +42,10 @@ class Summary:
     farthest_outside: float
     seconds: float
     compile_seconds: float
+    threads: int = 1
+    threads_because: str = ""
+    shared_slices: int = 0
+    given_up_slices: int = 0
 
     def as_dict(self) -> dict[str, Any]:
         """The fields by name, ready for JSON."""
@@ -60,7 +67,9 @@ def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, 
 
 
 def _fits(value: Any, kind: Any) -> bool:
-    """Whether a value is of a type: a truth value, a whole number from 0 on, a finite number, or that or None."""
+    """Whether a value is of a type: text, a truth value, a whole number from 0 on, a finite number, or that or None."""
+    if kind is str or isinstance(value, str):
+        return kind is str and isinstance(value, str)
     if kind is bool or isinstance(value, bool):
         return kind is bool and isinstance(value, bool)
     if kind is int:

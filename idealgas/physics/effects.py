@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas.physics import periodic, piston, restitution, wall
+from idealgas.physics import momentum_flow, periodic, piston, restitution, wall
+from idealgas.physics.exact_sum import add_sums, clear
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic
@@ -74,6 +75,46 @@ def end_epoch(effects: Effects, length: float) -> None:
     for name, end in AT_END.items():
         if (effect := getattr(effects, name)) is not None:
             end(effect, length)
+
+
+def with_own_sums(effects: Effects) -> Effects:
+    """The same effects with sums of their own, which are 0: what several threads add up can be put together."""
+    own = effects._replace(
+        flow=momentum_flow.copy_of(effects.flow),
+        wall_energy=None if effects.wall_energy is None else effects.wall_energy.copy(),
+        dissipated=None if effects.dissipated is None else effects.dissipated.copy(),
+    )
+    clear_sums(own)
+    return own
+
+
+def clear_sums(effects: Effects) -> None:
+    """Set all sums and numbers of collisions to 0."""
+    for sums in _sums(effects):
+        clear(sums)
+    for counts in _counts(effects):
+        counts[...] = 0
+    if effects.flow is not None:
+        effects.flow.waiting[0] = 0
+
+
+def add_sums_of(effects: Effects, part: Effects) -> None:
+    """Add to the sums and numbers of collisions what another bundle of the same effects has; no term waits in that."""
+    for total, sums in zip(_sums(effects), _sums(part), strict=True):
+        add_sums(total, sums)
+    for number, counts in zip(_counts(effects), _counts(part), strict=True):
+        number += counts
+
+
+def _sums(effects: Effects) -> list[np.ndarray]:
+    """All arrays of SUM."""
+    found = [] if effects.flow is None else momentum_flow.sums_of(effects.flow)
+    return [*found, *(sums for sums in (effects.wall_energy, effects.dissipated) if sums is not None)]
+
+
+def _counts(effects: Effects) -> list[np.ndarray]:
+    """All arrays of numbers of collisions."""
+    return [] if effects.flow is None else momentum_flow.counts_of(effects.flow)
 
 
 def next_change(effects: Effects, time: float) -> float:

@@ -104,6 +104,18 @@ def values(sums: np.ndarray) -> np.ndarray:
     return np.array([math.ldexp(number, k) for number, k in _numbers(sums)])
 
 
+def clear(sums: np.ndarray) -> None:
+    """Set sums to 0."""
+    sums["low"], sums["high"] = 0, 0
+
+
+def add_sums(totals: np.ndarray, parts: np.ndarray) -> None:
+    """Add to each sum a part of it, in the same unit."""
+    low = totals["low"] + parts["low"]
+    totals["high"] += parts["high"] + (low < totals["low"])
+    totals["low"] = low
+
+
 def stored(sums: np.ndarray) -> np.ndarray:
     """(n, 3) i8, the sums as they are stored: (high, low, k) for (high * 2^63 + low) * 2^k, with 0 <= low < 2^63."""
     words = [(number >> WORD, number & (1 << WORD) - 1, k) for number, k in _numbers(sums)]

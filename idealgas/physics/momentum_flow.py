@@ -168,6 +168,16 @@ def complete_flights(record, time, gravity, flow):
             add_all(flow.tensor[U(k)], flow.terms[U(k)].column[:number])
 
 
+def sums_of(flow: MomentumFlow) -> list[np.ndarray]:
+    """All arrays of SUM."""
+    return [flow.tensor, flow.walls, flow.push, flow.drag]
+
+
+def counts_of(flow: MomentumFlow) -> list[np.ndarray]:
+    """All arrays of numbers of collisions."""
+    return [flow.hits] if flow.pairs is None else [flow.hits, flow.pairs]
+
+
 def copy_of(flow: MomentumFlow | None) -> MomentumFlow | None:
     """Independent copy; None for none."""
     if flow is None:

@@ -48,7 +48,7 @@ def resume(
             if log.live:
                 raise LogError(f"{log.path}: another process has this file open")
             scene = _scene_to_go_on_with(log, overrides)
-            if log.complete and scene == log.scene:
+            if log.complete and dump_document(scene) == dump_document(log.scene):
                 return Summary(**log.summary)
             last = log.checkpoints[-1] if len(log.checkpoints) else None
             _check_end(log, last, stop_of(scene, len(log.discs)))
@@ -70,7 +70,7 @@ def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides)
-    run = log.scene.run.model_copy(update={rule: getattr(scene.run, rule) for rule in STOP_RULES})
+    run = log.scene.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
     expected = log.scene.model_copy(update={"run": run})
     changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]
     if changed:

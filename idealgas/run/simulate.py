@@ -13,8 +13,9 @@ from numba.core.event import TimingListener
 from idealgas._jit import compile_timer
 from idealgas.document.dump import dump_document
 from idealgas.engine.audit import Audit
+from idealgas.engine.event_driven.method import expected_threads
 from idealgas.engine.methods import make_method
-from idealgas.engine.records import LATEST, UNLIMITED
+from idealgas.engine.records import LATEST, ONE_THREAD, UNLIMITED, Threads
 from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
 from idealgas.errors import UserError
 from idealgas.gas.build import make_gas
@@ -27,7 +28,7 @@ from idealgas.run.energy import Energy, energy_of, is_conserved
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
 from idealgas.run.sums import kept_before
 from idealgas.run.watch import Watch
-from idealgas.scene import Scene
+from idealgas.scene import Run, Scene
 from idealgas.scene.defaults import reference_speed
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
@@ -75,7 +76,20 @@ def method_of(scene: Scene, start: Gas, v_ref: float | None = None, rises: bool 
         seed=scene.scene.seed,
         one_sided=run.impact == "one_sided",
         rises=rises and run.v_ref is None,
+        threads=_threads(run),
     )
+
+
+def _threads(run: Run) -> int | None:
+    """Number of threads that a scene asks for; None for as many as are worth it."""
+    return None if run.threads == "auto" else run.threads
+
+
+def threads_of(scene: Scene, gas: Gas) -> Threads:
+    """How the work of a run will be shared; gas: the discs at time 0."""
+    if scene.run.method != "event_driven":
+        return ONE_THREAD
+    return expected_threads(gas, _threads(scene.run), scene.properties.local)
 
 
 def simulate(
@@ -156,7 +170,8 @@ class LoggedRun:
             self._begin_epoch()
         self._slice(0)  # compiles, before the clock starts
         started = time.perf_counter()
-        slice_events = 4096
+        least = simulation.method.threads.events
+        slice_events = max(4096, least)
         while not simulation.finished(stop):
             before = time.perf_counter()
             self._slice(slice_events)
@@ -173,16 +188,18 @@ class LoggedRun:
             if taken < SHORTEST_SLICE and not simulation.paused:
                 slice_events = min(2 * slice_events, UNLIMITED)
             elif taken > LONGEST_SLICE:
-                slice_events = max(slice_events // 2, 1)
+                slice_events = max(slice_events // 2, least)
         summary = self._finish(time.perf_counter() - started)
         self._log.close(summary.as_dict() if summary.completed else None)
         return summary
 
     def _slice(self, events: int) -> None:
-        """Advance by at most so many events and hand their rows to the log."""
+        """Advance by at most so many events and hand all their rows to the log."""
         simulation = self._simulation
         if self._scene.log.events:
             self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
+            while simulation.method.pending:
+                self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
         else:
             simulation.advance(self._stop, None, events, self._next_snapshot)
         if self._kept != simulation.method.kept:
@@ -247,7 +264,7 @@ class LoggedRun:
         self._observe(end_time, gas, effects, simulation.audit_of(gas))
         start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
-        totals = simulation.counters
+        totals, threads = simulation.counters, simulation.method.threads
         return Summary(
             completed=simulation.finished(stop),
             end_time=end_time,
@@ -260,6 +277,10 @@ class LoggedRun:
             farthest_outside=self._outside,
             seconds=seconds,
             compile_seconds=self._compilation.duration if self._compilation.done else 0.0,
+            threads=threads.number,
+            threads_because=threads.because,
+            shared_slices=threads.slices,
+            given_up_slices=threads.given_up,
         )
 
     def _progress(self) -> Progress:

@@ -40,7 +40,8 @@ class Properties:
     along a straight line. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
     lossless: no energy is lost at all when discs meet discs or walls. fixed_walls: all walls stay where they are.
     without_places: it has a meaning for discs without positions. in_steps: it can be met in time steps.
-    scales: the box may grow or shrink around the gas, as nothing in it has a fixed position.
+    scales: the box may grow or shrink around the gas, as nothing in it has a fixed position. local: what happens to a
+    disc depends on what is near it, so that several threads may have a part of the box each.
 
     False where an effect does not change that, and true of a scene if it is true with any effect:
 
@@ -61,6 +62,7 @@ class Properties:
     without_places: bool = _plain(True, operator.and_)
     in_steps: bool = _plain(True, operator.and_)
     scales: bool = _plain(True, operator.and_)
+    local: bool = _plain(True, operator.and_)
     driven: bool = _plain(False, operator.or_)
     grip: bool = _plain(False, operator.or_)
     sets_in_motion: bool = _plain(False, operator.or_)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline
+from idealgas._jit import aligned, inline, njit
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.physics.constants import NEVER
 from idealgas.sides import FIRST_SEGMENT
@@ -186,13 +186,26 @@ def first_of_eight(tree, group, predictions, ids):
 
 @inline
 def schedule(tree, predictions, ids, i):
-    """Enter the time of disc i's next event in the tree.
+    """Enter the time of disc i's next event in the tree."""
+    prediction = predictions[U(i)]
+    tree.time[U(i)] = min(prediction.contact, prediction.crossing)
+    climb(tree, predictions, ids, i)
+
+
+@inline
+def withdraw(tree, predictions, ids, i):
+    """Remove disc i's event from the tree."""
+    tree.key[U(i)] = NEVER_KEY + i
+    climb(tree, predictions, ids, i)
+
+
+@inline
+def climb(tree, predictions, ids, i):
+    """Bring the tree up to date after a change of the key of disc i.
 
     A group whose winner is another node needs no search: either the changed node is earlier or nothing changes.
     """
     _, key, winner, start = tree
-    prediction = predictions[U(i)]
-    tree.time[U(i)] = min(prediction.contact, prediction.crossing)
     earliest = key[U(i)]
     first = np.int64(i)
     node = np.int64(i)
@@ -215,6 +228,25 @@ def schedule(tree, predictions, ids, i):
         winner[U(parent)] = first
         node = parent
         shift += 3
+
+
+@njit
+def plant(tree, predictions, ids, record, low, high):
+    """Make the tree that of the discs in rows `low` to before `high` of the cells, and of no other."""
+    clear(tree.key)
+    for i in range(record.shape[0]):
+        if low <= record[U(i)].row < high:
+            prediction = predictions[U(i)]
+            tree.time[U(i)] = min(prediction.contact, prediction.crossing)
+    nodes = record.shape[0]
+    base = 0
+    for level in range(1, tree.start.shape[0]):
+        nodes = (nodes + 7) // 8
+        for offset in range(nodes):
+            earliest, best = first_of_eight(tree, base + 8 * offset, predictions, ids)
+            tree.key[U(tree.start[level] + offset)] = earliest
+            tree.winner[U(tree.start[level] + offset)] = tree.winner[U(best)]
+        base = tree.start[level]
 
 
 @inline

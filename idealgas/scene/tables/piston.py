@@ -74,6 +74,7 @@ def effect(piston: Piston | None) -> Effect | None:
         fixed_walls=False,
         without_places=False,
         in_steps=False,
+        local=False,
         scales=False,
         driven=piston.mass is None and bool(piston.velocity),
         sets_in_motion=True,

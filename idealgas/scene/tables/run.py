@@ -1,10 +1,15 @@
 """The tables that say what a run is called, how it goes and what it writes."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from idealgas.document.table import Positive, Table
+
+Threads = Annotated[
+    Annotated[Literal["auto"], Tag("(word)")] | Annotated[int, Field(ge=1, le=256), Tag("(number)")],
+    Discriminator(lambda threads: "(word)" if isinstance(threads, str) else "(number)"),
+]
 
 
 class Header(Table):
@@ -39,6 +44,11 @@ class Run(Table):
     )
     impact: Literal["symmetric", "one_sided"] | None = Field(
         default=None, description="with monte_carlo: whether impact parameters have both signs, as if absent, or one"
+    )
+    threads: Threads = Field(
+        default=1,
+        exclude=True,
+        description='whole number, or "auto"; with event_driven, how many threads share the work: the log is the same',
     )
 
 

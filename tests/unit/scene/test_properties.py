@@ -62,6 +62,7 @@ LACKING = {
     "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston"},
     "without_places": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston"},
     "in_steps": {"wall segments", "piston"},
+    "local": {"piston"},
     "scales": {"wall segments", "piston"},
     "empty": {"wall segments"},
 }

@@ -25,7 +25,7 @@ MARKERS = {
 PROGRAM = """
 import json, sys
 from numba.core.event import RecordingListener, install_listener
-from idealgas.engine.event_driven.method import advance_events
+from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.study.bench.effects import effect_scene
 from idealgas.run.simulate import simulate
 
@@ -70,7 +70,7 @@ def test_all_effects_are_none_for_the_kernel(plain):
 @pytest.mark.parametrize("effect", MARKERS)
 def test_nothing_of_an_absent_effect_is_compiled(plain, effect):
     compiled, _ = plain
-    assert "method.advance_events" in compiled
+    assert "kernel.advance_events" in compiled
     assert not compiled & MARKERS[effect]
 
 

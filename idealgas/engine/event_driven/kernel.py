@@ -1,0 +1,137 @@
+"""The loop over the events of the event-driven method.
+
+The disc that predicted last owns a pair's contact; a contact whose partner has had an event since is stale and
+predicted again. One thread may have all discs, or several one strip of the box each, see `turns`.
+"""
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.engine.event_driven.border import OVER
+from idealgas.engine.event_driven.cells import cell_index, enter
+from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
+from idealgas.engine.event_driven.crossings import cross_cell, predict_crossing
+from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
+from idealgas.engine.event_driven.scheduler import (
+    SIDE_OF_BOX,
+    clear,
+    contact_is_next,
+    images_of,
+    segment_of,
+)
+from idealgas.engine.event_driven.turns import count_at_one_time, enter_in_schedule, leave, next_turn
+from idealgas.engine.records import add_to_counters
+from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
+from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
+
+U = np.uintp
+
+
+@inline
+def predict(record, ids, state, i, now, effects, border):
+    """Predict disc i's next contact and its next crossing, and enter the earlier one in the schedule."""
+    predict_contact(record, ids, state, i, now, effects)
+    predict_crossing(record, ids, state, i, now, effects)
+    enter_in_schedule(record, ids, state, i, border)
+    offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
+
+
+@inline
+def predict_contact_again(record, ids, state, i, now, effects, border):
+    """Predict another contact of disc i, whose partner has had an event since, and enter it in the schedule."""
+    predict_contact(record, ids, state, i, now, effects)
+    enter_in_schedule(record, ids, state, i, border)
+
+
+@inline
+def enter_next_cell(record, ids, state, i, crossing_code, now, effects, border):
+    """Move disc i to the next cell; its record is not changed, and the contact predicted before stays valid."""
+    cross_cell(record, ids, state, i, crossing_code, effects.periodic)
+    extend_contact(record, ids, state, i, crossing_code, now, effects)
+    predict_crossing(record, ids, state, i, now, effects)
+    enter_in_schedule(record, ids, state, i, border)
+
+
+@njit
+def rebuild(record, ids, state, effects):
+    """Fill cells, predictions and schedule from records whose column and row are set."""
+    state.cells.head[:] = -1
+    for i in range(record.shape[0]):
+        enter(state.cells, i, cell_index(state.cells, record[U(i)]))
+    clear(state.tree.key)
+    predict_piston(record, ids, state, effects.piston, effects.gravity)
+    for i in range(record.shape[0]):
+        predict(record, ids, state, i, 0.0, effects, None)
+
+
+@njit
+def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, border):
+    """Process events up to the limits, or until the batch is full.
+
+    Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
+    no log is kept. counters: (1,) COUNTERS, updated. border: of the strip whose events these are; None for all discs.
+    """
+    events = 0
+    collisions = 0
+    crossings = 0
+    stale = 0
+    rows = 0
+    now = counters[0].time
+    events_at_this_time = counters[0].events_at_this_time
+    reached = False
+    capacity = batch_capacity(batch)
+    while events < limits.events and collisions < limits.collisions and rows < capacity:
+        i = next_turn(record, ids, state, limits.until, border)
+        if border is not None and i < 0:
+            reached = i == OVER
+            break
+        prediction = state.prediction[U(i)]
+        at_contact = contact_is_next(prediction, ids, i)
+        time = prediction.contact if at_contact else prediction.crossing
+        if time > limits.until:
+            reached = True
+            break
+        other = np.int64(-1)
+        if is_piston(i, ids, effects.piston):
+            i = np.int64(prediction.partner)
+            if not at_contact:
+                resolve_stop(time, effects.piston)
+            if not at_contact or record[U(i)].count != prediction.partner_count:
+                stale += at_contact
+                predict_piston(record, ids, state, effects.piston, effects.gravity)
+                continue
+            resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+            predict_piston(record, ids, state, effects.piston, effects.gravity)
+            rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
+        elif at_contact and prediction.partner >= 0:
+            other = np.int64(prediction.partner)
+            if record[U(other)].count != prediction.partner_count:
+                stale += 1
+                predict_contact_again(record, ids, state, i, time, effects, border)
+                continue
+            images = images_of(prediction)
+            resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
+            rows += write_pair(batch, rows, epoch_start + time, record, ids, i, other, effects)
+            collisions += 1
+        elif at_contact:
+            wall = segment_of(prediction.partner)
+            at_end = resolve_segment(
+                record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
+            )
+            rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
+        elif prediction.crossing_code < SIDE_OF_BOX:
+            crossings += 1
+            enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)
+            continue
+        else:
+            side = prediction.crossing_code - SIDE_OF_BOX
+            resolve_side(record[U(i)], ids[U(i)], side, time, effects)
+            rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
+        while i >= 0:  # one call for both discs: a second call would double the machine code
+            predict(record, ids, state, i, time, effects, border)
+            i, other = other, np.int64(-1)
+        events += 1
+        now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
+    leave(border, reached)
+    add_to_counters(counters[0], events, collisions, crossings, stale, now, events_at_this_time)
+    return rows, reached

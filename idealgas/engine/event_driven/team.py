@@ -1,0 +1,313 @@
+"""Several threads that advance one gas, each the discs of its strip; what comes out is that of one thread, bit for bit.
+
+They work on slices of time. A slice that cannot be shared, as something in it would have happened in another order, is
+given up: all that it changed is set back, and one thread does it again.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
+from typing import Any
+
+import numpy as np
+
+from idealgas.engine.event_driven.border import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION
+from idealgas.engine.event_driven.kernel import advance_events
+from idealgas.engine.event_driven.merge import Pending, TiedRowsError, merged
+from idealgas.engine.event_driven.scheduler import make_tree, plant
+from idealgas.engine.event_driven.state import EventDrivenState
+from idealgas.engine.event_driven.strips import FAST, Tuning, cut, make_borders, reset
+from idealgas.engine.records import COUNTERS, UNLIMITED, Discs, Limits
+from idealgas.events import EventBatch
+from idealgas.physics import momentum_flow
+from idealgas.physics.effects import Effects, add_sums_of, clear_sums, with_own_sums
+from idealgas.physics.periodic import periodic_axes
+
+REASONS = {VIOLATION: "past", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}
+"""Names of the reasons for which a slice is given up; beside these "stop", where it went beyond a number of events."""
+
+SHARE = 0.8
+"""Part of the events up to a limit that a slice is made for: one that comes to more is in vain."""
+
+
+FEW = 64
+"""Events that say nothing of a rate."""
+
+PATIENCE = 20
+"""After so many times what a slice took the way that was the slower one, that way is tried again."""
+
+
+class Race:
+    """Which way is the faster one at the moment: with several threads, or with one."""
+
+    def __init__(self) -> None:
+        """Know nothing of either."""
+        self._cost: dict[bool, float] = {}  # seconds an event
+        self._again = 0.0  # when the slower way is to be tried again
+
+    def shares(self) -> bool:
+        """Whether several threads are to go on. The slower way is tried now and then, at a small part of the time."""
+        if len(self._cost) < 2:
+            return False in self._cost
+        return self._faster if time.perf_counter() < self._again else not self._faster
+
+    def note(self, shared: bool, events: int, seconds: float) -> None:
+        """Take note of a slice."""
+        if events > 0:
+            if len(self._cost) < 2 or shared != self._faster:
+                self._again = time.perf_counter() + PATIENCE * seconds
+            self._cost[shared] = seconds / events
+
+    @property
+    def _faster(self) -> bool:
+        """Whether several threads were faster, each way the last time that it was taken."""
+        return self._cost[True] <= self._cost[False]
+
+
+class Crew:
+    """What threads keep from one epoch to the next.
+
+    Attributes:
+        facts: numbers of slices that were shared, of those given up by reason, and of what happened at borders.
+        rate: events and collisions of two discs per time, as in the last slice; None before the first.
+        race: what slices take with several threads and with one, where the faster way is to be taken; else None.
+    """
+
+    def __init__(self, tuning: Tuning = FAST, free: bool = False) -> None:
+        """Have no thread yet. free: the number of threads may be what is fastest at the moment."""
+        self.tuning = tuning
+        self.race = Race() if free else None
+        self.facts: Counter[str] = Counter()
+        self.rate: tuple[float, float] | None = None
+        self._pool: ThreadPoolExecutor | None = None
+
+    @property
+    def given_up(self) -> int:
+        """Number of slices of the run so far that were given up."""
+        return sum(self.facts[why] for why in (*REASONS.values(), "stop"))
+
+    def run(self, work: Callable[[int], None], number: int, give_up: Callable[[], None]) -> None:
+        """Call work(0) to work(number - 1) at once, each in a thread of its own, the first in this one."""
+        self._pool = self._pool or ThreadPoolExecutor(number - 1, "strip")
+        others = [self._pool.submit(work, k) for k in range(1, number)]
+        try:
+            work(0)
+            wait(others)
+        finally:  # Ctrl-C comes to this thread
+            if not all(other.done() for other in others):
+                give_up()
+                wait(others)
+        for other in others:
+            other.result()
+
+
+class Team:
+    """The threads of one epoch."""
+
+    def __init__(self, crew: Crew, strips: int, discs: Discs, state: EventDrivenState, effects: Effects) -> None:
+        """Share the discs of an epoch that begins among a number of strips, at least two."""
+        self._crew, self._discs, self._state, self._effects = crew, discs, state, effects
+        record, cells = discs.record, state.cells
+        fastest = float(np.sqrt((record.vx**2 + record.vy**2).max())) or 1.0
+        self._borders = make_borders(
+            cut(np.bincount(record.row, minlength=cells.rows), strips),
+            periodic_axes(effects.periodic)[1],
+            crew.tuning.lead * cells.height / fastest,
+            crew.tuning.delay,
+        )
+        self._planted = True
+        self._pending: Pending | None = None
+        self._arrives = False
+        self._strips: list[_Strip] = []
+
+    @property
+    def pending(self) -> bool:
+        """Whether rows of the last slice are still to be handed on."""
+        return self._pending is not None and len(self._pending) > 0
+
+    def advance(
+        self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    ) -> tuple[int, bool]:
+        """Process events up to the limits, see `advance_events`; rows beyond the batch come with the next calls."""
+        if self.pending:
+            return self._deliver(batch)
+        goal, race = self._goal(limits, counters[0]), self._crew.race
+        if limits.events == 0:
+            self._share(0.0, batch, FAILED)  # compiles
+            return self._alone(limits, epoch_start, batch, counters)
+        shared = goal > 0.0 and (race is None or race.shares())
+        started, events = time.perf_counter(), int(counters[0]["events"])
+        if shared and self._succeeds(goal, limits, epoch_start, batch, counters):
+            rows, arrived = self._deliver(batch)
+        else:
+            rows, arrived = self._alone(limits, epoch_start, batch, counters)
+        if race is not None:
+            race.note(shared, int(counters[0]["events"]) - events, time.perf_counter() - started)
+        return rows, arrived
+
+    def _goal(self, limits: Limits, counter: Any) -> float:
+        """Local time up to which a slice is to be shared; 0 for none."""
+        if self._crew.rate is None:
+            return 0.0
+        (events, collisions), tuning = self._crew.rate, self._crew.tuning
+        most = float(min(limits.events, tuning.buffer * len(self._borders) // 2))
+        if collisions > 0:
+            most = min(most, limits.collisions * events / collisions)
+        now = float(counter["time"])
+        until = min(now + SHARE * most / events, limits.until)
+        return until if (until - now) * events >= tuning.events else 0.0
+
+    def _alone(
+        self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    ) -> tuple[int, bool]:
+        """Process events on this thread only."""
+        record, ids, _ = self._discs
+        if not self._planted:
+            plant(self._state.tree, self._state.prediction, ids, record, 0, self._state.cells.rows)
+            self._planted = True
+        before = counters.copy()
+        rows, reached = advance_events(
+            record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None
+        )
+        self._measure(before[0], counters[0], float(counters[0]["time"]))
+        return rows, reached
+
+    def _measure(self, before: Any, after: Any, time: float) -> None:
+        """Note the rate of events up to a local time."""
+        events, collisions = (int(after[name] - before[name]) for name in ("events", "disc_collisions"))
+        length = time - float(before["time"])
+        if events >= FEW and length > 0.0:
+            self._crew.rate = events / length, collisions / length
+
+    def _succeeds(
+        self, goal: float, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    ) -> bool:
+        """Share a slice up to a local time; False, with all as it was, if that cannot be done."""
+        facts = self._crew.facts
+        facts["slices"] += 1
+        self._save()
+        try:
+            why = self._share(goal, batch, 0)
+            strips, total = self._strips, counters.copy()
+            for strip in strips:
+                for name in ("events", "disc_collisions", "wall_hits", "crossings", "stale"):
+                    total[name] += strip.counters[name]
+            last = max(strips, key=lambda strip: strip.counters[0]["time"]).counters[0]
+            done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}
+            if not why and (done["events"] >= limits.events or done["disc_collisions"] >= limits.collisions):
+                why = "stop"
+            if not why and batch is not None:
+                self._pending = Pending(merged([strip.filled() for strip in strips]), epoch_start)
+        except TiedRowsError:
+            why = REASONS[TIE]
+        except BaseException:
+            self._restore()
+            raise
+        if why:
+            facts[why] += 1
+            self._restore()
+            return False
+        for strip in strips:
+            strip.add_to(self._effects)
+        if done["events"]:
+            total["time"], total["events_at_this_time"] = last["time"], last["events_at_this_time"]
+        self._measure(counters[0], total[0], goal)
+        counters[:] = total
+        self._arrives = goal == limits.until
+        return True
+
+    def _deliver(self, batch: EventBatch | None) -> tuple[int, bool]:
+        """Hand on what rows there are; the slice is over with the last of them."""
+        rows = 0
+        if batch is not None and self._pending is not None:
+            rows = self._pending.fill(batch)
+        return rows, self._arrives and not self.pending
+
+    def _share(self, until: float, batch: EventBatch | None, flag: int) -> str:
+        """Let all threads work up to a local time, with a flag; return why that was given up, or nothing."""
+        record, ids, _ = self._discs
+        if not self._strips:
+            self._strips = [_Strip(self._state, self._effects, len(record), self._crew.tuning) for _ in self._borders]
+        words, limits = self._borders[0].words, Limits(until, UNLIMITED, UNLIMITED, UNLIMITED)
+        reset(self._borders)
+        words[FLAG] = flag
+
+        def give_up() -> None:
+            words[FLAG] = words[FLAG] or FAILED
+
+        def work(k: int) -> None:
+            try:
+                self._strips[k].run(record, ids, limits, batch, self._borders[k])
+            except Exception:  # raised by a kernel: one thread will come to it, and raise it again
+                give_up()
+
+        self._planted = False
+        self._crew.run(work, len(self._borders), give_up)
+        for border in self._borders:
+            for name in ("border_events", "posts", "set_back", "while_posting"):
+                self._crew.facts[name] += int(border.own[0][name])
+                border.own[name] = 0
+        return REASONS.get(int(words[FLAG]), "")
+
+    def _changing(self) -> list[np.ndarray]:
+        """All that events change but sums and schedules, as arrays of bytes."""
+        state, effects = self._state, self._effects._replace(flow=None)
+        arrays = [self._discs.record, state.prediction, state.cells.head, state.cells.link]
+        for effect in effects:
+            if isinstance(effect, tuple):
+                arrays += [part for part in effect if isinstance(part, np.ndarray)]
+        return [np.ascontiguousarray(array).view(np.uint8) for array in arrays]
+
+    def _save(self) -> None:
+        """Keep a copy of all that the slice may change."""
+        if not hasattr(self, "_saved"):
+            self._saved = [np.empty_like(array) for array in self._changing()]
+        for copy, array in zip(self._saved, self._changing(), strict=True):
+            np.copyto(copy, array)
+
+    def _restore(self) -> None:
+        """Set back all that the slice has changed."""
+        self._pending = None
+        for copy, array in zip(self._saved, self._changing(), strict=True):
+            np.copyto(array, copy)
+
+
+class _Strip:
+    """What one thread has for itself: schedule, scratch memory, sums, counters and rows."""
+
+    def __init__(self, state: EventDrivenState, effects: Effects, n: int, tuning: Tuning) -> None:
+        self._state = state._replace(
+            tree=make_tree(n),
+            candidates=np.empty_like(state.candidates),
+            images=None if state.images is None else np.empty_like(state.images),
+        )
+        self._effects = with_own_sums(effects)
+        self._tuning = tuning
+        self._batch: EventBatch | None = None
+        self.counters = np.zeros(1, COUNTERS).view(np.recarray)
+
+    def run(self, record: Any, ids: Any, limits: Limits, batch: EventBatch | None, border: Any) -> None:
+        """Process the strip's events up to a limit of time; batch: as that of the log, None for none."""
+        if batch is not None and self._batch is None:
+            self._batch = EventBatch(*(_longer(column, self._tuning.buffer) for column in batch))  # type: ignore
+        self.counters[:] = np.zeros(1, COUNTERS)
+        clear_sums(self._effects)
+        plant(self._state.tree, self._state.prediction, ids, record, border.low, border.high)
+        own = self._batch if batch is not None else None
+        self._rows, _ = advance_events(record, ids, self._state, self._effects, limits, 0.0, own, self.counters, border)
+        if self._effects.flow is not None:
+            momentum_flow.settle(self._effects.flow)
+
+    def filled(self) -> EventBatch:
+        """The rows of the slice, with local times."""
+        assert self._batch is not None
+        return self._batch.rows(0, self._rows)
+
+    def add_to(self, effects: Effects) -> None:
+        """Add the sums of the slice to those of the run."""
+        add_sums_of(effects, self._effects)
+
+
+def _longer(column: np.ndarray | None, rows: int) -> np.ndarray | None:
+    return None if column is None else np.empty((rows, *column.shape[1:]), column.dtype)

@@ -1,0 +1,135 @@
+"""Gases in tall boxes, whose strips are as low as can be, and their logs by one thread and by several."""
+
+from collections import Counter
+
+import numpy as np
+from support import gas_of, record
+
+from idealgas.engine.event_driven.border import LEAST_ROWS
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.event_driven.strips import Tuning
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.gas.build import make_gas
+from idealgas.gas.state import Gas
+from idealgas.physics.effects import Effects
+from idealgas.run.effects.bundle import make_effects
+from idealgas.run.layout import by_name
+from idealgas.run.sums import kept_sums
+from idealgas.scene import parse_scene
+
+EAGER = Tuning(rows=LEAST_ROWS, discs=1, events=1)
+SMALLEST_CELLS = 1e-9  # discs a cell
+
+EVERYTHING = """
+[gravity]
+acceleration = [0.0, -0.05]
+[rotation]
+roughness = 0.7
+[restitution]
+normal = 0.95
+[[wall]]
+from = [1.0, 50.0]
+to = [7.0, 50.5]
+[[wall]]
+from = [0.6, 27.0]
+to = [7.4, 27.0]
+opens_at = 2.0
+"""
+EFFECTS = {
+    "plain": "",
+    "periodic": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = "periodic"\nbox.top = "periodic"\n',
+    "gravity": "gravity.acceleration = [0.0, -0.05]\n",
+    "rotation": "rotation.roughness = 0.7\n",
+    "restitution": "restitution.normal = 0.95\n",
+    "walls": EVERYTHING[EVERYTHING.index("[[wall]]") :],
+    "thermal": "box.bottom = { thermal = 1.0 }\nbox.top = { thermal = 3.0 }\n",
+    "everything": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n' + EVERYTHING,
+}
+
+
+def tall_scene(effects: str, seed: int) -> tuple[Gas, Effects]:
+    """A gas at random in a box of 8 by 100, thin to dense, with heavy or hot discs in it, and its effects."""
+    draw = np.random.default_rng(seed)
+    number = int(draw.choice([8, 20, 100, 300, 450]))
+    mass, temperature = draw.choice([0.01, 1.0, 1000.0]), draw.choice([1.0, 20.0])
+    text = f"""
+scene.seed = {seed}
+box.size = [8.0, 100.0]
+{EFFECTS[effects]}
+[[species]]
+name = "a"
+count = {number - number // 3}
+radius = 0.5
+temperature = 1.0
+[[species]]
+name = "b"
+count = {number // 3}
+radius = 0.25
+mass = {mass}
+temperature = {temperature}
+[run]
+until = 1.0
+"""
+    dotted = [line for line in text.splitlines() if line.split(" = ")[0].count(".") == 1 and not line.startswith("[")]
+    tables = [line for line in text.splitlines() if line not in dotted]
+    scene = parse_scene("\n".join([*dotted, "log.pressure = true", *tables]))
+    gas = make_gas(scene)
+    return gas, make_effects(scene, gas)
+
+
+def lattice(seed: int) -> tuple[Gas, Effects]:
+    """Discs on a grid, as fast as each other along x or y, or at rest: many events have one time."""
+    draw = np.random.default_rng(seed)
+    width, height = ((8, 128), (12, 96), (4, 160))[draw.integers(3)]
+    spacing = draw.choice([1.0, 1.5, 2.0, 4.0])
+    x, y = np.meshgrid(np.arange(spacing / 2, width, spacing), np.arange(spacing / 2, height, spacing))
+    position = np.column_stack((x.ravel(), y.ravel()))
+    position = position[draw.random(len(position)) < draw.choice([0.3, 0.7, 1.0])]
+    moves = np.array([(0, 1), (0, -1), (1, 0), (-1, 0), (0, 0)], float)[: draw.choice([2, 5])]
+    velocity = moves[draw.integers(len(moves), size=len(position))]
+    return gas_of((width, height), position, velocity, draw.choice([0.25, 0.5])), Effects()
+
+
+def stop_of(draw: np.random.Generator) -> Stop:
+    """An end in time, or after a number of events or of collisions, some thousands at most."""
+    stops = (
+        Stop(time=draw.uniform(1.0, 6.0), events=20_000),
+        Stop(events=int(draw.integers(300, 5000)), time=40.0),
+        Stop(disc_collisions=int(draw.integers(200, 3000)), time=40.0),
+    )
+    return stops[draw.integers(3)]
+
+
+def log_with(gas: Gas, effects: Effects, stop: Stop, events: int, method: EventDriven) -> list[np.ndarray]:
+    """All that a run says: rows, the state and the sums at its end, and the numbers of events."""
+    simulation = Simulation(gas, method, effects)
+    rows = record(simulation, stop, events=events)
+    end, effects = simulation.state()
+    counted = simulation.counters
+    numbers = [counted.events, counted.disc_collisions, counted.wall_hits, simulation.time, simulation.last_event_time]
+    sums = by_name(kept_sums(effects)).values()
+    return [*(column for column in rows if column is not None), end.position, end.velocity, *sums, np.array(numbers)]
+
+
+def compare(sample, seed: int, threads: tuple[int, ...] = (2, 3, 4, 7)) -> Counter[str]:
+    """Assert that so many threads give the log of one. sample: makes a gas and its effects anew.
+
+    Returns what happened on the way, and how many strips there were.
+    """
+    draw = np.random.default_rng(seed)
+    stop, events = stop_of(draw), int(draw.choice([100, 1000, 10_000]))
+    expected = log_with(*sample(), stop, events, EventDriven(SMALLEST_CELLS))
+    facts: Counter[str] = Counter()
+    for number in threads:
+        lead, delay = float(draw.choice([0.1, EAGER.lead, 1e9])), int(draw.choice([0, 0, 30, 300]))
+        method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=lead, delay=delay))
+        found = log_with(*sample(), stop, events, method)
+        assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), (
+            seed,
+            number,
+            method.crew.facts,
+        )
+        assert method.threads.number == number
+        facts += method.crew.facts
+        facts[f"{number} strips"] += 1
+    return facts

@@ -1,0 +1,238 @@
+"""Several threads write the log of one, bit for bit, whatever they meet at the borders of their strips."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from log_compare import differences
+from support import batch_for
+from thread_samples import EAGER, EFFECTS, compare, lattice, log_with, tall_scene
+
+from idealgas.engine.event_driven.border import LEAST_ROWS
+from idealgas.engine.event_driven.merge import Pending, TiedRowsError, merged
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.event_driven.strips import cut, share_out
+from idealgas.engine.event_driven.team import Crew, Race, _Strip
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import Kind, empty_batch
+from idealgas.physics.exact_sum import TOGETHER, add_all, add_sums, make_sums, values
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+# ── how the work is shared ──
+
+
+@given(st.lists(st.integers(0, 50), min_size=2 * LEAST_ROWS, max_size=200), st.integers(2, 9))
+def test_strips_are_high_enough_and_share_equally_where_they_can(discs, most):
+    strips = min(most, len(discs) // LEAST_ROWS)
+    edges = cut(np.array([0, *discs, 0]), strips)
+    assert edges[0] == 1
+    assert edges[-1] == len(discs) + 1
+    assert min(np.diff(edges)) >= LEAST_ROWS
+    even = cut(np.array([0, *[7] * len(discs), 0]), strips)
+    assert np.ptp(np.diff(even)) <= 2
+
+
+def test_a_number_of_threads_and_why(monkeypatch):
+    monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
+    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 4)
+    assert share_out(3, 100, 50, True)[:2] == (3, "as asked for")
+    assert share_out(3, 2 * LEAST_ROWS + 1, 50, True)[0] == 2
+    assert share_out(1, 5, 50, True)[:2] == (1, "as asked for")
+    assert share_out(None, 1000, 10**6, True)[:2] == (4, "as many as there are cores")
+    assert share_out(None, 1000, 12_000, True)[:2] == (2, "each has at least 5000 discs")
+    assert share_out(None, 100, 10**6, True)[:2] == (3, "each has at least 32 rows of cells")
+    assert share_out(None, 10, 100, True)[0] == 1
+    assert share_out(3, 100, 50, False)[0] == 1
+
+
+def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    race = Race()
+    assert not race.shares()
+    race.note(False, 100, 1.0)
+    assert race.shares()
+    race.note(True, 100, 3.0)
+    assert not race.shares()
+    now[0] = 100.0
+    assert race.shares()
+    race.note(True, 100, 0.5)
+    assert race.shares()
+
+
+# ── rows and sums are put together ──
+
+
+def rows_of(times, discs):
+    batch = empty_batch(len(times))
+    batch.time[:], batch.disc[:], batch.partner[:], batch.kind[:] = times, discs, -1, Kind.WALL
+    return batch
+
+
+def test_rows_are_merged_by_time():
+    both = merged([rows_of([1.0, 3.0, 3.0, 2.5], [0, 1, 2, 3]), rows_of([0.5, 4.0], [4, 5])])
+    assert both.disc.tolist() == [4, 0, 3, 1, 2, 5]
+
+
+@pytest.mark.parametrize("times", [([1.0, 2.0], [2.0]), ([2.0], [2.0, 3.0]), ([2.0, 3.0, 2.0], [1.0])])
+def test_rows_of_one_time_that_nobody_has_put_in_order_are_not_merged(times):
+    with pytest.raises(TiedRowsError):
+        merged([rows_of(part, range(len(part))) for part in times])
+
+
+def test_rows_are_handed_on_as_batches_have_room_and_pairs_stay_together():
+    rows = rows_of([1.0, 2.0, 2.0, 3.0, 3.0], [7, 1, 2, 1, 3])
+    rows.partner[1:], rows.kind[1:] = [2, 1, 3, 1], Kind.DISC
+    pending, sizes, discs = Pending(rows, 100.0), [], []
+    while len(pending):
+        batch = empty_batch(3)
+        sizes.append(pending.fill(batch))
+        discs += batch.disc[: sizes[-1]].tolist()
+    assert sizes == [3, 2]
+    assert discs == [7, 1, 2, 1, 3]
+    assert batch.time[0] == 103.0
+
+
+def test_parts_of_sums_add_up_to_the_bit():
+    draw = np.random.default_rng(5)
+    terms = draw.normal(size=TOGETHER) * 10.0 ** draw.integers(-9, 12, TOGETHER)
+    whole, *parts = (make_sums([1.0]) for _ in range(4))
+    add_all(whole[0], terms)
+    for k in range(3):
+        add_all(parts[k][0], terms[k::3])
+    total = make_sums([1.0])
+    for part in parts:
+        add_sums(total, part)
+    assert total.tolist() == whole.tolist()
+    assert values(total)[0] != 0
+
+
+# ── logs ──
+
+GAS = """
+box.size = [60.0, 60.0]
+log = { pressure = true, snapshot_every = 20.0 }
+run.collisions_per_disc = 200
+[[species]]
+name = "a"
+count = 600
+radius = 0.5
+temperature = 1.0
+[[species]]
+name = "b"
+count = 900
+radius = 0.25
+temperature = 1.0
+"""
+
+PLAIN_SEEDS, LATTICE_SEEDS = range(12), range(10)
+
+
+@pytest.mark.slow
+def test_gases_have_the_log_of_one_thread():
+    facts = sum((compare(lambda s=seed: tall_scene("plain", s), seed) for seed in PLAIN_SEEDS), Counter())
+    assert facts["7 strips"] == len(PLAIN_SEEDS)
+    assert facts["posts"] > 1000
+
+
+@pytest.mark.slow
+def test_lattices_have_the_log_of_one_thread():
+    facts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
+    assert facts["tie"] > 0
+    assert facts["slices"] > 2 * facts["tie"]
+
+
+@pytest.mark.slow
+def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
+    """The others wait at their borders for one that is not there, and see that the work is given up."""
+    stop, sample = Stop(events=3000), lambda: tall_scene("plain", 3)
+    expected = log_with(*sample(), stop, 1000, EventDriven())
+    run, calls = _Strip.run, []
+
+    def fail(self, record, ids, limits, batch, border):
+        calls.append(border.me)
+        if border.me == 1 and len(calls) % 2:
+            raise MemoryError
+        run(self, record, ids, limits, batch, border)
+
+    monkeypatch.setattr(_Strip, "run", fail)
+    method = EventDriven(1e-9, 3, EAGER)
+    found = log_with(*sample(), stop, 1000, method)
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert 0 < method.crew.facts["error"] <= method.threads.given_up
+
+
+@pytest.mark.slow
+def test_an_interrupt_sets_all_back_and_ends_the_threads(monkeypatch):
+    gas, effects = tall_scene("plain", 3)
+    simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
+    batch = batch_for(simulation, 65_536)
+    simulation.advance(Stop(), batch, 500)
+    before = simulation.state()[0]
+    run = Crew.run
+
+    def interrupted(self, work, number, give_up):
+        def stopped(k):
+            if k == 0:
+                raise KeyboardInterrupt
+            work(k)
+
+        run(self, stopped, number, give_up)
+
+    monkeypatch.setattr(Crew, "run", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        simulation.advance(Stop(), batch, 500)
+    assert np.array_equal(simulation.state()[0].position, before.position)
+
+
+@pytest.mark.slow
+def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
+    one, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
+    simulate(parse_scene(GAS), one)
+    summary = simulate(parse_scene(GAS, overrides=["run.threads=2"]), two)
+    assert (summary.threads, summary.threads_because) == (2, "as asked for")
+    assert 0 <= summary.given_up_slices < summary.shared_slices
+    assert differences(one, two) == []
+    calls = []
+    simulate(
+        parse_scene(GAS, overrides=["run.threads=3"]),
+        cut_off,
+        interrupted=lambda: calls.append(1) or len(calls) > 9,
+    )
+    assert resume(cut_off, ["run.threads=2"]).shared_slices > 0
+    assert differences(one, cut_off) == []
+
+
+@pytest.mark.slow
+def test_everything_at_once_has_the_log_of_one_thread():
+    facts = sum((compare(lambda s=seed: tall_scene("everything", s), seed, (3, 7)) for seed in range(4)), Counter())
+    assert facts["posts"] > 100
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("effects", EFFECTS)
+def test_many_gases_have_the_log_of_one_thread(effects):
+    total = Counter()
+
+    @settings(max_examples=60, deadline=None)
+    @given(st.integers(0, 2**31))
+    def run(seed):
+        nonlocal total
+        total += compare(lambda: tall_scene(effects, seed), seed)
+
+    run()
+    print(effects, dict(total))
+    assert total["past"] > 0
+
+
+@pytest.mark.long
+def test_many_lattices_have_the_log_of_one_thread():
+    total = Counter()
+    for seed in range(200):
+        total += compare(lambda s=seed: lattice(s), seed)
+    print(dict(total))
+    assert total["tie"] >= 100
