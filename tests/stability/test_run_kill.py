@@ -3,6 +3,7 @@
 import signal
 import subprocess
 import time
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -14,31 +15,45 @@ from idealgas.log import open_log
 
 pytestmark = pytest.mark.slow
 
-IN_CI, BY_HAND = 2, 40
+EFFECTS = (
+    "box.left={thermal = 1}",
+    "restitution.normal=0.95",
+    "log.pressure=true",
+    "log.fsync=true",
+    "log.snapshot_every=40",
+    "run.events=300000",
+)
 SCENES = {
-    "fast": ("quickstart", "run.events=1000000", "log.snapshot_every=5"),
-    "slow": ("mixing", "run.method=brute_force", "run.events=6000", 'log.compression="none"'),
+    "fast": ("configs/quickstart", "run.events=1000000", "log.snapshot_every=5"),
+    "slow": ("configs/mixing", "run.method=brute_force", "run.events=6000", 'log.compression="none"'),
+    "every effect": ("tests/cases/golden/everything", *EFFECTS),
+    "every effect, plain": ("tests/cases/golden/everything", *EFFECTS, 'log.compression="none"'),
 }
+IN_CI = [(0, "fast"), (1, "slow"), (2, "fast")]
+BY_HAND = [(case, list(SCENES)[case % len(SCENES)]) for case in range(3, 83)]
+TEN = 10
 
 
 def command(kind: str) -> list[str]:
     name, *overrides = SCENES[kind]
     settings = [argument for override in (*NO_END, *overrides) for argument in ("--set", override)]
-    return ["run", str(ROOT / "configs" / f"{name}.toml"), *settings]
+    return ["run", str(ROOT / f"{name}.toml"), *settings]
 
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
-    """Log and duration of the run of each kind."""
+    """Log and duration of the run of a kind."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    made = {}
-    for kind in SCENES:
+
+    @cache
+    def of(kind: str) -> tuple[Path, float]:
         idealgas(*command(kind), "-o", folder / f"{kind}-first.h5")  # compiles
         started = time.monotonic()
         result = idealgas(*command(kind), "-o", folder / f"{kind}.h5")
         assert result.returncode == 0, result.stderr
-        made[kind] = folder / f"{kind}.h5", time.monotonic() - started
-    return made
+        return folder / f"{kind}.h5", time.monotonic() - started
+
+    return of
 
 
 def rows_in(path: Path) -> int:
@@ -49,24 +64,33 @@ def rows_in(path: Path) -> int:
         return len(log)
 
 
-@pytest.mark.parametrize(
-    "case", [*range(IN_CI), *(pytest.param(case, marks=pytest.mark.long) for case in range(IN_CI, BY_HAND))]
-)
-def test_killed_and_resumed(case, undisturbed, tmp_path):
-    kind = list(SCENES)[case % len(SCENES)]
-    expected, duration = undisturbed[kind]
+def kill(arguments: list[str], path: Path, seconds: float) -> int:
+    """Start a command, kill it after a time, and return the most rows seen in its log until then."""
+    child = subprocess.Popen([IDEALGAS, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    seen, end = 0, time.monotonic() + seconds
+    try:
+        while time.monotonic() < end and child.poll() is None:
+            seen = max(seen, rows_in(path))
+            time.sleep(0.02)
+    finally:
+        child.send_signal(signal.SIGKILL)
+        child.communicate()
+    return seen
+
+
+def resumed(path: Path) -> None:
+    """Go on with a killed run to its end."""
+    done = idealgas("resume", path)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(("case", "kind"), [*IN_CI, *(pytest.param(*case, marks=pytest.mark.long) for case in BY_HAND)])
+def test_killed_and_resumed(case, kind, undisturbed, tmp_path):
+    expected, duration = undisturbed(kind)
     path = tmp_path / "run.h5"
     random = np.random.default_rng(case)
     for arguments in ([*command(kind), "-o", str(path)], ["resume", str(path)]):  # the second one is killed too
-        child = subprocess.Popen([IDEALGAS, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        seen, end = 0, time.monotonic() + random.uniform(0.1, 1.0) * duration
-        try:
-            while time.monotonic() < end and child.poll() is None:
-                seen = max(seen, rows_in(path))
-                time.sleep(0.02)
-        finally:
-            child.send_signal(signal.SIGKILL)
-            child.communicate()
+        seen = kill(arguments, path, random.uniform(0.1, 1.0) * duration)
         if not path.exists():
             assert idealgas(*command(kind), "-o", path).returncode == 0
         assert rows_in(path) >= seen or arguments[0] == "resume"  # which first cuts off what it replaces
@@ -74,6 +98,19 @@ def test_killed_and_resumed(case, undisturbed, tmp_path):
         unclosed = log.unclosed
     said = idealgas("info", path)
     assert (said.returncode, "its writer died" in said.stderr) == (0, unclosed)
-    resumed = idealgas("resume", path)
-    assert (resumed.returncode, resumed.stderr) == (0, "")
+    resumed(path)
+    assert differences(path, expected) == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", SCENES)
+def test_killed_ten_times(kind, undisturbed, tmp_path):
+    """Each run is killed before long, so that all of them together do not come to the end."""
+    expected, duration = undisturbed(kind)
+    path = tmp_path / "run.h5"
+    random = np.random.default_rng(TEN)
+    for n in range(TEN):
+        arguments = ["resume", str(path)] if path.exists() else [*command(kind), "-o", str(path)]
+        kill(arguments, path, random.uniform(0.2, 0.9) * duration if n == 0 else random.uniform(0.1, 0.4) * duration)
+    resumed(path)
     assert differences(path, expected) == []
