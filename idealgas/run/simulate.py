@@ -56,7 +56,7 @@ def stop_of(scene: Scene, n: int) -> Stop:
     if run.events is not None:
         stop = stop._replace(events=run.events)
     if run.collisions_per_disc is not None:
-        stop = stop._replace(disc_collisions=math.ceil(run.collisions_per_disc * n / 2))
+        stop = stop._replace(disc_collisions=min(math.ceil(run.collisions_per_disc * n / 2), UNLIMITED))
     if run.trials is not None:
         stop = stop._replace(trials=run.trials)
     return stop

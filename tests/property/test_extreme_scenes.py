@@ -110,7 +110,20 @@ def test_a_check_says_yes_or_what_is_wrong(text):
         check(text, Path(folder))
 
 
+PAIR = """box.size = [1, 1]
+disc = [
+    {position = [0.25, 0.5], radius = 0.25, velocity = [%(v)g, 0.1]},
+    {position = [0.75, 0.5], radius = 0.25, velocity = [-%(v)g, 0.1]},
+]
+"""
+
+
 @given(scenes(effects=False))
+@example(gas("speed = 1") + "run.collisions_per_disc = 1e30\n")
+@example(PAIR % {"v": SMALLEST} + "run.until = 1\n")
+@example(PAIR % {"v": 1} + "run.until = 1\n")
+@example(WIDE.replace("run.events = 9", "run.until = 1"))
+@example(WIDE.replace("velocity = [1, 0]", "velocity = [0, 0]").replace("run.events = 9", "run.until = 1"))
 @quick
 @pytest.mark.slow
 def test_a_run_ends(text):
