@@ -8,11 +8,12 @@ import argparse
 import json
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 from log_fuzz import sound
 from log_fuzz.campaign import crafted_outcomes, damaged_outcomes
-from log_fuzz.commands import forms, reading_commands
+from log_fuzz.commands import forms, in_turn, reading_commands
 from log_fuzz.judge import FAILURES, Table
 
 
@@ -21,6 +22,7 @@ def main() -> None:
     parser.add_argument("--cases", metavar="A:B", help="Numbers of crafted logs.")
     parser.add_argument("--damages", metavar="A:B", help="Numbers of damaged logs.")
     parser.add_argument("--commands", metavar="NAME,...", help="Commands to run; by default all that read a log.")
+    parser.add_argument("--each", type=int, metavar="N", help="So many of the commands for each case, in turn.")
     parser.add_argument("--without", metavar="NAME,...", default="", help="Commands to leave out.")
     parser.add_argument("--logs", metavar="NAME,...", help="Sound logs to begin with; by default all.")
     parser.add_argument("--failures", metavar="FILE", type=Path, help="Append failures as lines of JSON.")
@@ -32,7 +34,7 @@ def main() -> None:
     table, begun = Table(), time.monotonic()
     all_logs = sound.DAMAGED if given.damages else sound.CRAFTED
     logs = given.logs.split(",") if given.logs else all_logs
-    for number, what, form, verdict in run(range(first, last), lambda _: chosen, logs):
+    for number, what, form, verdict in run(range(first, last), partial(in_turn, chosen, given.each), logs):
         table.add(number, form, verdict)
         if verdict.name in FAILURES:
             line = {"case": number, "log": what[0], "command": " ".join(form), "verdict": verdict.name,

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from log_fuzz.commands import NAME
+from log_fuzz.commands import NAME, Form
 from log_fuzz.crafted import Crafted, craft
 from log_fuzz.damages import Damaged, damage
 from log_fuzz.judge import Reference, Verdict, judge, judge_damage, reference
 from log_fuzz.sound import LIVE, held, states, unpacked
-from log_fuzz.workers import Form, Outcome, Task, outcomes, run_command
+from log_fuzz.workers import Outcome, Task, outcomes, run_command
 
 Choice = Callable[[int], Sequence[Form]]
 """The commands for a case."""

@@ -1,12 +1,15 @@
 """Every command that reads a log, taken from the program itself, in all forms that go their own way."""
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import click
 from idealgas_cli.main import main
 
 NAME = "run.h5"
+
+Form = tuple[str, ...]
+"""A command, as the words after `idealgas`."""
 
 NEEDED = {"animate": "-o film.gif --to 1 --fps 2 --size 320x240", "report": "-o page.html", "follow": "--once"}
 """What a command cannot do without, or not end without."""
@@ -22,11 +25,16 @@ def reading_commands() -> tuple[str, ...]:
     return tuple(name for name, command in found.items() if command and _reads(command))
 
 
-def forms(name: str) -> tuple[tuple[str, ...], ...]:
-    """Each form of a command, as the words after `idealgas`."""
+def forms(name: str) -> tuple[Form, ...]:
+    """All forms of a command."""
     command = main.get_command(click.Context(main), name)
     assert command is not None
     return tuple((name, NAME, *words.split()) for words in _options(name, command))
+
+
+def in_turn(of: Sequence[Form], each: int | None, case: int) -> Sequence[Form]:
+    """So many of some forms for a case, and after some cases all of them; without a number all at once."""
+    return of if each is None else [of[(each * case + more) % len(of)] for more in range(each)]
 
 
 def _reads(command: click.Command) -> bool:

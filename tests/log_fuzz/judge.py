@@ -12,8 +12,9 @@ from unittest.mock import patch
 import h5py
 
 from idealgas.log.source import Source
+from log_fuzz.commands import Form
 from log_fuzz.effect import Effect, Expect
-from log_fuzz.workers import Form, Outcome, run_form
+from log_fuzz.workers import Outcome, run_form
 
 NOTICES = re.compile(r"^[^\n]*: (?:is being written|its writer died)[^\n]*\n|^premise: [^\n]*\n", re.MULTILINE)
 """Lines on stderr that a command says of a log that it reads."""

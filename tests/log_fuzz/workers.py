@@ -24,7 +24,7 @@ from click.testing import CliRunner
 from idealgas_cli.main import main
 from support import IDEALGAS
 
-from log_fuzz.commands import NAME
+from log_fuzz.commands import NAME, Form
 
 MEMORY = 2**30
 """Bytes that a command may map beyond what is mapped before it."""
@@ -35,8 +35,6 @@ SECONDS = 10.0
 COMMANDS_A_PROCESS = 400
 UNSEEN = (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning)
 """Warnings that users are not shown."""
-
-Form = tuple[str, ...]
 
 
 class Outcome(NamedTuple):

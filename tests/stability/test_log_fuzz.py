@@ -4,13 +4,13 @@
 """
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import pytest
 from log_fuzz import sound
 from log_fuzz.campaign import crafted_outcomes, damaged_outcomes, real_outcomes
-from log_fuzz.commands import SLOW, forms, reading_commands
+from log_fuzz.commands import SLOW, Form, forms, in_turn, reading_commands
 from log_fuzz.judge import FAILURES, Table
-from log_fuzz.workers import Form
 
 CRAFTED, DAMAGED, REAL = 5_000, 10_000, 300
 CRAFTED_IN_CI, DAMAGED_IN_CI = 300, 60
@@ -20,10 +20,9 @@ QUICK = [form for form in FORMS if form[0] not in SLOW]
 REST = [form for form in FORMS if form[0] in SLOW]
 
 
-def in_turn(case: int) -> Sequence[Form]:
+def few(case: int) -> Sequence[Form]:
     """Two commands, and now and then a slow one."""
-    some = [QUICK[(2 * case + more) % len(QUICK)] for more in range(2)]
-    return some if case % 20 else [*some, REST[case // 20 % len(REST)]]
+    return [*in_turn(QUICK, 2, case), *(in_turn(REST, 1, case // 20) if case % 20 == 0 else ())]
 
 
 def tried(outcomes: Iterable) -> list[str]:
@@ -39,12 +38,12 @@ def tried(outcomes: Iterable) -> list[str]:
 
 @pytest.mark.long
 def test_some_crafted_logs():
-    assert tried(crafted_outcomes(range(CRAFTED_IN_CI), in_turn, sound.SOME)) == []
+    assert tried(crafted_outcomes(range(CRAFTED_IN_CI), few, sound.SOME)) == []
 
 
 @pytest.mark.long
 def test_some_damaged_logs():
-    assert tried(damaged_outcomes(range(DAMAGED_IN_CI), in_turn, sound.SOME)) == []
+    assert tried(damaged_outcomes(range(DAMAGED_IN_CI), few, sound.SOME)) == []
 
 
 @pytest.mark.long
@@ -54,7 +53,7 @@ def test_crafted_logs():
 
 @pytest.mark.long
 def test_damaged_logs():
-    assert tried(damaged_outcomes(range(DAMAGED), lambda case: FORMS, sound.DAMAGED)) == []
+    assert tried(damaged_outcomes(range(DAMAGED), partial(in_turn, FORMS, 5), sound.DAMAGED)) == []
 
 
 @pytest.mark.long
