@@ -322,6 +322,12 @@ def test_a_long_log_is_played_in_part(pages, tmp_path, monkeypatch):
     assert words in page.read_text(encoding="utf-8")
 
 
+def test_the_same_page_of_the_same_log(pages, tmp_path):
+    again = tmp_path / "again.html"
+    assert idealgas("report", pages("plain")[0], "-o", again).exit_code == 0
+    assert again.read_bytes() == pages("plain")[1].read_bytes()
+
+
 def test_a_log_without_events_has_no_player(tmp_path):
     simulate(parse_scene(PLAIN + "log.events = false\n"), tmp_path / "run.h5")
     assert idealgas("report", tmp_path / "run.h5", "-o", tmp_path / "run.html").exit_code == 0

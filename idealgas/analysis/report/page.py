@@ -10,6 +10,7 @@ from importlib import resources
 from pathlib import Path
 from string import Template
 
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import show_names
@@ -199,7 +200,8 @@ def _section(section: Section) -> str:
 def _picture(figure: Figure, caption: str) -> str:
     file = io.BytesIO()
     show_names(figure)
-    figure.savefig(file, format="svg", metadata={"Date": None})
+    with rc_context({"svg.hashsalt": "idealgas"}):  # the same page of the same log
+        figure.savefig(file, format="svg", metadata={"Date": None})
     source = base64.b64encode(file.getvalue()).decode()
     text = escape(caption)
     return (
