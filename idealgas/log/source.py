@@ -95,10 +95,10 @@ class Source:
         """One attribute of a dataset or group."""
         return self._read(lambda: gate.attribute(open_object(self._file, name), attribute), f"{name}: ")
 
-    def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int | float]:
-        """Those of some attributes of a group that it has; each is a text or a number."""
+    def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int]:
+        """Those of some attributes of a group that it has; each is a text or a whole number."""
 
-        def read() -> dict[str, str | int | float]:
+        def read() -> dict[str, str | int]:
             group = open_object(self._file, name)
             return {key: gate.value(group, key) for key in wanted if h5py.h5a.exists(group, key.encode())}
 

@@ -2,9 +2,9 @@
 
 import json
 import math
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, asdict, dataclass, fields
+from typing import Any, Self
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,12 @@ class Summary:
     threads_because: str = ""
     shared_slices: int = 0
     given_up_slices: int = 0
+
+    @classmethod
+    def of(cls, found: Mapping[str, Any]) -> Self:
+        """From the fields that a log has; `found` raises its own error for one that has to be there."""
+        wanted = (field for field in fields(cls) if field.name in found or field.default is MISSING)
+        return cls(**{field.name: found[field.name] for field in wanted})
 
     def as_dict(self) -> dict[str, Any]:
         """The fields by name, ready for JSON."""

@@ -49,7 +49,7 @@ def resume(
                 raise LogError(f"{log.path}: another process has this file open")
             scene = _scene_to_go_on_with(log, overrides)
             if log.complete and dump_document(scene) == dump_document(log.scene):
-                return Summary(**log.summary)
+                return Summary.of(log.summary)
             last = log.checkpoints[-1] if len(log.checkpoints) else None
             _check_end(log, last, stop_of(scene, len(log.discs)))
             _check_laws(log, last, _simulation_at(log, last, scene))

@@ -101,11 +101,11 @@ def attribute(thing: Any, name: str) -> np.ndarray:
     return value
 
 
-def value(thing: Any, name: str) -> str | int | float:
-    """An attribute that is one text or number."""
+def value(thing: Any, name: str) -> str | int:
+    """An attribute that is one text or whole number."""
     found = attribute(thing, name)
-    if found.ndim:
-        raise ValueError(f"attribute {name}: not one value")
+    if found.ndim or found.dtype.kind == "f":
+        raise ValueError(f"attribute {name}: not one text or whole number")
     try:
         return found.item().decode() if found.dtype.kind == "S" else found.item()
     except UnicodeDecodeError as error:

@@ -141,8 +141,9 @@ STRUCTURE = {
     "attribute missing": (lambda file: file["box"].attrs.__delitem__("boundary"), "box: .*boundary"),
     "format 0": (attribute("/", "format_version", 0), r"of format 0 \(allowed 1 to 1\)"),
     "format none": (attribute("/", "format_version", "1", dtype=TEXTS), "text of variable length"),
-    "format 1 and 1": (attribute("/", "format_version", [1, 1]), "attribute format_version: not one value"),
-    "seeds": (attribute("/", "seed", np.array([b"1", b"2"])), "seed: not one value"),
+    "format 1 and 1": (attribute("/", "format_version", [1, 1]), "attribute format_version: not one text"),
+    "seeds": (attribute("/", "seed", np.array([b"1", b"2"])), "seed: not one text"),
+    "seed nan": (attribute("/", "seed", np.nan), "seed: not one text or whole number"),
     "not UTF-8": (attribute("/", "created", np.bytes_(b"\xff")), "/: attribute created: not UTF-8 text"),
     "record too narrow": (attribute("commit", "datasets", np.array([b"events/time"])), "not a record of 1 datasets"),
 }  # fmt: skip

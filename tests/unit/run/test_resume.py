@@ -1,10 +1,12 @@
 """A log gone on with is the log of a run without a break, bit for bit; or it is refused."""
 
+import shutil
 from functools import partial
 from itertools import count
 
 import numpy as np
 import pytest
+from crafted import craft, put
 from log_compare import differences, scene_of
 
 import idealgas.run.resume as going_on
@@ -107,6 +109,21 @@ def test_a_log_at_its_end_stays_as_it_is(finished):
     summary = resume(finished)
     assert (summary.events, summary.completed) == (5000, True)
     assert finished.read_bytes() == before
+
+
+@pytest.mark.parametrize(("field", "message"), [("threads", None), ("events", "summary: has no events")])
+def test_a_summary_of_other_fields(finished, tmp_path, field, message):
+    """One field has another name: what is not known is let be, and what is needed is asked for."""
+    path = tmp_path / "run.h5"
+    shutil.copy(finished, path)
+    with open_log(path) as log:
+        place = list(log.summary).index(field)
+    craft(path, put("summary/name", place, b"unknown"))
+    if message is None:
+        assert resume(path).events == 5000
+    else:
+        with pytest.raises(LogError, match=message):
+            resume(path)
 
 
 @pytest.mark.parametrize(
