@@ -18,22 +18,21 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
     """
     import json
     import shlex
-    import signal
     import sys
 
+    from ._interrupt import EXIT_CODE, ctrl_c
     from ._progress import progress_bar
 
-    asked_to_stop = []
-    signal.signal(signal.SIGINT, lambda *_: asked_to_stop.append(True))
-    with progress_bar() as show:
-        command = shlex.join(["idealgas", *sys.argv[1:]])
-        summary = simulate(command=command, on_progress=show, interrupted=lambda: bool(asked_to_stop))
-    if as_json:
-        echo(json.dumps(summary.as_dict(), indent=2))
-    else:
-        _print(summary, path, from_start)
-    if asked_to_stop:
-        raise SystemExit(130)
+    with ctrl_c(raises=False) as interrupted:
+        with progress_bar() as show:
+            command = shlex.join(["idealgas", *sys.argv[1:]])
+            summary = simulate(command=command, on_progress=show, interrupted=interrupted)
+        if as_json:
+            echo(json.dumps(summary.as_dict(), indent=2))
+        else:
+            _print(summary, path, from_start)
+        if interrupted():
+            raise SystemExit(EXIT_CODE)
 
 
 def _print(summary: "Summary", output: str, from_start: bool) -> None:

@@ -17,6 +17,7 @@ from idealgas.errors import UserError
 
 from . import __path__ as folder
 from ._analysis import analysis_command
+from ._interrupt import EXIT_CODE
 from ._terminal import echo
 
 
@@ -45,6 +46,9 @@ class Commands(click.Group):
         except UserError as error:
             echo(str(error), err=True)
             ctx.exit(error.exit_code)
+        except KeyboardInterrupt:
+            echo("interrupted", err=True)
+            ctx.exit(EXIT_CODE)
         except MemoryError:
             echo("out of memory: the scene is too large for this machine", err=True)
             ctx.exit(1)

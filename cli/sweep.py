@@ -37,26 +37,43 @@ def sweep(path: str, output: str | None, workers: int | None, scheduler: str | N
         return
     if output is None:
         raise UserError("-o DIR: missing (the folder for logs and results)")
+    from ._interrupt import EXIT_CODE, ctrl_c
+
+    failed = False
+    with ctrl_c(raises=True) as interrupted:
+        try:
+            failed = _run(plan, output, workers, scheduler, interrupted)
+        except BaseException:
+            if not interrupted():  # else it may be anything that was torn down in the middle
+                raise
+        if interrupted():
+            echo("interrupted; the same command goes on where this one stopped", err=True)
+            raise SystemExit(EXIT_CODE)
+    if failed:
+        raise SystemExit(1)
+
+
+def _run(
+    plan: "Sweep", output: str, workers: int | None, scheduler: str | None, interrupted: Callable[[], bool]
+) -> bool:
+    """Run a sweep and write its tables; whether any points failed."""
     from idealgas.study.sweep.results import write_tables
     from idealgas.study.sweep.run import run_sweep
 
-    interrupted = False
-    outcome = None
-    try:
-        with _progress_bar() as show:
-            outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=show)
-    except KeyboardInterrupt:
-        interrupted = True
-    if interrupted or outcome is None:
-        echo("interrupted; the same command goes on where this one stopped", err=True)
-        raise SystemExit(130)
+    with _progress_bar() as show:
+
+        def on_progress(progress: "Progress") -> None:
+            show(progress)
+            if interrupted():  # the exception may have been lost
+                raise KeyboardInterrupt
+
+        outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress)
     for index, reason in outcome.failures.items():
         echo(f"point {index} failed: {reason}", err=True)
     if outcome.ran or outcome.before:
         tables = " and ".join(map(str, write_tables(output)))
         echo(f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed: {tables}")
-    if outcome.failures:
-        raise SystemExit(1)
+    return bool(outcome.failures)
 
 
 @contextmanager

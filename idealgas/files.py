@@ -36,6 +36,7 @@ _BEGINNINGS = {
     ".pdf": rb"%PDF-",
     ".png": rb"\x89PNG\r\n\x1a\n",
     ".svg": rb"<\?xml.*<svg",
+    ".toml": rb"# \d+ points",
 }
 """How files of each kind begin that this program has written."""
 
@@ -77,11 +78,15 @@ def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool
         raise OutputError(f"{path}: is an input too: another name is needed for the output")
     if not force:
         raise OutputError(f"{path}: exists already (--force replaces it)")
-    with open_regular(path) as file:
-        head = file.read(HEAD)
-    if head and not re.match(_BEGINNINGS[kind], head, re.DOTALL):
+    if found.st_size and not is_of_kind(path, kind):
         what = "log" if kind == LOG else f"{kind} file"
         raise OutputError(f"{path}: is no {what} of idealgas: --force replaces no other files")
+
+
+def is_of_kind(path: Path, kind: str) -> bool:
+    """Whether a file begins as those of a kind do that this program has written."""
+    with open_regular(path) as file:
+        return bool(re.match(_BEGINNINGS[kind], file.read(HEAD), re.DOTALL))
 
 
 def _stat(path: Name) -> os.stat_result | None:

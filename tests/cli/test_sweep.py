@@ -1,14 +1,21 @@
 """Sweeps as a user starts, kills and continues them."""
 
+import contextlib
+import json
 import os
+import resource
+import shutil
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
 import psutil
 import pytest
-from support import IDEALGAS, idealgas
+from support import IDEALGAS, called, idealgas
+
+from idealgas.study.sweep.run import Outcome, Progress
 
 SWEEP = """
 [sweep]
@@ -24,6 +31,9 @@ box.size = [10, 10]
 species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
 run.events = 2000
 """
+
+
+INTERRUPTED = "interrupted; the same command goes on where this one stopped\n"
 
 
 @pytest.fixture
@@ -48,9 +58,12 @@ def test_workers_make_no_difference_and_nothing_is_done_twice(plan, tmp_path):
     assert len(one) == 7
     assert one == two
     (tmp_path / "with-2" / "points" / "0004.json").unlink()
+    plan.write_text(SWEEP.replace("[0.02, 0.1]", "[0.05, 0.02, 0.1]"))
     again = idealgas("sweep", plan, "-o", tmp_path / "with-2")
-    assert again.stdout.startswith("1 points run, 5 done before, 0 failed")
-    assert results(tmp_path / "with-2") == one
+    assert again.stdout.startswith("4 points run, 5 done before, 0 failed")
+    more = results(tmp_path / "with-2")
+    assert len(more) == 10
+    assert all(more[name] == one[name] for name in one if name not in ("results.csv", "0004.json"))
     table = idealgas("pressure", tmp_path / "with-1", "--check")
     assert table.returncode == 0, table.stderr
     assert "agree within 4 standard errors" in table.stdout
@@ -98,12 +111,21 @@ def test_dry_run_shows_the_points_and_runs_none(plan, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_another_sweep_is_not_mixed_in(plan, tmp_path):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "sweep.toml").write_text("another one")
-    done = idealgas("sweep", plan, "-o", tmp_path / "out")
-    assert done.returncode == 2
-    assert "holds another sweep" in done.stderr
+@pytest.mark.parametrize("later", ["a point", "the tables"])
+def test_a_ctrl_c_that_another_package_loses_is_not_lost(plan, tmp_path, monkeypatch, later):
+    def run_sweep(*_, on_progress, **__):
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        if later == "a point":
+            on_progress(Progress(1, 0, 6))
+        return Outcome(0, 0, {})
+
+    monkeypatch.setattr("idealgas.study.sweep.run.run_sweep", run_sweep)
+    before = signal.getsignal(signal.SIGINT)
+    done = called("sweep", plan, "-o", tmp_path / "out")
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == INTERRUPTED
+    assert signal.getsignal(signal.SIGINT) == before
 
 
 def test_without_the_extra_one_line_names_it(plan, tmp_path):
@@ -117,8 +139,8 @@ LONGER = SWEEP.replace("run.events = 2000", "run.events = 200_000").replace("rep
 """Eight points of some tenths of a second each: whatever is waited for at one of them, others are still to come."""
 
 
-def start(plan: Path, folder: Path) -> subprocess.Popen:
-    command = [IDEALGAS, "sweep", str(plan), "-o", str(folder), "--workers", "1"]
+def start(plan: Path, folder: Path, *options: str) -> subprocess.Popen:
+    command = [IDEALGAS, "sweep", str(plan), "-o", str(folder), *(options or ("--workers", "1"))]
     return subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
         start_new_session=True,
@@ -164,10 +186,69 @@ def test_a_killed_sweep_goes_on_where_it_stopped(plan, tmp_path, how):
     _, stderr = running.communicate(timeout=60)
     if how == signal.SIGINT:
         assert running.returncode == 130
-        assert stderr == "interrupted; the same command goes on where this one stopped\n"
+        assert stderr == INTERRUPTED
     before = {path.name: path.stat().st_mtime_ns for path in points.glob("*.json")}
     assert 0 < len(before) < 8
     again = idealgas("sweep", plan, "-o", tmp_path / "out")
     assert again.returncode == 0, again.stderr
     assert again.stdout.startswith(f"{8 - len(before)} points run, {len(before)} done before, 0 failed")
     assert all((points / name).stat().st_mtime_ns == at for name, at in before.items())
+
+
+@pytest.mark.slow
+def test_a_folder_that_goes_while_a_sweep_is_running_in_it(plan, tmp_path):
+    plan.write_text(LONGER)
+    folder = tmp_path / "out"
+    running = start(plan, folder)
+    wait_for(lambda: (folder / "points" / "0000.json").exists(), running)
+    second = called("sweep", plan, "-o", folder)
+    assert (second.returncode, second.stdout) == (2, "")
+    assert second.stderr == f"{folder}: another sweep is running in this folder\n"
+    shutil.rmtree(folder, ignore_errors=True)
+    stdout, stderr = running.communicate(timeout=60)
+    assert (running.returncode, stdout) == (1, "")
+    assert (stderr.count("\n"), str(folder) in stderr) == (1, True)
+
+
+@pytest.mark.slow
+def test_a_full_disk_ends_a_sweep_which_goes_on_later(plan, tmp_path):
+    """A limit of the size of a file stands for it: the larger points do not fit."""
+    plan.write_text(SWEEP.replace('"phi"\nvalues = [0.02, 0.1]', '"run.events"\nvalues = [2000, 200_000]'))
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, limit[1]))
+    try:
+        done = idealgas("sweep", plan, "-o", tmp_path / "out", "--workers", 1)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.endswith("cannot be written: File too large; the same command goes on where this one stopped\n")
+    assert done.stderr.count("\n") == 1
+    again = idealgas("sweep", plan, "-o", tmp_path / "out")
+    assert again.stdout.startswith("3 points run, 3 done before, 0 failed")
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_is_one_line(plan, tmp_path):
+    plan.write_text(LONGER)
+    file, folder = tmp_path / "scheduler.json", tmp_path / "out"
+    programs = (
+        "scheduler --no-dashboard --port 0 --host 127.0.0.1",
+        "worker --no-dashboard --no-nanny --nthreads 1",
+    )
+    with contextlib.ExitStack() as stack:
+        started = []
+        for program in programs:
+            command = [sys.executable, "-m", "dask", *program.split(), "--scheduler-file", str(file)]
+            started.append(stack.enter_context(subprocess.Popen(command, stdout=-3, stderr=-3, cwd=tmp_path)))
+            stack.callback(started[-1].kill)
+            wait_for(lambda: file.exists() and file.stat().st_size, started[0])
+        address = json.loads(file.read_text())["address"]
+        running = start(plan, folder, "--scheduler", address)
+        wait_for((folder / "points" / "0000.json").exists, running)
+        started[0].kill()
+        stdout, stderr = running.communicate(timeout=120)
+    assert (running.returncode, stdout) == (2, "")
+    assert stderr == "the scheduler is gone; the same command goes on where this one stopped\n"
+    again = idealgas("sweep", plan, "-o", folder)
+    assert again.returncode == 0, again.stderr
+    assert ", 0 failed" in again.stdout

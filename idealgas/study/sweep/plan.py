@@ -1,7 +1,6 @@
 """Plan of a sweep: a base scene, axes of values that change it, and the resulting points, each with its scene."""
 
 import copy
-import hashlib
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from pydantic import AfterValidator, Field, ValidationError
 from pydantic_core import PydanticKnownError
 
 from idealgas.analysis import registry
-from idealgas.document.dump import dump_document, toml_value
+from idealgas.document.dump import toml_value
 from idealgas.document.error import Issue, Key
 from idealgas.document.messages import as_issues
 from idealgas.document.origin import Origin
@@ -111,13 +110,14 @@ class Sweep:
     """A whole sweep.
 
     analyses: names of the analyses of each point. keep_logs: whether logs are kept. axes: keys of the axes. points: all
-    runs. text: the file of the sweep with a digest of its points, which identifies the sweep.
+    runs. seed: from which their seeds follow. text: the file of the sweep, for its folder.
     """
 
     analyses: tuple[str, ...]
     keep_logs: bool
     axes: tuple[str, ...]
     points: tuple[Point, ...]
+    seed: int
     text: str
 
 
@@ -137,13 +137,13 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     if found := list(_errors(tables)):
         raise SceneError(origin.report(found))
     points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
-    digest = hashlib.sha256("".join(dump_document(point.scene) for point in points).encode()).hexdigest()
     return Sweep(
         tables.sweep.analyses,
         tables.sweep.keep_logs,
         tuple(axis.key for axis in tables.axis),
         points,
-        f"# {len(points)} points, SHA-256 of their scenes {digest}\n{text}",
+        tables.sweep.seed,
+        f"# {len(points)} points\n{text}",
     )
 
 
@@ -219,7 +219,7 @@ def _points(tables: Tables, bases: dict[Value | None, Base], origin: Origin) -> 
                 else:
                     places[_apply(axis.key, value, document, place)] = place
             for replicate in range(settings.replicates):
-                document.setdefault("scene", {})["seed"] = _seed(settings.seed, combination, replicate)
+                document.setdefault("scene", {})["seed"] = seed_of(settings.seed, combination, replicate)
                 scene = make_scene(document, _placed(base_origin, places))
                 named = {tables.axis[i].key: value for i, value in pairs}
                 points.append(Point(len(points), combination, replicate, named, scene))
@@ -252,7 +252,7 @@ def _apply(key: str, value: Value, document: dict[str, Any], place: str) -> Key:
         raise SceneError([f"{place}: {error}"]) from None
 
 
-def _seed(seed: int, combination: int, replicate: int) -> int:
+def seed_of(seed: int, combination: int, replicate: int) -> int:
     """Seed of the scene of one point; it depends neither on other points nor on the worker that runs it."""
     drawn = np.random.SeedSequence(seed, spawn_key=(combination, replicate)).generate_state(1, np.uint64)
     return int(drawn[0]) >> 1

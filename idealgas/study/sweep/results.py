@@ -15,6 +15,9 @@ from idealgas.files import replacing
 from idealgas.scene import parse_scene
 from idealgas.study.sweep.point import points_folder
 
+KEYS = {"point", "seed", "combination", "replicate", "values", "scene", "summary", "analyses"}
+"""What is in the file of a point."""
+
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
 
 
@@ -24,13 +27,22 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     Raises:
         UserError: if there are none, or if one cannot be read.
     """
-    paths = sorted(points_folder(folder).glob("*.json"), key=lambda path: int(path.stem))
-    if not paths:
-        raise UserError(f"{folder}: holds no results of a sweep")
+    if found := done_points(folder):
+        return found
+    raise UserError(f"{folder}: holds no results of a sweep")
+
+
+def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
+    """As `read_points`, of a sweep that may have no results yet."""
+    paths = sorted(points_folder(folder).glob("[0-9]*.json"), key=lambda path: int(path.stem))
     try:
-        return [json.loads(path.read_text()) for path in paths]
+        found = [json.loads(path.read_text()) for path in paths]
     except (OSError, ValueError) as error:
         raise UserError(f"{folder}: damaged results ({error})") from None
+    for path, point in zip(paths, found, strict=True):
+        if not isinstance(point, dict) or set(point) != KEYS:
+            raise UserError(f"{path}: damaged results (allowed {', '.join(sorted(KEYS))})")
+    return found
 
 
 def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:

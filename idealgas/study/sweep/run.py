@@ -15,9 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from idealgas.document.dump import dump_document
-from idealgas.errors import UserError
+from idealgas.errors import OutputError, UserError
+from idealgas.study.sweep.folder import check_folder, continued, held
 from idealgas.study.sweep.plan import Sweep
-from idealgas.study.sweep.point import Task, points_folder, result_path, run_point
+from idealgas.study.sweep.point import Task, result_path, run_point
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -35,6 +36,8 @@ LOCAL = {
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
 }
 """Settings of the local cluster: no time for anything but points, and workers reuse their memory."""
+
+GOES_ON = "; the same command goes on where this one stopped"
 
 PATIENCE = 10.0  # seconds in which a scheduler must answer
 
@@ -72,55 +75,36 @@ def run_sweep(
 
     Args:
         sweep: the sweep to run.
-        folder: folder of logs and results; it is made, or must belong to the same sweep.
+        folder: folder of logs and results; it is made, or goes on where it stands, even if axes have got new values.
         workers: number of processes on this machine; None for one per core.
         scheduler: address of a dask scheduler, instead of local workers; its workers see the folder at the same path.
         on_progress: called when a point has finished or failed.
 
     Raises:
-        UserError: if the sweep cannot be run at all.
+        UserError: if the sweep cannot be run at all, or not go on for a reason that concerns all points.
     """
     folder = Path(folder).absolute()
-    prepare(sweep, folder)
-    open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
-    before = len(sweep.points) - len(open_points)
-    tasks = [
-        Task(
-            str(folder), p.index, p.combination, p.replicate, p.values, dump_document(p.scene), sweep.analyses,
-            sweep.keep_logs,
-        )
-        for p in open_points
-    ]  # fmt: skip
-    failures: dict[int, str] = {}
-    on_progress(Progress(before, 0, len(sweep.points)))
-    if tasks:
-        with _client(min(workers or os.cpu_count() or 1, len(tasks)), scheduler) as client:
-            for k, (index, failure) in enumerate(_run(client, tasks)):
-                if failure is not None:
-                    failures[index] = failure
-                on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
+    with held(folder):
+        sweep = continued(sweep, folder)
+        open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
+        before = len(sweep.points) - len(open_points)
+        tasks = [
+            Task(
+                str(folder), p.index, p.combination, p.replicate, p.values, dump_document(p.scene), sweep.analyses,
+                sweep.keep_logs,
+            )
+            for p in open_points
+        ]  # fmt: skip
+        failures: dict[int, str] = {}
+        on_progress(Progress(before, 0, len(sweep.points)))
+        if tasks:
+            with _client(min(workers or os.cpu_count() or 1, len(tasks)), scheduler) as client:
+                for k, (index, failure) in enumerate(_run(client, tasks)):
+                    if failure is not None:
+                        check_folder(folder)
+                        failures[index] = failure
+                    on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
     return Outcome(len(tasks) - len(failures), before, dict(sorted(failures.items())))
-
-
-def prepare(sweep: Sweep, folder: Path) -> None:
-    """Make the folder of a sweep, with the file of the sweep in it.
-
-    Raises:
-        UserError: if the folder holds another sweep or other files; with exit code 1, if it cannot be written.
-    """
-    plan = folder / "sweep.toml"
-    try:
-        if plan.exists():
-            if plan.read_text() != sweep.text:
-                raise UserError(f"{folder}: holds another sweep (see {plan}): give another folder, or remove it")
-        elif folder.exists() and any(folder.iterdir()):
-            raise UserError(f"{folder}: exists and is no sweep's folder")
-        points_folder(folder).mkdir(parents=True, exist_ok=True)
-        plan.write_text(sweep.text)
-    except OSError as error:
-        failure = UserError(f"{folder}: cannot be written: {error.strerror}")
-        failure.exit_code = 1
-        raise failure from error
 
 
 def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]]:
@@ -133,9 +117,12 @@ def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]
         for future in as_completed(futures, loop=client.loop):
             if future.status == "cancelled":
                 raise CancelledError
-            yield index[future.key], None if future.status == "finished" else _reason(future.exception())
+            error = None if future.status == "finished" else future.exception()
+            if isinstance(error, OutputError) and error.exit_code == 1:
+                raise OutputError(f"{error}{GOES_ON}", exit_code=1)
+            yield index[future.key], error and _reason(error)
     except (CancelledError, asyncio.CancelledError):
-        raise UserError("the scheduler is gone; the same command goes on where this one stopped") from None
+        raise UserError(f"the scheduler is gone{GOES_ON}") from None
 
 
 def _reason(error: Any) -> str:
@@ -155,6 +142,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         import dask
         from distributed import Client, LocalCluster
         from distributed.comm import parse_address, parse_host_port
+        from distributed.utils import silence_logging_cmgr
     except ImportError:
         raise UserError("a sweep needs dask.distributed: pip install 'idealgas[sweep]'") from None
     if scheduler is not None:
@@ -165,7 +153,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
             raise UserError(f"{scheduler}: no address of a scheduler ({error})") from None
         except OSError:
             raise UserError(f"{scheduler}: no scheduler answers there within {PATIENCE:g} s") from None
-        with client:
+        with silence_logging_cmgr(logging.CRITICAL), client:
             yield client
         return
     with (

@@ -79,11 +79,6 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
     assert [p.scene.species[0].count for p in both.points] == [20, 30]
 
 
-def test_another_sweep_has_another_text(sweep):
-    assert sweep(BASE).text == sweep(BASE).text
-    assert sweep(BASE).text != sweep("sweep.seed = 1\n" + BASE).text
-
-
 @pytest.mark.parametrize(
     ("text", "lines"),
     [
