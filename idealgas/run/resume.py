@@ -69,9 +69,10 @@ def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
     if (made_with := log.attributes.get("trajectory")) not in GOES_ON:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
+    before = log.scene
     scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides)
-    run = log.scene.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
-    expected = log.scene.model_copy(update={"run": run})
+    run = before.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
+    expected = before.model_copy(update={"run": run})
     changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]
     if changed:
         tables = " and ".join(f"[{name}]" for name in changed)

@@ -11,21 +11,24 @@ from isal import isal_zlib
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import DATASET, Commit, table_of
-from idealgas.log.hdf5.superblock import clear_mark, is_marked
+from idealgas.log.hdf5.superblock import clear_mark, lookup3
 from idealgas.log.hdf5.table import open_dataset
 from idealgas.log.schema import FILE_OPTIONS
+
+SUPERBLOCK, FLAGS = 48, 11
+"""Bytes of an HDF5 file's first block, and the place in it of a writer's mark."""
 
 
 class Editor:
     """An open log; a context manager that seals what it leaves.
 
     rows: of each table, as the commit record is to say. paths: the datasets that it is to list. tails: their CRC-32.
-    size: of the file, as the record is to say; None for the true one.
+    size: of the file, as the record is to say.
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        if is_marked(path):
+        self.path, self._mark = path, path.read_bytes()[FLAGS]
+        if self._mark:
             clear_mark(path)
         self.file = h5py.File(path, "r+", **FILE_OPTIONS)
         commit = Commit.read(self.file)
@@ -41,6 +44,8 @@ class Editor:
         if self._sealed:
             self.seal()
         self.file.close()
+        if self._mark and self.path.is_file():
+            self._mark_again()
 
     def datasets(self) -> list[str]:
         """Paths of all datasets but the commit record, in order."""
@@ -111,11 +116,20 @@ class Editor:
             del self.file[DATASET]
             Commit.create(self.file, self.paths)
         self.file.flush()
-        size = self.path.stat().st_size if self.size is None else self.size
+        size = 0 if self.size is None else self.size
         tables = {table_of(path): self.rows[table_of(path)] for path in self.paths}
         for sequence in (1, 2):
             record = Commit(self.sequence + sequence, size, tables, {path: self.tails[path] for path in self.paths})
             record.write(open_dataset(self.file, DATASET))
+
+    def _mark_again(self) -> None:
+        """The log is once more one whose writer died."""
+        with self.path.open("r+b") as file:
+            block = bytearray(file.read(SUPERBLOCK))
+            block[FLAGS] = self._mark
+            block[-4:] = lookup3(bytes(block[:-4])).to_bytes(4, "little")
+            file.seek(0)
+            file.write(block)
 
     def leave_unsealed(self) -> None:
         """The commit record stays as it is now."""

@@ -1,7 +1,8 @@
 """Tables of columns that grow together: rows of any number in, whole chunks out."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 import h5py
 import numpy as np
@@ -29,7 +30,8 @@ class Table:
         self._pending = [np.zeros(column.chunk, column.dtype) for column in columns.values()]
         if self.fill:
             for (path, column), pending in zip(columns.items(), self._pending, strict=True):
-                committed = column.read(self.whole, commit.rows[table_of(path)], commit.tails[path])
+                with _named(path):
+                    committed = column.read(self.whole, commit.rows[table_of(path)], commit.tails[path])
                 pending[: self.fill] = committed[: self.fill]
 
     def append(self, start: int, stop: int, data: Sequence[np.ndarray]) -> None:
@@ -98,6 +100,15 @@ class Table:
             column.write(self.whole, rows, values, self._plain)
 
 
+@contextmanager
+def _named(path: str) -> Iterator[None]:
+    """Let an error say which dataset it is about."""
+    try:
+        yield
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise ValueError(f"{path}: {error.args[0] if error.args else error}") from error
+
+
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, Table]:
     """The tables of a file, ready to grow after the first `keep` rows of each.
 
@@ -106,8 +117,9 @@ def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dic
     columns: dict[str, dict[str, StoredColumn]] = {name: {} for name in commit.rows}
     encoder = chunks.Encoder()
     for path in commit.tails:
-        columns[table_of(path)][path] = column = StoredColumn(open_dataset(file, path), encoder)
-        column.id.get_num_chunks()  # reads the whole index
+        with _named(path):
+            columns[table_of(path)][path] = column = StoredColumn(open_dataset(file, path), encoder)
+            column.id.get_num_chunks()  # reads the whole index
     return {name: Table(columns[name], commit, rows) for name, rows in keep.items()}
 
 

@@ -198,7 +198,7 @@ def test_damage_is_found_before_anything_is_changed(left, tmp_path, damaged):
         raw.write(b"\x55")
     before = path.read_bytes()
     for refused in (recover, LogWriter.resume, lambda path: recover(path, tmp_path / "copy.h5")):
-        with pytest.raises(DamageError, match=f"{path}: damaged: "):
+        with pytest.raises(DamageError, match=f"{path}: damaged: {damaged}"):
             refused(path)
         assert path.read_bytes() == before
     assert not os.path.exists(tmp_path / "copy.h5")

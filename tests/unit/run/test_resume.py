@@ -11,7 +11,7 @@ from log_compare import differences, scene_of
 
 import idealgas.run.resume as going_on
 from idealgas.engine.simulation import TRAJECTORY
-from idealgas.log import LogError, LogWriter, open_log
+from idealgas.log import DamageError, LogError, LogWriter, open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import SceneError
@@ -124,6 +124,15 @@ def test_a_summary_of_other_fields(finished, tmp_path, field, message):
     else:
         with pytest.raises(LogError, match=message):
             resume(path)
+
+
+def test_a_scene_that_is_none_is_one_line(finished, tmp_path):
+    path = tmp_path / "run.h5"
+    shutil.copy(finished, path)
+    craft(path, put("runs/scene", 0, b"box.size = [1, 1]\nspecies = [{count = -1}, {count = -2}]\n"))
+    with pytest.raises(DamageError, match=f"{path}: damaged: runs/scene: ") as caught:
+        resume(path, ["run.events=9000"])
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
