@@ -101,7 +101,7 @@ def run_scene(text: str, max_errors: MaxErrors) -> None:
             seen.append(rows)
             invariants.see(rows, simulation)
         if simulation.epoch_over:
-            way += np.hypot(*simulation.state()[0].velocity.T).max() * simulation.length
+            way += np.hypot(*simulation.state()[0].velocity.T).max() * min(simulation.length, stop.time)
         assert simulation.epoch < MOST_EPOCHS + way / longest, "the clock hardly runs"
     by_time = simulation.counters.events < stop.events
     assert simulation.counters.events == len(seen) <= stop.events
