@@ -30,6 +30,9 @@ PLAIN = "float64"
 MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e12, 1e12
 """Bounds on what a run makes for its own sake, however few events it has: those of minutes and of weeks."""
 
+LONGEST = 2.0**52
+"""Mean free times after which a float no longer tells the times of two collisions apart."""
+
 
 def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Keys of another method, what the method needs, and what it cannot have."""
@@ -99,8 +102,12 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
 
 
 def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Times so short, or a v_ref so large, that the run makes snapshots, steps or trials without end."""
+    """A run too long for its clock; times so short, or a v_ref so large, that snapshots, steps or trials do not end."""
     run, end = scene.run, scene.expected_end
+    if run.until is not None and LONGEST * scene.free_time < end:
+        got = f"{run.until}, about {run.until / scene.free_time:.3g} mean free times"
+        allowed = f"<= {LONGEST:.3g} of them, a time <= {LONGEST * scene.free_time:.3g}"
+        yield Issue((("run", "until"), ("run",)), "too long for the digits of the clock", got, allowed)
     every = None if "log" in invalid else scene.log.snapshot_every
     for key, period, what, most in (
         (("log", "snapshot_every"), every, "snapshots", MOST_SNAPSHOTS),
