@@ -26,7 +26,7 @@ def craft(path: Path, edit: Edit, rows: dict[str, int] | None = None) -> Path:
 def seal(file: h5py.File, record: Commit) -> None:
     """Write the commit record with right check sums, wherever they can be made."""
     tails = {}
-    for path in record.tails:
+    for path in (name.decode() for name in file["commit"].attrs["datasets"].tolist()):
         link = file.get(path, getlink=True)
         dataset = file[path] if isinstance(link, h5py.HardLink) else None
         fits = isinstance(dataset, h5py.Dataset) and dataset.chunks and dataset.dtype.kind != "O"

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from idealgas.events import Column
 from idealgas.gas.state import Gas
-from idealgas.log.rules import check_boundary, check_species, check_walls
+from idealgas.log.rules import check_boundary, check_images, check_species, check_walls
 from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, RUN_COLUMNS, VERSIONS, Wall
 from idealgas.log.source import Source
 
@@ -26,6 +27,7 @@ class LogHeader:
         words = source.attribute("box", "boundary").tolist()
         source.checked(lambda: check_boundary(words), "box")
         self.periodic = tuple(word == b"periodic" for word in words)
+        source.checked(lambda: check_images(any(self.periodic), source.names("checkpoints")), "checkpoints/image")
 
     @cached_property
     def runs(self) -> list[tuple[str, str]]:
@@ -75,6 +77,10 @@ class LogHeader:
         names = tuple(self._source.texts("discs/species_name"))
         self._source.checked(lambda: check_species(columns["species"], len(names)), "discs/species")
         return Gas(box=self.box, species_names=names, **columns)
+
+    def stored(self, table: str) -> list[Column]:
+        """Columns of a table, as they are in the file: names, types and shapes of an entry."""
+        return self._source.stored(table)
 
     @cached_property
     def inertia(self) -> np.ndarray | None:

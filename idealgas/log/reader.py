@@ -31,7 +31,7 @@ Without this package the columns are plain datasets:
 
 import os
 from collections import namedtuple
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
 from time import sleep
@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, overload
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind
+from idealgas.events import EventBatch
 from idealgas.files import is_locked
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
@@ -47,7 +47,7 @@ from idealgas.log.header import LogHeader
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.rules import check_pairs
 from idealgas.log.schema import SUMMARY_COLUMNS
-from idealgas.log.source import ATTEMPTS, PAUSE, Source
+from idealgas.log.source import ATTEMPTS, PAUSE, Entries, Source
 from idealgas.log.summary import parse_summary
 
 if TYPE_CHECKING:
@@ -76,17 +76,6 @@ def _rows(columns: tuple[str, ...]) -> Any:
     return namedtuple("Rows", columns)
 
 
-class Entries(dict[str, Any]):
-    """What a table of a log has, by name; LogError for what it lacks."""
-
-    def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
-        super().__init__(entries)
-        self._where = f"{path}: {table}"
-
-    def __missing__(self, name: str) -> Any:
-        raise LogError(f"{self._where}: has no {name}")
-
-
 class Log(LogHeader):
     """The log of a run, open for reading; a context manager that closes the file. `open_log` makes it.
 
@@ -102,8 +91,12 @@ class Log(LogHeader):
     start_time = 0.0
 
     def __init__(self, source: Source) -> None:
-        super().__init__(source)
-        self._update()
+        try:
+            super().__init__(source)
+            self._update()
+        except LogError:
+            source.close()
+            raise
 
     @property
     def live(self) -> bool:
@@ -123,11 +116,9 @@ class Log(LogHeader):
         self._block = self._source.chunk_rows("events/time") if self.has_events else 1
         if self._rows:
             start = (self._rows - 1) // self._block * self._block
-            disc, partner, kind = (
-                self._source.chunk(f"events/{name}", start)[self._rows - 1 - start]
-                for name in ("disc", "partner", "kind")
-            )
-            if kind == Kind.DISC and disc < partner:  # the first row of a pair, whose second did not get here
+            last = {name: self._source.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
+            self._source.checked(partial(check_pairs, last, start))
+            if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair, whose second did not get here
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
         for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time"):
@@ -235,7 +226,7 @@ class Log(LogHeader):
         stop = len(self) if stop is None else min(stop, len(self))
         for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
             rows = {name: self._source.chunk(f"events/{name}", first) for name in names}
-            self._source.checked(partial(check_pairs, rows, first), "events")
+            self._source.checked(partial(check_pairs, rows, first))
             some = slice(max(start - first, 0), stop - first)
             yield block(**{name: column[some] for name, column in rows.items()})
 

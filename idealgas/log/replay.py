@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, overload
 import numpy as np
 
 from idealgas.log.schema import CHECKPOINT_COLUMNS
-from idealgas.log.source import Source
+from idealgas.log.source import Entries, Source
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
@@ -74,7 +74,8 @@ class Checkpoints(Sequence[Checkpoint]):
         self._check(time, at)
         arrays = {name: entry for name, entry in entries.items() if entry.ndim}
         values = {name: entry.item() for name, entry in entries.items() if not entry.ndim}
-        return Checkpoint(time, at, epoch, arrays, values)
+        path = self._source.path
+        return Checkpoint(time, at, epoch, Entries(path, "checkpoints", arrays), Entries(path, "checkpoints", values))
 
     def _entry(self, name: str, row: int) -> np.ndarray:
         path = f"checkpoints/{name}"

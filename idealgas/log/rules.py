@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from idealgas.events import EVENT_COLUMNS, VELOCITY, Column, Kind
+from idealgas.events import EVENT_COLUMNS, IMAGE, TRIALS, VELOCITY, Column, Kind
 from idealgas.log.components import components
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.schema import (
@@ -43,6 +43,8 @@ MOST_PACKED = 1100
 """Bytes that one byte of a file may become: deflate gives no more than 1032."""
 
 LARGEST = sys.float_info.max
+LEAST, MOST, LONGEST = 1e-100, 1e50, 1e100
+"""Bounds on masses and radii, on these and speeds, and on times and spins: their products are finite numbers too."""
 
 Range = tuple[float, float | tuple[float, float]]
 
@@ -56,13 +58,19 @@ class Rules:
         width, height = box
         self._ranges: dict[str, Range] = {
             **dict.fromkeys(ORDERED, (0, LARGEST)),
+            "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
             "kind": (0, max(Kind)),
             "position": (0, width if width == height else box),
             "species": (0, species - 1),
-            **dict.fromkeys(("radius", "mass"), (math.ulp(0.0), LARGEST)),
-            "inertia": (0, LARGEST),
+            **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
+            "velocity": (-MOST, MOST),
+            "angular_velocity": (-LONGEST, LONGEST),
+            "gravity": (-MOST, MOST),
+            "inertia": (0, LONGEST),
+            "piston_position": (0, max(box)),
+            "piston_velocity": (-MOST, MOST),
         }
         each = lambda column: column._replace(shape=(discs, *column.shape))  # noqa: E731
         shapes = {name: (len(parts),) for name, parts in components(["wall"] * walls).items()}
@@ -134,7 +142,7 @@ class Rules:
 
     def check(self, path: str, data: np.ndarray, start: int = 0) -> None:
         """The rows of a column from row `start` on."""
-        name = path.rpartition("/")[2]
+        name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
         unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
@@ -199,8 +207,8 @@ def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
 
 def box_of(data: np.ndarray) -> tuple[float, float]:
     """Width and height of the box."""
-    if data.shape != BOX.shape or data.dtype != np.dtype(BOX.dtype) or not ((data > 0) & (data <= LARGEST)).all():
-        raise ValueError("box: not a width and a height, finite numbers > 0")
+    if data.shape != BOX.shape or data.dtype != np.dtype(BOX.dtype) or not ((data >= LEAST) & (data <= MOST)).all():
+        raise ValueError(f"box: not a width and a height (allowed {LEAST:g} to {MOST:g})")
     width, height = data.tolist()
     return width, height
 
@@ -212,9 +220,15 @@ def check_names(names: Mapping[str, Sequence[str]]) -> None:
             continue
         if missing := [column.name for column in columns if column.name not in names.get(table, ())]:
             raise ValueError(f"{table}/{missing[0]}: not there")
+    for column in EVENT_COLUMNS if "events" in names else ():
+        here, there = column.name in names["events"], column.name in names["checkpoints"]
+        if column.when not in ("", TRIALS) and here != there:
+            raise ValueError(f"{'checkpoints' if here else 'events'}/{column.name}: not there")
     for table, found in names.items():
         if len(set(found)) != len(found):
             raise ValueError(f"{table}: a column is there twice")
+        if table in ("observables", "particles") and not any(name.endswith("/time") for name in found):
+            raise ValueError(f"{table}: no times")
 
 
 def check_species(species: np.ndarray, kinds: int) -> None:
@@ -227,6 +241,12 @@ def check_boundary(words: object) -> None:
     """What the box says of its sides along x and y."""
     if not isinstance(words, list) or len(words) != 2 or not set(words) <= {b"none", b"periodic"}:
         raise ValueError("attribute boundary: not none or periodic along x and along y")
+
+
+def check_images(periodic: bool, names: Sequence[str]) -> None:
+    """That discs have images where sides are periodic, and nowhere else. names: of the columns of checkpoints."""
+    if periodic != (IMAGE.name in names):
+        raise ValueError(f"{'not there, with' if periodic else 'there, without'} periodic sides")
 
 
 def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:

@@ -1,7 +1,7 @@
 """The file under a log being read: how it is opened, and its columns by chunks. Every failure is a LogError."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import h5py
 import numpy as np
 
+from idealgas.events import Column
 from idealgas.files import is_locked
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
@@ -25,6 +26,17 @@ ATTEMPTS = 10
 PAUSE = 0.02  # seconds
 
 Result = TypeVar("Result")
+
+
+class Entries(dict[str, Any]):
+    """What a table of a log has, by name; LogError for what it lacks."""
+
+    def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
+        super().__init__(entries)
+        self._path, self._table = path, table
+
+    def __missing__(self, name: str) -> Any:
+        raise DamageError(self._path, f"{self._table}: has no {name}")
 
 
 class Source:
@@ -60,6 +72,16 @@ class Source:
         """Names of a table's columns."""
         return self._names.get(table, [])
 
+    def stored(self, table: str) -> list[Column]:
+        """Columns of a table, as they are in the file; of elements only their values."""
+        found = ((name, self._columns[f"{table}/{name}"]) for name in self.names(table))
+        paths = ((name.removesuffix("/value").rpartition("/")[2], name, column) for name, column in found)
+        return [
+            Column(word, column.dtype.str[1:], column.chunk[1:])
+            for word, name, column in paths
+            if "/" not in name or name.endswith("/value")
+        ]
+
     def chunk_rows(self, path: str) -> int:
         """Rows of a chunk of a column."""
         return self._columns[path].chunk[0]
@@ -87,9 +109,9 @@ class Source:
         texts = (self.column(name) if name in self._columns else self.fixed(name)).tolist()
         return self.checked(lambda: [text.decode() for text in texts], name)
 
-    def checked(self, action: Callable[[], Result], what: str) -> Result:
-        """Do what raises ValueError where data break a rule. what: the data's name."""
-        return self._read(action, f"{what}: ")
+    def checked(self, action: Callable[[], Result], what: str = "") -> Result:
+        """Do what raises ValueError where data break a rule. what: the data's name, if the error does not say it."""
+        return self._read(action, what and f"{what}: ")
 
     def attribute(self, name: str, attribute: str) -> np.ndarray:
         """One attribute of a dataset or group."""

@@ -8,11 +8,12 @@ from idealgas.document.dump import dump_document
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
-from idealgas.log import Checkpoint, Log, LogError, LogWriter, open_log
+from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
+from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
-from idealgas.run.layout import TOTALS, restore, row_columns
+from idealgas.run.layout import TOTALS, layout_of, restore, row_columns
 from idealgas.run.simulate import LoggedRun, Progress, RunHistory, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
 
@@ -98,11 +99,25 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     effects = make_effects(scene, start)
     v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
     method = method_of(scene, start, v_ref, rises=V_REF.name in log.observables)
+    _check_columns(log, layout_of(scene, start, effects, method.without_positions, method.kept))
     if checkpoint is None:
         return Simulation(start, method, effects)
     gas, effects = restore(start, effects, checkpoint)
     totals = Totals(**{column.name: int(checkpoint.values[column.name]) for column in TOTALS})
     return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, totals)
+
+
+def _check_columns(log: Log, layout: LogLayout) -> None:
+    """DamageError where the log keeps something that a run of its scene does not keep, or not like this."""
+    discs = len(log.discs)
+    arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.checkpoint_arrays]
+    observables = list(layout.observables)
+    kept = [*observables, *CHECKPOINT_COLUMNS, *arrays, *layout.checkpoint_values]  # before, sums as samples have them
+    for table, columns in {"checkpoints": kept, "observables": observables}.items():
+        known = {column.name: (column.dtype, column.shape) for column in columns}
+        for column in log.stored(table):
+            if known.get(column.name) != (column.dtype, column.shape):
+                raise DamageError(log.path, f"{table}/{column.name}: not of a run of this scene")
 
 
 def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:

@@ -60,6 +60,19 @@ def texts(path, index, text):
     return put(path, index, np.bytes_(text))
 
 
+def without(path):
+    """A record that does not name a dataset, which is not there either."""
+
+    def edit(file):
+        names = [name for name in file["commit"].attrs["datasets"].tolist() if name != path.encode()]
+        width = file["commit"].shape[1] - 1
+        del file["commit"], file[path]
+        commit = file.create_dataset("commit", (2, width), "u8", chunks=(1, width), fletcher32=True)
+        commit.attrs["datasets"] = np.array(names)
+
+    return edit
+
+
 def many_discs(file):
     for name in ("id", "species", "radius", "mass", "position", "velocity"):
         old = file["discs"][name]
@@ -81,8 +94,9 @@ VALUES = {
     "time inf": (put("events/time", 299, INF), "events/time .*inf in row 299"),
     "time negative": (put("events/time", 0, -1.0), "events/time .*-1 in row 0"),
     "time falls": (put("events/time", 17, 0.0), "events/time .*decreases in row 17"),
-    "velocity nan": (put("events/velocity", (17, 1), NAN), "events/velocity .*nan in row 17 .allowed finite"),
+    "velocity nan": (put("events/velocity", (17, 1), NAN), "events/velocity .*nan in row 17 .allowed -1e.50 to 1e.50"),
     "velocity inf": (put("events/velocity", (17, 1), -INF), "events/velocity .*-inf in row 17"),
+    "velocity too large": (put("events/velocity", (17, 1), 1e51), "events/velocity .*1e.51 in row 17"),
     "position nan": (put("events/position", (17, 1), NAN), "events/position .*nan in row 17"),
     "above the box": (put("events/position", (17, 1), 6.0), "events/position .*6 in row 17 .allowed 0 to 5"),
     "left of the box": (put("events/position", (17, 0), -1e-3), "events/position .*-0.001 in row 17"),
@@ -105,6 +119,14 @@ VALUES = {
     "boundary": (
         lambda file: file["box"].attrs.create("boundary", np.array([b"none", b"open"])),
         "box: attribute boundary: not none or periodic",
+    ),
+    "periodic without images": (
+        lambda file: file["box"].attrs.create("boundary", np.array([b"periodic", b"none"])),
+        "checkpoints/image: not there, with periodic sides",
+    ),
+    "no positions in checkpoints": (
+        without("checkpoints/position"),
+        "checkpoints/position: not there",
     ),
     "gravity": (put("gravity", 0, INF), "gravity: inf"),
     "side of the box": (put("walls/endpoints", (1, 0, 0), 9.0), "walls/endpoints: not the sides of a box"),
@@ -199,7 +221,6 @@ SCENES = {
     "gravity": (put("gravity", 1, -1.0), "gravity"),
     "wall": (texts("walls/name", 0, b"west"), "other walls"),
     "species": (texts("discs/species_name", 0, b"x"), "species"),
-    "sides": (lambda file: file["box"].attrs.create("boundary", np.array([b"periodic", b"none"])), "periodic sides"),
 }  # fmt: skip
 
 
@@ -233,7 +254,7 @@ def test_pairs(run, tmp_path):
 def test_what_is_missing_is_said(sound, tmp_path):
     with open_log(sound) as log:
         for table, name in (("observables", "momentum"), ("summary", "trials")):
-            with pytest.raises(LogError, match=f"^{sound}: {table}: has no {name}$"):
+            with pytest.raises(LogError, match=f"^{sound}: damaged: {table}: has no {name}$"):
                 getattr(log, table)[name]
 
 
