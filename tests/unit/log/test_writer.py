@@ -16,7 +16,7 @@ from log_samples import DISCS, STEP, check, gas, mark, new_writer, rows, write_l
 
 import idealgas.log.writer as log_writer
 from idealgas.errors import OutputError
-from idealgas.events import (
+from idealgas.events import ANGULAR_VELOCITY, (
     BLOCK,
     IMAGE,
     IMAGES,
@@ -126,8 +126,9 @@ def test_observables_are_h5md(tmp_path):
 
 def test_further_columns(tmp_path):
     columns = event_columns(POSITIONS, SPINS, IMAGES)
-    arrays = (POSITION, VELOCITY, IMAGE)
-    with new_writer(tmp_path / "run.h5", checkpoint_arrays=arrays, event_columns=columns) as writer:
+    arrays = (POSITION, VELOCITY, ANGULAR_VELOCITY, IMAGE)
+    options = {"checkpoint_arrays": arrays, "event_columns": columns, "boundary": ("periodic", "none")}
+    with new_writer(tmp_path / "run.h5", **options) as writer:
         batch = writer.batch()
         for column in filter(lambda column: column is not None, batch):
             column[:100] = 1
@@ -136,7 +137,8 @@ def test_further_columns(tmp_path):
         batch.image[:100] = np.arange(200).reshape(100, 2)
         writer.write(100)
         image = np.arange(2 * DISCS).reshape(DISCS, 2)
-        writer.checkpoint(1.0, 1, {"position": image % 5, "velocity": image, "image": image}, {"hits": 0})
+        state = {"position": image % 5, "velocity": image, "angular_velocity": image[:, 0], "image": image}
+        writer.checkpoint(1.0, 1, state, {"hits": 0})
     with open_log(tmp_path / "run.h5") as log:
         (block,) = log.chunks()
         assert isinstance(block, EventBatch)
