@@ -16,7 +16,8 @@ from log_samples import DISCS, STEP, check, gas, mark, new_writer, rows, write_l
 
 import idealgas.log.writer as log_writer
 from idealgas.errors import OutputError
-from idealgas.events import ANGULAR_VELOCITY, (
+from idealgas.events import (
+    ANGULAR_VELOCITY,
     BLOCK,
     IMAGE,
     IMAGES,
