@@ -5,6 +5,10 @@ starts with an underscore, and this one, are no commands. Commands that analyse 
 the analyses.
 """
 
+import io
+import logging
+import os
+import sys
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
@@ -39,9 +43,18 @@ class Commands(click.Group):
         module = name.replace("-", "_")
         return getattr(import_module(f".{module}", __package__), module)
 
+    def main(self, *args: Any, **options: Any) -> Any:
+        """Run the program; characters that the terminal does not have are written out."""
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="backslashreplace")
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
+        return super().main(*args, **options)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; print a UserError as one line and exit with its code."""
         try:
+            _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
             return super().invoke(ctx)
         except UserError as error:
             echo(str(error), err=True)
@@ -52,6 +65,12 @@ class Commands(click.Group):
         except MemoryError:
             echo("out of memory: the scene is too large for this machine", err=True)
             ctx.exit(1)
+
+
+def _check_threads(number: str) -> None:
+    """UserError for a value at which numba cannot be imported."""
+    if not (number.isascii() and number.isdigit() and int(number)):
+        raise UserError(f"NUMBA_NUM_THREADS: no number of threads (got {number}; allowed a whole number >= 1)")
 
 
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

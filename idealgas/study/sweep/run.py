@@ -9,7 +9,7 @@ import logging
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -156,17 +156,19 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         with silence_logging_cmgr(logging.CRITICAL), client:
             yield client
         return
-    with (
-        dask.config.set(LOCAL),
-        LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            dashboard_address=":0",  # no fixed port for the HTTP server, which runs also without a dashboard
-            scheduler_kwargs={"dashboard": False},
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-            preload=DEAF,
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
+    with ExitStack() as stack:
+        stack.enter_context(dask.config.set(LOCAL))
+        try:
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                dashboard_address=":0",  # no fixed port for the HTTP server, which runs also without a dashboard
+                scheduler_kwargs={"dashboard": False},
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+                preload=DEAF,
+            )
+            client = stack.enter_context(Client(stack.enter_context(cluster), set_as_default=False))
+        except (OSError, RuntimeError) as error:
+            raise OutputError(f"no worker can be started on this machine: {error}", exit_code=1) from error
         yield client
