@@ -38,7 +38,10 @@ def discs(draw, size):
 def method_tables(draw):
     """A method with the numbers that only it has."""
     method = draw(st.sampled_from(["event_driven", "event_driven", "brute_force", "time_driven", "monte_carlo"]))
-    own = {"time_driven": {"dt": draw(numbers)}, "monte_carlo": {"v_ref": draw(numbers)}}
+    own = {
+        "time_driven": {"dt": draw(st.sampled_from([1.0, 0.1, 1e-3]) | edges)},
+        "monte_carlo": {"v_ref": draw(st.sampled_from([1.0, 10.0, 1e4]) | edges)},
+    }
     return {"method": method, "events": EVENTS} | own.get(method, {})
 
 

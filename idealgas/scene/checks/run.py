@@ -27,8 +27,8 @@ PLAIN = "float64"
 """The precision that everything else has too."""
 
 
-MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e12, 1e12
-"""Bounds on what a run makes for its own sake, however few events it has: those of minutes and of weeks."""
+MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e10, 1e10
+"""Bounds on what a run makes for its own sake, however few events it has: hours of a few discs."""
 
 LONGEST = 2.0**52
 """Mean free times after which a float no longer tells the times of two collisions apart."""
