@@ -67,7 +67,7 @@ class Rules:
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
             "angular_velocity": (-LONGEST, LONGEST),
-            "gravity": (-MOST, MOST),
+            GRAVITY.name: (-MOST, MOST),
             "inertia": (0, LONGEST),
             "piston_position": (0, max(box)),
             "piston_velocity": (-MOST, MOST),
