@@ -41,7 +41,7 @@ def craft(case: int, path: Path, sound: dict[str, bytes], names: Sequence[str]) 
             change = changes[random.integers(len(changes))]
             try:
                 effect = change(editor, random)
-            except (KeyError, ValueError, OSError, RuntimeError, TypeError, IndexError, AttributeError):
+            except (KeyError, ValueError, OSError, RuntimeError, TypeError, IndexError, AttributeError, MemoryError):
                 if not effects:
                     raise
                 effects.append(orderly("and a change that did not come to its end"))  # for what it needs is gone
