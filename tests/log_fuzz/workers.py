@@ -106,7 +106,7 @@ def _one_process(batch: list[tuple[Task, int]], waiting: list) -> Iterator[tuple
         for place, (task, first) in enumerate(batch):
             end, made = _answer(here, child)
             if end != "exit":
-                if last is None:
+                if last is None or not end.startswith("SIG"):
                     raise RuntimeError(f"log {task.number} could not be made: {end}\n{_last_words(folder)}")
                 yield *last, Outcome(end, err=f"some time after this command\n{_last_words(folder)}")
                 waiting[:0] = [(task, first), *batch[place + 1 :]]

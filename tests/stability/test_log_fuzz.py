@@ -36,12 +36,12 @@ def tried(outcomes: Iterable) -> list[str]:
     return wrong
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_some_crafted_logs():
     assert tried(crafted_outcomes(range(CRAFTED_IN_CI), few, sound.SOME)) == []
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_some_damaged_logs():
     assert tried(damaged_outcomes(range(DAMAGED_IN_CI), few, sound.SOME)) == []
 
