@@ -39,7 +39,7 @@ def damage(case: int, path: Path, sound: dict[str, bytes], names: Sequence[str])
         elif way == "noise":
             data[block] = random.bytes(block.stop - block.start)
         elif way == "copy":
-            start = int(random.integers(len(data) // BLOCK)) * BLOCK
+            start = int(random.integers(len(data) // BLOCK + 1)) * BLOCK
             part = data[start : start + BLOCK]
             to = place // BLOCK * BLOCK
             data[to : to + len(part)] = part
