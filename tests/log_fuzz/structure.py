@@ -8,20 +8,16 @@ import h5py
 import numpy as np
 from numpy.random import Generator
 
-from idealgas.events import EVENT_COLUMNS
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.commit import DATASET
-from idealgas.log.schema import CHECKPOINT_COLUMNS
 from log_fuzz.editor import Editor
 from log_fuzz.effect import Effect, broken, doubtful, orderly, same
-from log_fuzz.values import Change, some, with_rows
+from log_fuzz.values import Change, of_an_effect, some, with_rows
 
 GIB = 2**30
 OTHER = "other.h5"
 """A file beside the log, which nobody is to open; `PIPE` is a FIFO."""
 PIPE = "pipe"
-CHECKED = [column.name for column in (*CHECKPOINT_COLUMNS, *EVENT_COLUMNS)]
-"""Columns whose shape every reader knows."""
 
 
 def any_dataset(editor: Editor, random: Generator, kind: str = "fiuS") -> str | None:
@@ -89,8 +85,8 @@ def other_shape(editor: Editor, random: Generator) -> Effect | None:
         editor.remake(path, changed, **options, compression_opts=None)
     else:
         editor.remake(path, changed)
-    if path.startswith("checkpoints/") and values.ndim < 3 and path.rpartition("/")[2] not in CHECKED:
-        return orderly(f"{kind}: {path}")  # of an effect, whose shape only a run knows
+    if of_an_effect(path):
+        return orderly(f"{kind}: {path}")  # only a run knows its shape
     return broken(f"{kind}:", path)
 
 

@@ -23,6 +23,12 @@ EVENT_TIME = f"events/{EVENT_COLUMNS[0].name}"
 CHECKPOINT_TIME, CHECKPOINT_ROW, CHECKPOINT_EPOCH = (f"checkpoints/{column.name}" for column in CHECKPOINT_COLUMNS)
 
 
+def of_an_effect(path: str) -> bool:
+    """Whether a column of checkpoints is known to runs alone."""
+    table, _, name = path.partition("/")
+    return table == "checkpoints" and name not in [column.name for column in (*CHECKPOINT_COLUMNS, *EVENT_COLUMNS)]
+
+
 def some(random: Generator, items: list[str]) -> str | None:
     """One of the items, or None of none."""
     return items[random.integers(len(items))] if items else None
@@ -61,6 +67,8 @@ def not_finite(editor: Editor, random: Generator) -> Effect | None:
         return None
     value = NOT_FINITE[random.integers(3)]
     put(editor, path, row_in(editor, path, random), value, random)
+    if of_an_effect(path) and np.isinf(value):
+        return orderly(f"{value} in {path}")  # the time of what has never been
     return broken(f"{value} in", path)
 
 
