@@ -21,6 +21,7 @@ def reason(error: Exception) -> str:
     """Why a reading failed, in one line; HDF5 says it in parentheses."""
     if isinstance(error, UnicodeDecodeError):
         return "not UTF-8 text"
-    text = str(error.args[0] if error.args else error).splitlines()[0]
+    told = isinstance(error, OSError) and error.strerror
+    text = str(told or (error.args[0] if error.args else error)).splitlines()[0]
     inner = re.search(r"\((.*)\)$", text)
     return inner[1] if inner and isinstance(error, OSError | RuntimeError | KeyError) else text

@@ -5,6 +5,7 @@ HDF5 File Format Specification 3.0, II.A: version 3 has the status flags in byte
 35, and the lookup3 checksum of all before it in bytes 44 to 47.
 """
 
+import errno
 import io
 import os
 import struct
@@ -75,8 +76,10 @@ class Unmarked(io.RawIOBase):
         return self._place
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
-        """As any file, with another beginning."""
+        """As any file, with another beginning, and without a read that lies all beyond its end."""
         data, count = memoryview(buffer).cast("B"), 0
+        if self._place >= os.fstat(self._file.fileno()).st_size:
+            raise OSError(errno.EINVAL, "lies beyond the end of the file")
         while some := os.preadv(self._file.fileno(), [data[count:]], self._place + count):
             count += some
         data[count:] = bytes(len(data) - count)

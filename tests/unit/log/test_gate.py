@@ -3,18 +3,21 @@
 import os
 import re
 import shutil
+import struct
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from crafted import craft, link, put, read_path, swap
+from crafted import craft, link, put, read_path, seal, swap
 from isal import isal_zlib
 from log_samples import write_log
 
 from idealgas.errors import OutputError
 from idealgas.log import LogError, LogWriter, open_log, recover
 from idealgas.log.hdf5 import gate
+from idealgas.log.hdf5.commit import Commit
+from idealgas.log.hdf5.superblock import lookup3
 
 STOP = 300
 
@@ -162,6 +165,20 @@ def test_no_other_file_is_opened(path, tmp_path):
     os.mkfifo(tmp_path / "other.h5")  # whoever opens it waits for ever
     message = refused(craft(path, link("discs/mass", h5py.ExternalLink(str(tmp_path / "other.h5"), "/x"))))
     assert "an external link" in message
+
+
+def test_a_chunk_beyond_the_end_of_the_file(path):
+    """In the log of a dead writer, to which HDF5 knows no end; the record says that it is shorter."""
+    with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+        place = file["events/velocity"].id.get_chunk_info(0).byte_offset
+        seal(file, Commit.read(file)._replace(file_size=0))
+    head = bytearray(path.read_bytes()[:44])
+    head[11] = 5
+    with path.open("r+b") as raw:
+        raw.write(head + struct.pack("<I", lookup3(bytes(head))))
+        raw.truncate(place)
+    assert "events/velocity from row 0: " in refused(path)
+    assert "beyond the end of the file" in refused(path)
 
 
 def fifo(path):
