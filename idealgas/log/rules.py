@@ -108,8 +108,8 @@ class Rules:
                 self._check_column(path, stored)
                 if rows > stored.extent:
                     raise ValueError(f"{rows:,} rows (allowed {stored.extent:,}, as many as there are)")
-                if rows * math.prod(stored.chunk[1:]) * stored.dtype.itemsize > MOST_PACKED * file_size:
-                    raise ValueError(f"{rows:,} rows in a file of {file_size:,} bytes")
+                if stored.extent * math.prod(stored.chunk[1:]) * stored.dtype.itemsize > MOST_PACKED * file_size:
+                    raise ValueError(f"{stored.extent:,} rows in a file of {file_size:,} bytes")
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from error
 

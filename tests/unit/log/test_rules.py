@@ -195,8 +195,9 @@ def test_more_rows_than_the_file_has_room_for(sound, tmp_path):
         for name in file["events"]:
             file["events"][name].resize(2**40, axis=0)
 
-    path = craft(shutil.copyfile(sound, tmp_path / "run.h5"), grow, {"events": 2**40})
-    assert re.search("events/time: 1,099,511,627,776 rows in a file of", refused(path))
+    for rows in ({"events": 2**40}, {}):  # HDF5 would take days to cut off those that are not on record
+        path = craft(shutil.copyfile(sound, tmp_path / "run.h5"), grow, rows)
+        assert re.search("events/time: 1,099,511,627,776 rows in a file of", refused(path))
 
 
 # ── a scene and its arrays ──
