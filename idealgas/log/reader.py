@@ -44,8 +44,8 @@ from idealgas.files import is_locked
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
 from idealgas.log.header import LogHeader
+from idealgas.log.pairs import check_pairs
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
-from idealgas.log.rules import check_pairs
 from idealgas.log.schema import SUMMARY_COLUMNS
 from idealgas.log.source import ATTEMPTS, PAUSE, Entries, Source
 from idealgas.log.summary import parse_summary

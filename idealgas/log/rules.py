@@ -184,27 +184,6 @@ def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
     raise ValueError(f"{value:g} in row {row} (allowed {allowed})")
 
 
-def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
-    """That a collision of two discs is two rows, one for each, with one time, the smaller id first.
-
-    columns: chunks of some columns of events, from row `start` on. A pair may lie across the edge of a chunk.
-    """
-    if "disc" not in columns or "partner" not in columns:
-        return
-    disc, partner = columns["disc"].view("i4"), columns["partner"]
-    pair, first = partner >= 0, disc < partner
-    second = pair & ~first
-    wrong = second[1:] != first[:-1]
-    wrong |= first[:-1] & ((disc[1:] != partner[:-1]) | (partner[1:] != disc[:-1]))
-    if "time" in columns:
-        wrong |= first[:-1] & (columns["time"][1:] != columns["time"][:-1])
-    if wrong.any() or (second[0] and not start):
-        raise ValueError(f"events/partner: no pair in row {start + int(wrong.argmax()) if wrong.any() else 0}")
-    if "kind" in columns and ((columns["kind"] == Kind.DISC) != pair).any():
-        row = start + int(((columns["kind"] == Kind.DISC) != pair).argmax())
-        raise ValueError(f"events/kind: not that of its partner in row {row}")
-
-
 def box_of(data: np.ndarray) -> tuple[float, float]:
     """Width and height of the box."""
     if data.shape != BOX.shape or data.dtype != np.dtype(BOX.dtype) or not ((data >= LEAST) & (data <= MOST)).all():

@@ -1,0 +1,55 @@
+"""The rule of pairs: a collision of two discs is two rows with one time, one for each disc, the smaller id first."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from idealgas._jit import njit
+from idealgas.events import Column, Kind, columns_named
+
+RULED = columns_named(("time", "disc", "partner", "kind"))
+"""Columns of events that the rule is about."""
+
+NO_PAIR, OTHER_KIND = 1, 2
+DISC = int(Kind.DISC)
+
+
+def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
+    """Raise ValueError where rows are no pairs, or of a kind that is not their partner's.
+
+    columns: chunks of some columns of events, from row `start` on. A pair may lie across the edge of a chunk.
+    """
+    if "disc" not in columns or "partner" not in columns:
+        return
+    fault, row = _first_fault(*(_of_one_type(columns, column) for column in RULED), start > 0)
+    if fault == NO_PAIR:
+        raise ValueError(f"events/partner: no pair in row {start + row}")
+    if fault == OTHER_KIND:
+        raise ValueError(f"events/kind: not that of its partner in row {start + row}")
+
+
+def _of_one_type(columns: Mapping[str, np.ndarray], column: Column) -> np.ndarray:
+    """A column, empty if it is not there, of a type that does not depend on how it was read, to be compiled once."""
+    found = columns.get(column.name, np.empty(0, column.dtype)).view()
+    found.flags.writeable = False
+    return found
+
+
+@njit
+def _first_fault(time, disc, partner, kind, is_second_allowed):
+    """What is wrong first, or 0, and in which row; pairs before kinds. time, kind: may be empty."""
+    n = disc.shape[0]
+    odd = -1  # first row of another kind
+    allowed = is_second_allowed  # whether the row may be the second one of a pair
+    for k in range(n):
+        one, other = np.int64(disc[k]), np.int64(partner[k])
+        if kind.shape[0] > 0 and (kind[k] == DISC) != (other >= 0) and odd < 0:
+            odd = k
+        if other >= 0 and one >= other and not allowed:
+            return NO_PAIR, k
+        allowed = one < other
+        if allowed and k + 1 < n:
+            same_time = time.shape[0] == 0 or time[k] == time[k + 1]
+            if disc[k + 1] != other or partner[k + 1] != one or not same_time:
+                return NO_PAIR, k
+    return (OTHER_KIND, odd) if odd >= 0 else (0, 0)
