@@ -126,6 +126,8 @@ class Rules:
             column = Column(names[0], "", stored.chunk[1:])  # of an effect or of a sum
         if column is None:
             raise ValueError("not a column of a log")
+        if table == "observables" and stored.dtype.str not in ("<f8", "<i8"):
+            raise ValueError(f"of type {stored.dtype} (allowed float64 or int64)")
         self._check_type(column, stored)
         if stored.chunk[1:] != column.shape:
             raise ValueError(f"entries of shape {stored.chunk[1:]} (allowed {column.shape})")

@@ -154,6 +154,7 @@ VALUES = {
     "wrong number of rows": (texts("summary/value", 1, b"299"), "summary/value: 299 rows"),
     "type of ids": (retyped("events/disc", "i8"), "events/disc: of type int64 .allowed uint32"),
     "type of times": (retyped("events/time", "i8"), "events/time: of type int64 .allowed float64"),
+    "kind of a sample": (retyped("observables/hits/value", "u8"), "of type uint64 .allowed float64 or int64"),
     "type of a sample": (retyped("observables/hits/value", "S8"), "observables/hits/value: of type"),
     "shape of velocities": (
         lambda file: swap("events/velocity", data=np.zeros((300, 3)), chunks=(65536, 3), maxshape=(None, 3))(file),
