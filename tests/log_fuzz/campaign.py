@@ -79,11 +79,11 @@ def _freeze() -> None:
     gc.freeze()
 
 
-def real_outcomes(cases: range, choice: Callable[[int], Form], names: Sequence[str]) -> Found:
+def real_outcomes(cases: range, choice: Choice, names: Sequence[str]) -> Found:
     """Crafted logs, each with one command in a process of its own."""
     sound = {name: unpacked(name) for name in names}
     for case in cases:
-        name, form = names[case % len(names)], choice(case)
+        name, (form,) = names[case % len(names)], choice(case)
         known = references(sound[name], [form])[form]
         with tempfile.TemporaryDirectory(prefix="log-fuzz-") as folder:
             log = Path(folder) / NAME
