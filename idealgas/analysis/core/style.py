@@ -1,5 +1,6 @@
 """Common style of all pictures: colours that colour-blind readers can distinguish, and panels."""
 
+import io
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -27,7 +28,9 @@ def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> N
     kind = Path(path).suffix.lower()
     show_names(figure)
     with written(path, kind, force) as part:
-        figure.savefig(part, dpi=150, format=kind.removeprefix("."))
+        file = io.BytesIO()  # not every format of matplotlib ends well on a disk that is full
+        figure.savefig(file, dpi=150, format=kind.removeprefix("."))
+        part.write_bytes(file.getvalue())
 
 
 def name_rows(ax: Axes, names: Sequence[str], **options: Any) -> None:

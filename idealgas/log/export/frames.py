@@ -1,7 +1,12 @@
 """Frames of all discs as GSD, extended XYZ, and H5MD in three dimensions."""
 
-from collections.abc import Sequence
+import errno
+import io
+import os
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -18,25 +23,34 @@ def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
     """
     import gsd.hoomd
 
-    discs, (width, height) = log.discs, log.box
-    with gsd.hoomd.open(str(path), "w") as file:
-        for step, state in enumerate(log.frames(times)):
-            frame = gsd.hoomd.Frame()
-            frame.configuration.step = step
-            frame.configuration.dimensions = 2
-            frame.configuration.box = [width, height, 0, 0, 0, 0]
-            frame.log["time"] = np.array([state.time])
-            particles = frame.particles
-            particles.N = len(discs)
-            particles.position = _with_zeros(state.position - np.array(log.box) / 2)
-            particles.velocity = _with_zeros(state.velocity)
-            if state.image is not None:
-                particles.image = _with_zeros(state.image)
-            if step == 0:  # frames without them have those of the first
-                particles.types = [name.encode("ascii", "backslashreplace").decode() for name in discs.species_names]
-                particles.typeid, particles.mass, particles.diameter = discs.species, discs.mass, 2 * discs.radius
-            file.append(frame)
+    try:
+        with gsd.hoomd.open(str(path), "w") as file:
+            _append_gsd(file, log, times)
+    except RuntimeError as error:  # so gsd calls it where the end of a file cannot be written
+        raise OSError(errno.EIO, str(error)) from error
     return len(times)
+
+
+def _append_gsd(file: Any, log: Log, times: Sequence[float]) -> None:
+    import gsd.hoomd
+
+    discs, (width, height) = log.discs, log.box
+    for step, state in enumerate(log.frames(times)):
+        frame = gsd.hoomd.Frame()
+        frame.configuration.step = step
+        frame.configuration.dimensions = 2
+        frame.configuration.box = [width, height, 0, 0, 0, 0]
+        frame.log["time"] = np.array([state.time])
+        particles = frame.particles
+        particles.N = len(discs)
+        particles.position = _with_zeros(state.position - np.array(log.box) / 2)
+        particles.velocity = _with_zeros(state.velocity)
+        if state.image is not None:
+            particles.image = _with_zeros(state.image)
+        if step == 0:  # frames without them have those of the first
+            particles.types = [name.encode("ascii", "backslashreplace").decode() for name in discs.species_names]
+            particles.typeid, particles.mass, particles.diameter = discs.species, discs.mass, 2 * discs.radius
+        file.append(frame)
 
 
 def write_extxyz(log: Log, times: Sequence[float], path: Path) -> int:
@@ -63,30 +77,78 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
 
     A box without periodic sides has no edges there: they would be taken for periodic.
     """
+    with _Target(path) as target, h5py.File(target, "w", libver=("v110", "v110")) as file:
+        _fill_h5md3d(file, log, times)
+    if target.failure:
+        raise target.failure
+    return len(times)
+
+
+class _Target(io.RawIOBase):
+    """A file for HDF5, which crashes where writing fails: this one goes on in vain, and `failure` says why."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("w+b")
+        self.failure: OSError | None = None
+
+    def write(self, data: memoryview) -> int:  # type: ignore[override]
+        """As any file."""
+        self._try(lambda: self._file.write(data))
+        return len(data)
+
+    def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
+        """As any file."""
+        return self._try(lambda: self._file.readinto(buffer))
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """As any file."""
+        return self._try(lambda: self._file.seek(offset, whence))
+
+    def truncate(self, size: int | None = None) -> int:
+        """As any file."""
+        return self._try(lambda: self._file.truncate(size))
+
+    def flush(self) -> None:
+        """As any file."""
+        self._try(self._file.flush)
+
+    def close(self) -> None:
+        """As any file."""
+        super().close()  # which flushes
+        with suppress(OSError):
+            self._file.close()
+
+    def _try(self, action: Callable[[], int | None]) -> int:
+        try:
+            return (not self.failure and action()) or 0
+        except OSError as error:
+            self.failure = error
+            return 0
+
+
+def _fill_h5md3d(file: h5py.File, log: Log, times: Sequence[float]) -> None:
     frames, discs = len(times), len(log.discs)
-    with h5py.File(path, "w", libver=("v110", "v110")) as file:
-        h5md = file.create_group("h5md")
-        h5md.attrs["version"] = (1, 1)
-        h5md.create_group("author").attrs["name"] = np.bytes_("unknown")
-        h5md.create_group("creator").attrs.update({"name": np.bytes_("idealgas"), "version": np.bytes_(__version__)})
-        group = file.create_group("particles/trajectory")
-        group["position/step"], group["position/time"] = np.arange(frames), np.asarray(times, "f8")
-        columns = (POSITION, VELOCITY, IMAGE) if any(log.periodic) else (POSITION, VELOCITY)
-        for name, dtype, *_ in columns:
-            group.create_dataset(f"{name}/value", (frames, discs, 3), dtype, chunks=(1, discs, 3), compression="gzip")
-            _share_times(group, name)
-        box = group.create_group("box")
-        boundary = ["periodic" if periodic else "none" for periodic in (*log.periodic, False)]
-        box.attrs.update({"dimension": 3, "boundary": np.array(boundary, "S")})
-        if any(log.periodic):
-            box["edges/value"] = np.tile((*log.box, 2 * log.discs.radius.max()), (frames, 1))
-            _share_times(group, "box/edges")
-        group["id"], group["species"] = np.arange(discs), log.discs.species
-        group["mass"], group["radius"] = log.discs.mass, log.discs.radius
-        for frame, state in enumerate(log.frames(times)):
-            for name, *_ in columns:
-                group[f"{name}/value"][frame] = _with_zeros(getattr(state, name))
-    return frames
+    h5md = file.create_group("h5md")
+    h5md.attrs["version"] = (1, 1)
+    h5md.create_group("author").attrs["name"] = np.bytes_("unknown")
+    h5md.create_group("creator").attrs.update({"name": np.bytes_("idealgas"), "version": np.bytes_(__version__)})
+    group = file.create_group("particles/trajectory")
+    group["position/step"], group["position/time"] = np.arange(frames), np.asarray(times, "f8")
+    columns = (POSITION, VELOCITY, IMAGE) if any(log.periodic) else (POSITION, VELOCITY)
+    for name, dtype, *_ in columns:
+        group.create_dataset(f"{name}/value", (frames, discs, 3), dtype, chunks=(1, discs, 3), compression="gzip")
+        _share_times(group, name)
+    box = group.create_group("box")
+    boundary = ["periodic" if periodic else "none" for periodic in (*log.periodic, False)]
+    box.attrs.update({"dimension": 3, "boundary": np.array(boundary, "S")})
+    if any(log.periodic):
+        box["edges/value"] = np.tile((*log.box, 2 * log.discs.radius.max()), (frames, 1))
+        _share_times(group, "box/edges")
+    group["id"], group["species"] = np.arange(discs), log.discs.species
+    group["mass"], group["radius"] = log.discs.mass, log.discs.radius
+    for frame, state in enumerate(log.frames(times)):
+        for name, *_ in columns:
+            group[f"{name}/value"][frame] = _with_zeros(getattr(state, name))
 
 
 def _share_times(group: h5py.Group, name: str) -> None:

@@ -1,5 +1,6 @@
 """Exported files, read by the packages they are for."""
 
+import resource
 import sys
 import warnings
 
@@ -146,6 +147,28 @@ def test_an_existing_file_stays(log, tmp_path):
     with pytest.raises(OutputError, match=r"run\.csv: is no \.csv file of idealgas"):
         export(log, "csv", tmp_path / "run.csv", force=True)
     assert (tmp_path / "run.csv").read_text() == "precious"
+
+
+@pytest.mark.parametrize(("kind", "made"), FORMATS.items())
+@pytest.mark.parametrize("share", [0.1, 0.999])
+def test_a_full_disk_leaves_nothing(log, kind, made, share, tmp_path):
+    """A limit of the size of a file stands for it; HDF5 would crash."""
+    path = tmp_path / f"out{made.ending}"
+    times = frame_times(log, "50")
+    try:
+        export(log, kind, path, times)
+    except LogError as error:
+        pytest.skip(str(error))
+    size = path.stat().st_size
+    path.unlink()
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * size), limit[1]))
+    try:
+        with pytest.raises(OutputError, match=r"cannot be written: (File too large|Input/output error)"):
+            export(log, kind, path, times)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(("kind", "made"), FORMATS.items())
