@@ -149,22 +149,23 @@ class Rules:
             return
         unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
         low, high = self._ranges.get(name, (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST))
+        in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())
         if isinstance(high, tuple):
             for axis, most in enumerate(high):
                 _check_range(data[..., axis], low, most, start)
-        else:
+        elif not (in_order and low <= data[0] and data[-1] <= high):  # where the others lie between
             _check_range(data, low, high, start)
         if name in ORDERED:
-            self._check_order(path, data, start)
+            self._check_order(path, data, start, in_order)
 
-    def _check_order(self, path: str, data: np.ndarray, start: int) -> None:
-        """Rows of a chunk among themselves, and against those of the chunks that were read before.
+    def _check_order(self, path: str, data: np.ndarray, start: int, in_order: bool) -> None:
+        """Rows of a chunk, unless they are known to be in order, and against the chunks that were read before.
 
         Runs that were interrupted once took their last sample with the time of the last event, after a later one.
         """
         if path.startswith("observables/") and not self._complete and not len(data := data[:-1]):
             return
-        if (falls := data[1:] < data[:-1]).any():
+        if not in_order and (falls := data[1:] < data[:-1]).any():
             raise ValueError(f"decreases in row {start + 1 + int(falls.argmax())}")
         starts, edges = self._edges.setdefault(path, ([], []))
         place = bisect(starts, start)

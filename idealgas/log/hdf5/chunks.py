@@ -8,7 +8,7 @@ plain with its fletcher32, so that it keeps its size and its place in the file.
 import struct
 
 import numpy as np
-from isal import isal_zlib
+from isal import igzip_lib, isal_zlib
 
 from idealgas._jit import inline, njit
 
@@ -167,10 +167,10 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
             raise ValueError("a checksum does not match")
         data = data[:-4]
     if not mask & DEFLATE:
-        stream = isal_zlib.decompressobj()
+        stream = igzip_lib.IgzipDecompressor(igzip_lib.DECOMP_ZLIB)  # a little faster than the one of `isal_zlib`
         try:
             data = stream.decompress(data, size + 1)
-        except isal_zlib.error as error:  # type: ignore[misc]
+        except igzip_lib.error as error:  # type: ignore[misc]
             raise ValueError(f"a compressed chunk: {error}") from error
         if not stream.eof:
             raise ValueError(f"a compressed chunk: does not end at {size:,} bytes")
