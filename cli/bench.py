@@ -22,21 +22,33 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 )
 @click.option("--collisions", default=1_000_000, show_default=True, help="Smallest number of pair collisions of a run.")
 @click.option("--repeats", default=3, show_default=True, help="Number of runs of each kind; the median is shown.")
+@click.option("--threads", default="1", show_default=True, callback=_numbers, help="Numbers of threads.")
 @click.option("--effects", is_flag=True, help="Measure instead the cost of each effect, relative to the plain box.")
 @json_option
 def bench(
-    numbers: list[float], fractions: list[float], collisions: int, repeats: int, effects: bool, as_json: bool
+    numbers: list[float],
+    fractions: list[float],
+    collisions: int,
+    repeats: int,
+    threads: list[float],
+    effects: bool,
+    as_json: bool,
 ) -> None:
     """Measure the speed of the event-driven engine for several N and φ, without the event log and with it."""
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
         raise click.UsageError("N, collisions and repeats are 1 or more, φ is above 0 and 0.9 at most")
+    if not all(1 <= number <= 256 for number in threads):
+        raise click.UsageError("there are 1 to 256 threads")
     if effects:
         _bench_effects(collisions, repeats, as_json)
     else:
-        _bench_grid([int(n) for n in numbers], fractions, collisions, repeats, as_json)
+        grid = [int(n) for n in numbers], fractions, [int(number) for number in threads]
+        _bench_grid(*grid, collisions, repeats, as_json)
 
 
-def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, repeats: int, as_json: bool) -> None:
+def _bench_grid(
+    numbers: list[int], fractions: list[float], threads: list[int], collisions: int, repeats: int, as_json: bool
+) -> None:
     import json
 
     from rich.table import Table
@@ -51,17 +63,18 @@ def _bench_grid(numbers: list[int], fractions: list[float], collisions: int, rep
             collisions,
             repeats,
             lambda row: status.update(f"N = {row.N}, φ = {row.phi:g}: {row.collisions_per_s:,.0f} collisions/s"),
+            threads,
         )
     if as_json:
         rows = [row._asdict() for row in found.rows]
         echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
         return
-    table = Table("N", "φ", "log", "M collisions/s", "slowest – fastest", "log / no log")
+    table = Table("N", "φ", "threads", "log", "M collisions/s", "slowest – fastest", "log / no log")
     for row in found.rows:
         share = "" if row.ratio is None else f"{row.ratio:.2f}"
         spread = f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"
         rate = f"{row.collisions_per_s / 1e6:.3f}"
-        table.add_row(f"{row.N:,}", f"{row.phi:g}", "on" if row.log else "off", rate, spread, share)
+        table.add_row(f"{row.N:,}", f"{row.phi:g}", str(row.threads), "on" if row.log else "off", rate, spread, share)
     terminal().print(table)
     echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")
 

@@ -15,7 +15,7 @@ from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.atomics import LINE, add, exchange, load, store, wait
 from idealgas.engine.event_driven.scheduler import schedule, withdraw
 
-ZONE = 5
+ZONE = 4
 """Rows at a border whose events are border events. An event at r reads the rows r - 2 to r + 2, and writes the next."""
 
 DEEPEST = ZONE - 3

@@ -9,7 +9,7 @@ one thread. The argument in full: engine/README.md.
 import numpy as np
 
 from idealgas._jit import inline
-from idealgas.engine.event_driven.atomics import add, give_way, load, store, wait
+from idealgas.engine.event_driven.atomics import add, load, pause, store, wait
 from idealgas.engine.event_driven.border import (
     ABANDONED,
     ACTIVE,
@@ -217,8 +217,8 @@ def loiter(b):
         own = b.own[0]
         own.draw = own.draw * np.uint64(6364136223846793005) + np.uint64(1442695040888963407)
         if np.int64(own.draw >> np.uint64(33)) % b.delay == 0:
-            for _ in range(100):
-                give_way()
+            for _ in range(1000):
+                pause()
 
 
 @inline

@@ -6,6 +6,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,15 +17,16 @@ RADIUS = 0.5
 
 
 class Row(NamedTuple):
-    """Speed of the engine for one number of discs and packing fraction.
+    """Speed of the engine for one number of discs, packing fraction and number of threads.
 
-    N: number of discs. phi: packing fraction. log: whether events were logged. collisions_per_s: pair collisions per
-    second, median over the repeats. slowest, fastest: its extremes. ratio: rate with the log over rate without it,
-    median over pairs of consecutive runs; None without the log.
+    N: number of discs. phi: packing fraction. threads: number of those that there were. log: whether events were
+    logged. collisions_per_s: pair collisions per second, median over the repeats. slowest, fastest: its extremes.
+    ratio: rate with the log over rate without it, median over pairs of consecutive runs; None without the log.
     """
 
     N: int
     phi: float
+    threads: int
     log: bool
     collisions_per_s: float
     slowest: float
@@ -43,14 +45,14 @@ class Bench:
     rows: list[Row]
 
 
-def bench_scene(n: int, phi: float, collisions: int, log: bool) -> Scene:
+def bench_scene(n: int, phi: float, collisions: int, log: bool, threads: int = 1) -> Scene:
     """Scene of n equal discs on a lattice at temperature 1 in a square box."""
     side = math.sqrt(n * math.pi * RADIUS**2 / phi)
     return Scene(
         scene=Header(title=f"bench, N = {n}, packing fraction {phi:g}"),
         box=Box(size=(side, side)),
         species=(Species(name="gas", count=n, radius=RADIUS, temperature=1.0, placement="lattice"),),
-        run=Run(collisions_per_disc=2.0 * collisions / n),
+        run=Run(collisions_per_disc=2.0 * collisions / n, threads=threads),
         log=Log(events=log),
     )
 
@@ -61,28 +63,29 @@ def bench(
     collisions: int = 1_000_000,
     repeats: int = 3,
     on_row: Callable[[Row], None] = lambda row: None,
+    threads: Iterable[int] = (1,),
 ) -> Bench:
     """Time runs of at least `collisions` pair collisions and two per disc, alternately without and with the log.
 
     numbers: numbers of discs. fractions: packing fractions. repeats: runs of each kind. on_row: called with each row.
+    threads: numbers of threads.
     """
     with tempfile.TemporaryDirectory(prefix="idealgas-bench-") as folder:
         path = Path(folder) / "bench.h5"
-        started = time.perf_counter()
-        for log in (False, True):
-            simulate(bench_scene(10, 0.1, 10, log), path, force=True)
+        started, threads = time.perf_counter(), list(threads)
+        for log, number in product((False, True), threads):
+            simulate(bench_scene(1_000, 0.5, 10, log, number), path, force=True)
         compile_seconds = time.perf_counter() - started
         rows = []
-        for n in numbers:
-            for phi in fractions:
-                rates: dict[bool, list[float]] = {False: [], True: []}
-                for repeat in range(repeats):
-                    for log in (False, True) if repeat % 2 else (True, False):
-                        summary = simulate(bench_scene(n, phi, max(collisions, 2 * n), log), path, force=True)
-                        rates[log].append(summary.disc_collisions / summary.seconds)
-                pairs = statistics.median(on / off for off, on in zip(*rates.values(), strict=True))
-                for log, measured in rates.items():
-                    ratio = pairs if log else None
-                    rows.append(Row(n, phi, log, statistics.median(measured), min(measured), max(measured), ratio))
-                    on_row(rows[-1])
+        for n, phi, number in product(numbers, fractions, threads):
+            rates: dict[bool, list[float]] = {False: [], True: []}
+            for repeat in range(repeats):
+                for log in (False, True) if repeat % 2 else (True, False):
+                    summary = simulate(bench_scene(n, phi, max(collisions, 2 * n), log, number), path, force=True)
+                    rates[log].append(summary.disc_collisions / summary.seconds)
+            pairs = statistics.median(on / off for off, on in zip(*rates.values(), strict=True))
+            for log, measured in rates.items():
+                ratio, median = pairs if log else None, statistics.median(measured)
+                rows.append(Row(n, phi, summary.threads, log, median, min(measured), max(measured), ratio))
+                on_row(rows[-1])
     return Bench(compile_seconds, rows)

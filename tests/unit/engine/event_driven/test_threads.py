@@ -218,7 +218,7 @@ def test_everything_at_once_has_the_log_of_one_thread():
 def test_many_gases_have_the_log_of_one_thread(effects):
     total = Counter()
 
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=40, deadline=None)
     @given(st.integers(0, 2**31))
     def run(seed):
         nonlocal total

@@ -13,7 +13,7 @@ def test_the_ratio_is_of_runs_that_followed_each_other(monkeypatch):
         if len(scene.species) != 1 or scene.species[0].count != 50:
             return None
         order.append(scene.log.events)
-        return SimpleNamespace(disc_collisions=100, seconds=next(pace))
+        return SimpleNamespace(disc_collisions=100, seconds=next(pace), threads=scene.run.threads)
 
     monkeypatch.setattr(bench, "simulate", simulate)
     off, on = bench.bench([50], [0.1], collisions=1, repeats=3).rows
@@ -22,6 +22,16 @@ def test_the_ratio_is_of_runs_that_followed_each_other(monkeypatch):
     assert on.ratio == statistics.median([0.5, 0.25 / 0.8, 1.0])
     assert (off.collisions_per_s, off.slowest, off.fastest) == (200, 50, 400)
     assert (on.collisions_per_s, on.slowest, on.fastest) == (100, 50, 125)
+
+
+def test_there_are_rows_for_each_number_of_threads(monkeypatch):
+    monkeypatch.setattr(
+        bench,
+        "simulate",
+        lambda scene, path, force: SimpleNamespace(disc_collisions=1, seconds=1.0, threads=min(scene.run.threads, 3)),
+    )
+    found = bench.bench([50], [0.1], repeats=1, threads=[1, 2, 7])
+    assert [(row.threads, row.log) for row in found.rows] == [(k, log) for k in (1, 2, 3) for log in (False, True)]
 
 
 def test_every_row_is_measured():
