@@ -1,6 +1,7 @@
 """Several threads write the log of one, bit for bit, whatever they meet at the borders of their strips."""
 
 from collections import Counter
+from itertools import cycle
 
 import numpy as np
 import pytest
@@ -137,6 +138,20 @@ def test_gases_have_the_log_of_one_thread():
     facts = sum((compare(lambda s=seed: tall_scene("plain", s), seed) for seed in PLAIN_SEEDS), Counter())
     assert facts["7 strips"] == len(PLAIN_SEEDS)
     assert facts["posts"] > 1000
+
+
+@pytest.mark.slow
+def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
+    """Slices by one thread and by several follow each other, as now the one way is faster and now the other."""
+    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 3)
+    ways = cycle((True, False))
+    monkeypatch.setattr(Race, "shares", lambda race: next(ways))
+    stop, method = Stop(events=5000), EventDriven(1e-9, None, EAGER)
+    found = log_with(*tall_scene("plain", 3), stop, 300, method)
+    expected = log_with(*tall_scene("plain", 3), stop, 300, EventDriven())
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert method.threads[:2] == (3, "as many as there are cores")
+    assert method.threads.slices - method.threads.given_up > 2
 
 
 @pytest.mark.slow
