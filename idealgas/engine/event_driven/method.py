@@ -40,7 +40,7 @@ class EventDriven:
         """
         self._filling = filling
         self._threads = threads
-        self.crew = Crew(tuning, free=threads is None)
+        self.crew = Crew(tuning)
         self._team: Team | None = None
         self._walls: tuple[bytes, WallCells] | None = None
 

@@ -32,6 +32,7 @@ class Tuning(NamedTuple):
         events: least events of a slice that several threads share.
         buffer: rows of events that a strip has room for.
         lead: rows that the fastest disc may cross in the time by which events inside a strip are ahead of others.
+        race: whether one thread goes on alone while that is faster, as on a busy machine.
         delay: strip k waits for long at one event in `delay * (k + 1)`, for tests; 0 for never.
     """
 
@@ -40,6 +41,7 @@ class Tuning(NamedTuple):
     events: int = 20_000
     buffer: int = 1 << 18
     lead: float = 1.5
+    race: bool = True
     delay: int = 0
 
 

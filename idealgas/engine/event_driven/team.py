@@ -71,13 +71,13 @@ class Crew:
     Attributes:
         facts: numbers of slices that were shared, of those given up by reason, and of what happened at borders.
         rate: events and collisions of two discs per time, as in the last slice; None before the first.
-        race: what slices take with several threads and with one, where the faster way is to be taken; else None.
+        race: between several threads and one; None where several are always to be taken.
     """
 
-    def __init__(self, tuning: Tuning = FAST, free: bool = False) -> None:
-        """Have no thread yet. free: the number of threads may be what is fastest at the moment."""
+    def __init__(self, tuning: Tuning = FAST) -> None:
+        """Have no thread yet."""
         self.tuning = tuning
-        self.race = Race() if free else None
+        self.race = Race() if tuning.race else None
         self.facts: Counter[str] = Counter()
         self.rate: tuple[float, float] | None = None
         self._pool: ThreadPoolExecutor | None = None
