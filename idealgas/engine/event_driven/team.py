@@ -34,6 +34,9 @@ SHARE = 0.8
 FEW = 64
 """Events that say nothing of a rate."""
 
+SLOWER = 8
+"""By which a rate is divided that foretold far too many events."""
+
 PATIENCE = 20
 """After so many times what a slice took the way that was the slower one, that way is tried again."""
 
@@ -119,6 +122,7 @@ class Team:
         self._planted = True
         self._pending: Pending | None = None
         self._arrives = False
+        self._done = 0.0  # local time up to which all has happened, after the last event too
         self._strips: list[_Strip] = []
 
     @property
@@ -154,7 +158,7 @@ class Team:
         most = float(min(limits.events, tuning.buffer * len(self._borders) // 2))
         if collisions > 0:
             most = min(most, limits.collisions * events / collisions)
-        now = float(counter["time"])
+        now = max(float(counter["time"]), self._done)
         until = min(now + SHARE * most / events, limits.until)
         return until if (until - now) * events >= tuning.events else 0.0
 
@@ -213,6 +217,9 @@ class Team:
         if done["events"]:
             total["time"], total["events_at_this_time"] = last["time"], last["events_at_this_time"]
         self._measure(counters[0], total[0], goal)
+        if done["events"] < FEW and self._crew.rate is not None:  # the rate was that of busier times
+            self._crew.rate = self._crew.rate[0] / SLOWER, self._crew.rate[1] / SLOWER
+        self._done = goal
         counters[:] = total
         self._arrives = goal == limits.until
         return True

@@ -155,6 +155,12 @@ def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
 
 
 @pytest.mark.slow
+def test_a_time_without_an_event_is_passed():
+    """A slice may be shorter than the time to the next event."""
+    compare(lambda: tall_scene("plain", 1005), 1005)
+
+
+@pytest.mark.slow
 def test_lattices_have_the_log_of_one_thread():
     facts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
     assert facts["tie"] > 0
