@@ -157,6 +157,8 @@ class Rules:
             _check_range(data, low, high, start)
         if name in ORDERED:
             self._check_order(path, data, start, in_order)
+        if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:
+            raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0, or from {LEAST:g} on)")
 
     def _check_order(self, path: str, data: np.ndarray, start: int, in_order: bool) -> None:
         """Rows of a chunk, unless they are known to be in order, and against the chunks that were read before.

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.errors import UserError
 from idealgas.events import Kind
 from idealgas.gas.state import Gas
 from idealgas.log import Log
@@ -30,6 +31,8 @@ class MovingWall:
         self._pull = table.acceleration(log.box, log.scene.gravity)
         self._mass, self._stop = table.mass, table.stop(log.box)
         self._samples = log.observables["piston_position"]
+        if not len(self._samples[0]):
+            raise UserError(f"{log.path}: has no sample of its piston")
         self._speeds = log.observables["piston_velocity"][1]
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:

@@ -1,17 +1,21 @@
 """Momentum that walls get and the room below a piston, against slow and obvious computations."""
 
+import shutil
 from collections import defaultdict
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from crafted import craft
 
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.wall_impulses import WallImpulses
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.movie.piston_track import piston_track
+from idealgas.errors import UserError
 from idealgas.events import Kind
+from idealgas.log import open_log
 
 GAS = """
 scene.seed = 3
@@ -106,6 +110,13 @@ def test_the_room_below_a_piston_with_a_mass(side, make):
     depth = places.mean(axis=1) if side != "left" else 9 - places.mean(axis=1)
     assert tally.depth == pytest.approx(depth, rel=1e-4)
     assert np.ptp(tally.depth) > 0.1
+
+
+def test_a_piston_without_a_sample_is_one_line(make, tmp_path):
+    log = make('piston={side="right", velocity=-0.3}', "run.events=", "run.until=10")
+    path = craft(shutil.copyfile(log.path, tmp_path / "none.h5"), lambda file: None, {"observables": 0})
+    with open_log(path) as other, pytest.raises(UserError, match="has no sample of its piston"):
+        moving_wall(other)
 
 
 def test_the_room_below_a_driven_piston_is_exact(make):
