@@ -182,6 +182,8 @@ def is_in_order(record, ids, state, i, time, where, b):
             return False
         own.inside = max(own.inside, time)
         return True
+    if time == max(own.late_inside, own.late_at_border):  # their rows would have come in another order
+        return False
     if time <= own.late_inside and depth_of(record, ids, state, i, where, b) > DEEPEST:
         return False
     for side in (LOW, HIGH):

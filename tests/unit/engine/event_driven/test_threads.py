@@ -168,6 +168,11 @@ def test_lattices_have_the_log_of_one_thread():
 
 
 @pytest.mark.slow
+def test_a_disc_that_comes_over_has_its_turn_among_events_of_one_time():
+    compare(lambda: lattice(1822), 1822)
+
+
+@pytest.mark.slow
 def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
     """The others wait at their borders for one that is not there, and see that the work is given up."""
     stop, sample = Stop(events=3000), lambda: tall_scene("plain", 3)
