@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from idealgas.document.dump import toml_value
+from idealgas.document.table import SMALLEST
 from idealgas.gas.build import make_gas
 from idealgas.scene import SceneError, parse_scene
 from idealgas.sides import SIDES
@@ -19,7 +20,7 @@ def scenes(draw):
     tables = []
     for k in range(draw(st.integers(1, 4))):
         radius = draw(st.floats(0.02, 0.6))
-        x0, y0 = draw(st.floats(0, 3)), draw(st.floats(0, 3))
+        x0, y0 = (draw(st.just(0.0) | st.floats(SMALLEST, 3)) for _ in range(2))
         region = [x0, y0, draw(st.floats(x0 + 4, SIDE)), draw(st.floats(y0 + 4, SIDE))]
         table = {
             "name": f"s{k}",
