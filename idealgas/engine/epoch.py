@@ -69,3 +69,11 @@ def speed_beyond(gas: Gas, effects: Effects) -> float:
     if effects.piston is not None:
         speed += abs(float(effects.piston[0].v))
     return speed
+
+
+def energy_beyond(gas: Gas, effects: Effects) -> float:
+    """Largest energy that a piston with a mass can bring on its way across the box; 0 without one."""
+    if effects.piston is None:
+        return 0.0
+    piston = effects.piston[0]
+    return abs(float(piston.m * piston.a)) * max(gas.box)

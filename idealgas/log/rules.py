@@ -43,7 +43,7 @@ MOST_PACKED = 1100
 """Bytes that one byte of a file may become: deflate gives no more than 1032."""
 
 LARGEST = sys.float_info.max
-LEAST, MOST, LONGEST = 1e-100, 1e50, 1e100
+LEAST, MOST, LONGEST = 1e-100, 1e50, 1e150
 """Bounds on masses and radii, on these and speeds, and on times and spins: their products are finite numbers too."""
 
 Range = tuple[float, float | tuple[float, float]]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from idealgas._jit import aligned
-from idealgas.engine.epoch import encounters_per_length, speed_beyond
+from idealgas.engine.epoch import encounters_per_length, energy_beyond, speed_beyond
 from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
@@ -29,7 +29,8 @@ def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, l
     gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any.
     """
     speed, walls = _speed(scene, gas, effects), len(number_walls(scene))
-    energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * 0.5 * float(gas.mass.mean()) * speed**2)
+    largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects))
+    energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * largest)
     return effects._replace(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,

@@ -70,7 +70,10 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
             cores(): "as many as there are cores",
         }
     else:
-        limits = {max(rows // LEAST_ROWS, 1): f"each has at least {LEAST_ROWS} rows of cells", threads: "as asked for"}
+        limits = {
+            max(rows // LEAST_ROWS, 1): f"each has at least {LEAST_ROWS} rows of cells",
+            threads: "as run.threads says",
+        }
     number = min(limits)
     return Threads(max(number, 1), limits[number], events=2 * tuning.events if number > 1 else 1)
 

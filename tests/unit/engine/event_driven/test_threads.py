@@ -40,9 +40,9 @@ def test_strips_are_high_enough_and_share_equally_where_they_can(discs, most):
 def test_a_number_of_threads_and_why(monkeypatch):
     monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
     monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 4)
-    assert share_out(3, 100, 50, True)[:2] == (3, "as asked for")
+    assert share_out(3, 100, 50, True)[:2] == (3, "as run.threads says")
     assert share_out(3, 2 * LEAST_ROWS + 1, 50, True)[0] == 2
-    assert share_out(1, 5, 50, True)[:2] == (1, "as asked for")
+    assert share_out(1, 5, 50, True)[:2] == (1, "as run.threads says")
     assert share_out(None, 1000, 10**6, True)[:2] == (4, "as many as there are cores")
     assert share_out(None, 1000, 12_000, True)[:2] == (2, "each has at least 5000 discs")
     assert share_out(None, 100, 10**6, True)[:2] == (3, "each has at least 32 rows of cells")
@@ -220,7 +220,7 @@ def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
     one, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
     simulate(parse_scene(GAS), one)
     summary = simulate(parse_scene(GAS, overrides=["run.threads=2"]), two)
-    assert (summary.threads, summary.threads_because) == (2, "as asked for")
+    assert (summary.threads, summary.threads_because) == (2, "as run.threads says")
     assert 0 <= summary.given_up_slices < summary.shared_slices
     assert differences(one, two) == []
     calls = []
