@@ -5,9 +5,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import pytest
 from isal import isal_zlib
 
-from idealgas.log import Log, open_log
+from idealgas.log import Log, LogError, open_log
 from idealgas.log.hdf5.commit import Commit, table_of
 
 Edit = Callable[[h5py.File], object]
@@ -87,3 +88,14 @@ def read_path(path: Path) -> None:
     """Open a log and read everything."""
     with open_log(path) as log:
         read_all(log)
+
+
+def refused(path: Path) -> str:
+    """The one line with which a log is refused, without its path."""
+    with pytest.raises(LogError) as caught:
+        read_path(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ")
+    assert "\n" not in message
+    assert caught.value.exit_code == 2
+    return message.removeprefix(f"{path}: ")

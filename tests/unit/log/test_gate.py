@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from crafted import craft, link, put, read_path, seal, swap
+from crafted import craft, link, put, read_path, refused, seal, swap
 from isal import isal_zlib
 from log_samples import write_log
 
@@ -30,16 +30,6 @@ def sound(tmp_path_factory):
 @pytest.fixture
 def path(sound, tmp_path):
     return shutil.copyfile(sound, tmp_path / "run.h5")
-
-
-def refused(path) -> str:
-    with pytest.raises(LogError) as caught:
-        read_path(path)
-    message = str(caught.value)
-    assert message.startswith(f"{path}: ")
-    assert "\n" not in message
-    assert caught.value.exit_code == 2
-    return message.removeprefix(f"{path}: ")
 
 
 def test_a_log_that_was_only_sealed_is_read(path):

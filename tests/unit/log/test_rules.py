@@ -6,7 +6,7 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from crafted import craft, put, read_path, swap
+from crafted import craft, put, read_path, refused, swap
 from log_compare import scene_of
 from log_samples import write_log
 
@@ -26,16 +26,6 @@ def run(tmp_path_factory):
     path = tmp_path_factory.mktemp("log") / "run.h5"
     simulate(scene_of("quickstart", "run.events=3000"), path)
     return path
-
-
-def refused(path) -> str:
-    with pytest.raises(LogError) as caught:
-        read_path(path)
-    message = str(caught.value)
-    assert message.startswith(f"{path}: ")
-    assert "\n" not in message
-    assert caught.value.exit_code == 2
-    return message.removeprefix(f"{path}: ")
 
 
 def cut(path, rows):
