@@ -137,7 +137,7 @@ GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "te
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 THERMAL = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
 SHORT_AND_LONG = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
-OFTEN, SELDOM = "snapshot_every = 0.2\n", "snapshot_every = 0.5\n"
+OFTEN, SELDOM = "snapshot_every = 0.2\n", "snapshot_every = 1\n"
 """Samples of the energy: some in the time for which it fluctuates."""
 
 SLOW = ("collisions_per_disc = 3000", "collisions_per_disc = 6000")

@@ -9,7 +9,7 @@ Beta(1, D/2 - 1), the projection of the uniform distribution on a sphere.
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Protocol
 
 import numpy as np
@@ -137,6 +137,13 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
     return mean_speed(temperature, mass) * bessel
 
 
+@cache
+def _quadrature() -> tuple[np.ndarray, np.ndarray]:
+    """Nodes v √(m/2T) and weights of Gauss and Legendre's quadrature from 0 to 7; exp(-7²) is negligible in float64."""
+    y, weight = np.polynomial.legendre.leggauss(120)
+    return 3.5 * (y + 1), 3.5 * weight
+
+
 @dataclass(frozen=True)
 class _FlightLaw(ABC):
     """Distribution of the free flights of a disc of `mass` that collides with species j at the mean rate `rates[j]`.
@@ -158,8 +165,7 @@ class _FlightLaw(ABC):
     @cached_property
     def _nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Speed, probability weight of a flight and collision rate ν at the nodes of a quadrature over the speed."""
-        y, weight = np.polynomial.legendre.leggauss(120)
-        y, weight = 3.5 * (y + 1), 3.5 * weight  # y = v √(m/2T); exp(-7²) is negligible in float64
+        y, weight = _quadrature()
         speed = y * math.sqrt(2 * self.temperature / self.mass)
         rate = np.zeros_like(speed)
         for other, mean_rate in zip(self.masses, self.rates, strict=True):

@@ -75,7 +75,8 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
             threads: "as run.threads says",
         }
     number = min(limits)
-    return Threads(max(number, 1), limits[number], events=2 * tuning.events if number > 1 else 1)
+    worth = max(2 * tuning.events, min(n, tuning.buffer))  # what a slice changes is copied: all discs
+    return Threads(max(number, 1), limits[number], events=worth if number > 1 else 1)
 
 
 def cut(discs_in_row: np.ndarray, strips: int) -> list[int]:

@@ -25,7 +25,10 @@ from idealgas.physics.effects import Effects, add_sums_of, clear_sums, with_own_
 from idealgas.physics.periodic import periodic_axes
 
 REASONS = {VIOLATION: "past", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}
-"""Names of the reasons for which a slice is given up; beside these "stop", where it went beyond a number of events."""
+"""Names of the reasons for which a slice is given up."""
+
+STOP = "stop"
+"""One more reason: the slice went beyond a number of events."""
 
 SHARE = 0.8
 """Part of the events up to a limit that a slice is made for: one that comes to more is in vain."""
@@ -88,7 +91,7 @@ class Crew:
     @property
     def given_up(self) -> int:
         """Number of slices of the run so far that were given up."""
-        return sum(self.facts[why] for why in (*REASONS.values(), "stop"))
+        return sum(self.facts[why] for why in (*REASONS.values(), STOP))
 
     def run(self, work: Callable[[int], None], number: int, give_up: Callable[[], None]) -> None:
         """Call work(0) to work(number - 1) at once, each in a thread of its own, the first in this one."""
@@ -142,11 +145,12 @@ class Team:
             return self._alone(limits, epoch_start, batch, counters)
         shared = goal > 0.0 and (race is None or race.shares())
         started, events = time.perf_counter(), int(counters[0]["events"])
-        if shared and self._succeeds(goal, limits, epoch_start, batch, counters):
+        given_up = self._given_up(goal, limits, epoch_start, batch, counters) if shared else ""
+        if shared and not given_up:
             rows, arrived = self._deliver(batch)
         else:
             rows, arrived = self._alone(limits, epoch_start, batch, counters)
-        if race is not None:
+        if race is not None and given_up != STOP:  # a rate that rose, as in a lattice that melts, says nothing of speed
             race.note(shared, int(counters[0]["events"]) - events, time.perf_counter() - started)
         return rows, arrived
 
@@ -184,10 +188,10 @@ class Team:
         if events >= FEW and length > 0.0:
             self._crew.rate = events / length, collisions / length
 
-    def _succeeds(
+    def _given_up(
         self, goal: float, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
-    ) -> bool:
-        """Share a slice up to a local time; False, with all as it was, if that cannot be done."""
+    ) -> str:
+        """Share a slice up to a local time; why that was given up, with all as it was before, or nothing."""
         facts = self._crew.facts
         facts["slices"] += 1
         self._save()
@@ -200,7 +204,7 @@ class Team:
             last = max(strips, key=lambda strip: strip.counters[0]["time"]).counters[0]
             done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}
             if not why and (done["events"] >= limits.events or done["disc_collisions"] >= limits.collisions):
-                why = "stop"
+                why = STOP
             if not why and batch is not None:
                 self._pending = Pending(merged([strip.filled() for strip in strips]), epoch_start)
         except TiedRowsError:
@@ -211,7 +215,7 @@ class Team:
         if why:
             facts[why] += 1
             self._restore()
-            return False
+            return why
         for strip in strips:
             strip.add_to(self._effects)
         if done["events"]:
@@ -222,7 +226,7 @@ class Team:
         self._done = goal
         counters[:] = total
         self._arrives = goal == limits.until
-        return True
+        return ""
 
     def _deliver(self, batch: EventBatch | None) -> tuple[int, bool]:
         """Hand on what rows there are; the slice is over with the last of them."""

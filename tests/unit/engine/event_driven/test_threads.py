@@ -1,5 +1,6 @@
 """Several threads write the log of one, bit for bit, whatever they meet at the borders of their strips."""
 
+import time
 from collections import Counter
 from itertools import cycle
 
@@ -15,7 +16,7 @@ from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.merge import Pending, TiedRowsError, merged
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.event_driven.strips import cut, share_out
-from idealgas.engine.event_driven.team import Crew, Race, _Strip
+from idealgas.engine.event_driven.team import STOP, Crew, Race, Team, _Strip
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import Kind, empty_batch
 from idealgas.physics.exact_sum import TOGETHER, add_all, add_sums, make_sums, values
@@ -63,6 +64,15 @@ def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
     assert race.shares()
     race.note(True, 100, 0.5)
     assert race.shares()
+
+
+def test_slices_beyond_the_events_foretold_do_not_keep_threads_from_sharing(monkeypatch):
+    """They come where the rate rises, as in a lattice that melts, and take their time in vain."""
+    tried = []
+    monkeypatch.setattr(Team, "_given_up", lambda *given: tried.append(time.sleep(0.01)) or STOP)
+    method = EventDriven(1e-9, 3, EAGER._replace(race=True))
+    log_with(*tall_scene("plain", 3), Stop(events=5000), 300, method)
+    assert len(tried) > 10
 
 
 # ── rows and sums are put together ──
