@@ -13,9 +13,10 @@
 
 `load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` goes on with a run; both
 return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
-it. Results are dataclasses with `as_dict()`, which gives plain values for JSON; a measured number is an `Estimate`, a
-value with its standard error. An error that a user can mend is a `UserError`, in one plain line; `SceneError`,
-`LogError` and `OutputError` are kinds of it.
+it. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which gives a
+figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard error.
+An error that a user can mend is a `UserError`, in one plain line; `SceneError`, `LogError` and `OutputError` are kinds
+of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
 used, so that `import idealgas` itself is quick.

@@ -1,7 +1,13 @@
-"""What the results of all analyses have in common: the premises that do not hold, and the run they come from."""
+"""What the results of all analyses have in common: premises that do not hold, the run, tables and a picture."""
 
 from dataclasses import dataclass
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from idealgas.analysis.core.tables import Table
 
 
 @dataclass(frozen=True)
@@ -38,3 +44,28 @@ class Result:
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         return {"premises": list(self.premises)}
+
+    def tables(self) -> "list[Table]":
+        """Tables of the result, those that the command of the analysis prints."""
+        declared = self._analysis
+        return declared.tables(self._combined(declared))
+
+    def plot(self) -> "Figure":
+        """Picture of the result, that of `--plot`: a figure of matplotlib that notebooks show, and `savefig` writes."""
+        declared = self._analysis
+        return declared.figure(self._combined(declared))
+
+    def _repr_html_(self) -> str:
+        """Tables of the result, as notebooks show what a cell ends with."""
+        from idealgas.analysis.core.html import html_tables
+
+        return html_tables(self.tables())
+
+    @property
+    def _analysis(self) -> Any:
+        """Declaration of the analysis in whose folder the class of the result is."""
+        return import_module(type(self).__module__.rpartition(".")[0]).ANALYSIS
+
+    def _combined(self, declared: Any) -> "Result":
+        """The result as tables and picture take it; one that comes from no single run is so already."""
+        return self if self.origin is None else declared.combine([self])

@@ -19,6 +19,17 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 GREY = "#767676"
 
 
+class Picture(Figure):
+    """A figure that notebooks show as it is, whether or not pyplot is in use."""
+
+    def _repr_png_(self) -> bytes:
+        """The picture as PNG."""
+        show_names(self)
+        file = io.BytesIO()
+        self.savefig(file, format="png")
+        return file.getvalue()
+
+
 def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> None:
     """Write a picture in the format given by the ending of its path; an existing one is replaced only with `force`.
 
@@ -48,7 +59,7 @@ def show_names(figure: Figure) -> None:
 
 def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Axes]]:
     """Make a figure with panels in rows and columns; the panels are listed row by row."""
-    figure = Figure(figsize=(1.5 + 5.5 * columns, 1.2 + 3.0 * rows), layout="constrained")
+    figure = Picture(figsize=(1.5 + 5.5 * columns, 1.2 + 3.0 * rows), layout="constrained")
     axes = [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
     for ax in axes:
         ax.grid(color="#dddddd", linewidth=0.6)

@@ -1,11 +1,10 @@
 """Report of a log as one HTML page without other files: the run, all analyses that apply to it, and a player."""
 
 import base64
-import html
 import io
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
 from string import Template
@@ -13,6 +12,7 @@ from string import Template
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from idealgas.analysis.core.html import escape, html_table
 from idealgas.analysis.core.style import show_names
 from idealgas.analysis.core.tables import Number, Table
 from idealgas.analysis.info import info
@@ -21,7 +21,6 @@ from idealgas.analysis.report.sections import Section, make_sections
 from idealgas.errors import UserError
 from idealgas.files import check_output, written
 from idealgas.log import Log
-from idealgas.plain import plain
 
 SCRIPTS = ("gas.js", "views.js", "player.js")
 """The program of the page, in order."""
@@ -132,11 +131,6 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     )
 
 
-def escape(text: str) -> str:
-    """A text as HTML that shows it as it is, in an element or in an attribute."""
-    return html.escape(plain(text))
-
-
 def _text(name: str) -> str:
     return resources.files("idealgas.analysis.report").joinpath(name).read_text(encoding="utf-8")
 
@@ -210,16 +204,5 @@ def _picture(figure: Figure, caption: str) -> str:
 
 
 def _tables(tables: Sequence[Table]) -> str:
-    return f'<div class="tables">{"".join(map(_table, tables))}</div>'
-
-
-def _table(table: Table) -> str:
-    def row(cells: Iterable[str], tag: str) -> Iterator[str]:
-        yield "<tr>"
-        for cell in cells:
-            yield f"<{tag}>{escape(cell)}</{tag}>"
-        yield "</tr>"
-
-    head = "".join(row(table.heads, "th")) if any(table.heads) else ""
-    body = "".join("".join(row(cells, "td")) for cells in table.shown)
-    return f'<div class="wide"><table><caption>{escape(table.title)}</caption>{head}{body}</table></div>'
+    shown = "".join(f'<div class="wide">{html_table(table)}</div>' for table in tables)
+    return f'<div class="tables">{shown}</div>'

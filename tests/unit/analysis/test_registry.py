@@ -11,9 +11,11 @@ from pkgutil import iter_modules
 
 import pytest
 
+import idealgas
 from idealgas import analysis as package
 from idealgas.analysis import registry
 from idealgas.analysis.core.declaration import Option
+from idealgas.analysis.core.html import escape, html_table
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Number, Table, as_csv, estimates
 from idealgas.analysis.report.sections import make_sections
@@ -118,6 +120,26 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
     assert {repr(float(value)) for value in values} <= known
     for table in tables:
         assert all(len(row) == len(table.heads) for row in table.rows)
+
+
+@every_analysis
+def test_results_show_themselves_in_a_notebook(make, analysis):
+    log = make(*(SLIT if analysis.name == "effusion" else ()))
+    result = getattr(idealgas, analysis.name)(log)
+    combined = analysis.combine([analysis.measure(log)])
+    assert result.tables() == combined.tables() == analysis.tables(combined)
+    shown = result._repr_html_()
+    for table in result.tables():
+        assert all(escape(note) in shown for note in table.notes)
+        if table.rows:
+            assert html_table(table) in shown
+    figure = result.plot()
+    assert len(figure.axes) == len(combined.plot().axes) > 0
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+def test_what_a_notebook_shows_is_plain_text():
+    assert "<td>&lt;b&gt; &amp; \\u001b</td>" in html_table(Table("t", ("",), [("<b> & \x1b",)]))
 
 
 def _numbers(found):
