@@ -11,7 +11,7 @@ import click
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
-from ._options import force_option, json_option
+from ._options import force_option, json_option, plot_option
 from ._tables import print_tables
 from ._terminal import echo, terminal
 
@@ -92,23 +92,13 @@ def _option(option: "Option") -> Callable:
     )  # fmt: skip
 
 
-PICTURES = (".png", ".pdf", ".svg")
-
-
-def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-    if value is not None and not value.lower().endswith(PICTURES):
-        raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
-    return value
-
-
 def _common_options(analysis: "Analysis") -> Iterator[Callable]:
     for name, variable, where, default in (
         ("--from", "start", "Start", analysis.start), ("--to", "end", "End", analysis.end),
     ):  # fmt: skip
         words = f"{where} of the window, in simulated time.  [default: {default}]"
         yield click.option(name, variable, type=float, metavar="T", help=words)
-    words = "Draw a picture (.png, .pdf or .svg)."
-    yield click.option("--plot", metavar="FILE.png", callback=_check_ending, help=words)
+    yield plot_option
     yield force_option
     yield json_option
     words = "Print the rows of the tables as CSV with all digits."

@@ -4,6 +4,10 @@ from collections.abc import Callable
 
 import click
 
+from idealgas.errors import UserError
+
+PICTURES = (".png", ".pdf", ".svg")
+
 
 def scene_argument(command: Callable) -> Callable:
     """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, ready for `load_scene`."""
@@ -17,3 +21,14 @@ def scene_argument(command: Callable) -> Callable:
 force_option = click.option("--force", is_flag=True, help="Replace what the same command has written there before.")
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables.")
+
+
+def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+    if value is not None and not value.lower().endswith(PICTURES):
+        raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
+    return value
+
+
+plot_option = click.option(
+    "--plot", metavar="FILE.png", callback=_check_ending, help="Draw a picture (.png, .pdf or .svg)."
+)

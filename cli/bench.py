@@ -1,9 +1,17 @@
 """Command `idealgas bench`: speed of the engine on this machine."""
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import click
 
-from ._options import json_option
+from idealgas.files import check_output
+
+from ._options import force_option, json_option, plot_option
 from ._terminal import echo, terminal
+
+if TYPE_CHECKING:
+    from idealgas.study.bench.bench import Bench
 
 
 def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) -> list[float]:
@@ -24,6 +32,8 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 @click.option("--repeats", default=3, show_default=True, help="Number of runs of each kind; the median is shown.")
 @click.option("--threads", default="1", show_default=True, callback=_numbers, help="Numbers of threads.")
 @click.option("--effects", is_flag=True, help="Measure instead the cost of each effect, relative to the plain box.")
+@plot_option
+@force_option
 @json_option
 def bench(
     numbers: list[float],
@@ -32,32 +42,40 @@ def bench(
     repeats: int,
     threads: list[float],
     effects: bool,
+    plot: str | None,
+    force: bool,
     as_json: bool,
 ) -> None:
-    """Measure the speed of the event-driven engine for several N and φ, without the event log and with it."""
+    """Measure the speed of the event-driven engine for several N and φ, without the event log and with it.
+
+    The picture also has the speed of other programs, as it was stated.
+    """
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
         raise click.UsageError("N, collisions and repeats are 1 or more, φ is above 0 and 0.9 at most")
     if not all(1 <= number <= 256 for number in threads):
         raise click.UsageError("there are 1 to 256 threads")
+    if plot and effects:
+        raise click.UsageError("--plot is not for --effects")
+    if plot:
+        check_output(plot, Path(plot).suffix.lower(), force)
     if effects:
         _bench_effects(collisions, repeats, as_json)
-    else:
-        grid = [int(n) for n in numbers], fractions, [int(number) for number in threads]
-        _bench_grid(*grid, collisions, repeats, as_json)
+        return
+    found = _measure([int(n) for n in numbers], fractions, [int(number) for number in threads], collisions, repeats)
+    if plot:
+        from idealgas.analysis.core.style import save
+        from idealgas.study.bench.figure import bench_figure
+
+        save(bench_figure(found), plot, force)
+    _show(found, as_json)
 
 
-def _bench_grid(
-    numbers: list[int], fractions: list[float], threads: list[int], collisions: int, repeats: int, as_json: bool
-) -> None:
-    import json
-
-    from rich.table import Table
-
+def _measure(numbers: list[int], fractions: list[float], threads: list[int], collisions: int, repeats: int) -> "Bench":
     from idealgas.study.bench.bench import bench as measure
 
     console = terminal(err=True)
     with console.status("compiling") as status:
-        found = measure(
+        return measure(
             numbers,
             fractions,
             collisions,
@@ -65,6 +83,13 @@ def _bench_grid(
             lambda row: status.update(f"N = {row.N}, φ = {row.phi:g}: {row.collisions_per_s:,.0f} collisions/s"),
             threads,
         )
+
+
+def _show(found: "Bench", as_json: bool) -> None:
+    import json
+
+    from rich.table import Table
+
     if as_json:
         rows = [row._asdict() for row in found.rows]
         echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
