@@ -20,6 +20,7 @@ _WORDS = {
     "model_type": ("wrong type", "a table"),
     "finite_number": ("not a finite number", "a finite number"),
     "literal_error": ("unknown value", "{expected}"),
+    "string_too_long": ("too long", "up to {max_length} characters"),
     "string_pattern_mismatch": ("not a word", "a letter, then letters, digits, - and _"),
     "greater_than": ("out of range", "> {gt:g}"),
     "greater_than_equal": ("out of range", ">= {ge:g}"),

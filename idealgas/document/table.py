@@ -21,6 +21,7 @@ Number = Annotated[Real, Field(ge=-LARGEST, le=LARGEST)]
 Positive = Annotated[Real, Field(gt=0, le=LARGEST)]
 NotNegative = Annotated[Real, Field(ge=0, le=LARGEST)]
 Vector = Annotated[tuple[Number, Number], Field(strict=False)]
+Word = Annotated[str, Field(pattern=r"^[^\W\d][\w-]*$", max_length=255)]
 Rectangle = tuple[float, float, float, float]
 """x0, y0, x1, y1."""
 

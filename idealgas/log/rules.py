@@ -20,6 +20,7 @@ from idealgas.log.schema import (
     ENDPOINTS,
     GRAVITY,
     ID,
+    MOST_NAME,
     NAME,
     RUN_COLUMNS,
     SAMPLE_COLUMNS,
@@ -97,6 +98,8 @@ class Rules:
         self._check_type(column, stored)
         if stored.shape != column.shape or stored.chunk != column.shape:
             raise ValueError(f"of shape {stored.shape} (allowed {column.shape}, in one chunk)")
+        if column.name == NAME.name and stored.dtype.itemsize > MOST_NAME:
+            raise ValueError(f"names of {stored.dtype.itemsize:,} bytes (allowed up to {MOST_NAME:,})")
 
     def check_table(self, columns: Mapping[str, StoredColumn], rows: int, file_size: int) -> None:
         """Types, shapes and sizes of the datasets of a table, of which `rows` rows are valid."""

@@ -61,6 +61,8 @@ BOX, GRAVITY = Column("box", "f8", (2,), "length"), Column("gravity", "f8", (2,)
 ENDPOINTS = Column("endpoints", "f8", (2, 2), "length")
 NAME = Column("name", "S")
 """What is known before a run: of each disc, of the whole, and of each wall; species have names too."""
+MOST_NAME = 1024
+"""Bytes of a name, enough for any word of a scene: tables repeat it in every row."""
 
 ROOT_ATTRIBUTES = ("format", "format_version", "seed", "created")
 PACKAGES = ("numpy", "numba", "h5py", "isal")

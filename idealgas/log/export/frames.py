@@ -3,6 +3,7 @@
 import errno
 import io
 import os
+import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 from idealgas._version import __version__
 from idealgas.events import IMAGE, POSITION, VELOCITY
 from idealgas.log.reader import Log
+from idealgas.plain import plain
 
 
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
@@ -53,22 +55,42 @@ def _append_gsd(file: Any, log: Log, times: Sequence[float]) -> None:
         file.append(frame)
 
 
+ELEMENTS = frozenset(
+    re.findall(
+        "[A-Z][a-z]?",
+        "HHeLiBeBCNOFNeNaMgAlSiPSClArKCaScTiVCrMnFeCoNiCuZnGaGeAsSeBrKrRbSrYZrNbMoTcRuRhPdAgCdInSnSbTeIXeCsBaLaCePrNd"
+        "PmSmEuGdTbDyHoErTmYbLuHfTaWReOsIrPtAuHgTlPbBiPoAtRnFrRaAcThPaUNpPuAmCmBkCfEsFmMdNoLrRfDbSgBhHsMtDsRgCnNhFlMc"
+        "LvTsOg",
+    )
+)
+"""Symbols of the chemical elements."""
+
+PROPERTIES = "id:I:1:type:S:1:species:S:1:tags:I:1:pos:R:3:velo:R:3:momenta:R:3:radius:R:1:mass:R:1:masses:R:1"
+"""Columns of extended XYZ. OVITO reads `type`, `velo` and `mass`, ASE `species`, `tags`, `momenta` and `masses`."""
+
+
 def write_extxyz(log: Log, times: Sequence[float], path: Path) -> int:
-    """Extended XYZ: 17 digits, so every float64 comes back. The box's depth is the largest diameter."""
+    """Extended XYZ: 17 digits, so every float64 comes back. The box's depth is the largest diameter.
+
+    `species` is the symbol of a chemical element where the species has the name of one, and else X, of no element.
+    """
     discs, (width, height) = log.discs, log.box
     pbc = " ".join("T" if periodic else "F" for periodic in (*log.periodic, False))
     lattice = f"{width!r} 0 0 0 {height!r} 0 0 0 {float(2 * discs.radius.max())!r}"
-    properties = "id:I:1:type:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1"
-    names = np.array(discs.species_names)[discs.species]
-    fixed = list(zip(names.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True))
+    names = ["_".join(plain(name).split()) or "_" for name in discs.species_names]
+    kinds = [f"{name} {name if name in ELEMENTS else 'X'} {k}" for k, name in enumerate(names)]
+    fixed = list(zip((kinds[k] for k in discs.species), discs.radius.tolist(), discs.mass.tolist(), strict=True))
     with path.open("w", encoding="utf-8") as file:
         for state in log.frames(times):
             file.write(
-                f'{len(discs)}\nLattice="{lattice}" Properties={properties} Time={float(state.time)!r} pbc="{pbc}"\n'
+                f'{len(discs)}\nLattice="{lattice}" Properties={PROPERTIES} Time={float(state.time)!r} pbc="{pbc}"\n'
             )
-            moving = zip(state.position.tolist(), state.velocity.tolist(), strict=True)
-            for i, ((name, radius, mass), ((x, y), (vx, vy))) in enumerate(zip(fixed, moving, strict=True)):
-                file.write(f"{i} {name} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {radius!r} {mass!r}\n")
+            momenta = (discs.mass[:, np.newaxis] * state.velocity).tolist()
+            moving = zip(state.position.tolist(), state.velocity.tolist(), momenta, strict=True)
+            for i, ((kind, radius, mass), ((x, y), (vx, vy), (px, py))) in enumerate(zip(fixed, moving, strict=True)):
+                file.write(
+                    f"{i} {kind} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {px!r} {py!r} 0.0 {radius!r} {mass!r} {mass!r}\n"
+                )
     return len(times)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from pydantic import Field
 
-from idealgas.document.table import Positive, Table, Vector
+from idealgas.document.table import Positive, Table, Vector, Word
 from idealgas.scene.properties import Effect, Properties
 
 NAME = "wall segments"
@@ -26,9 +26,7 @@ class Wall(Table):
     )
     opens_at: Positive | None = Field(default=None, description="time > 0 from which it is not there")
     closes_at: Positive | None = Field(default=None, description="time > 0 from which it is there again")
-    name: str | None = Field(
-        default=None, pattern=r"^[^\W\d][\w-]*$", description="a word of its own; in the log; if absent its number"
-    )
+    name: Word | None = Field(default=None, description="a word of its own; in the log; if absent its number")
 
     @property
     def absence(self) -> tuple[float, float]:

@@ -12,7 +12,9 @@ from log_compare import scene_of
 from idealgas.errors import OutputError
 from idealgas.log import LogError, open_log
 from idealgas.log.export.export import FORMATS, export, frame_times
+from idealgas.log.export.frames import ELEMENTS
 from idealgas.run.simulate import simulate
+from idealgas.scene import SceneError
 
 FRAMES = 5
 
@@ -108,7 +110,53 @@ def test_extended_xyz(log, frames, tmp_path):
         assert np.array_equal(atoms.positions[:, :2], state.position)
         assert np.array_equal(atoms.arrays["velo"][:, :2], state.velocity)
         assert np.array_equal(atoms.arrays["radius"], log.discs.radius)
-        assert atoms.arrays["type"][-1] == log.discs.species_names[log.discs.species[-1]]
+        assert np.array_equal(atoms.arrays["type"], np.array(log.discs.species_names)[log.discs.species])
+        assert np.array_equal(atoms.get_tags(), log.discs.species)
+        assert np.array_equal(atoms.get_masses(), log.discs.mass)
+        assert np.array_equal(atoms.get_momenta()[:, :2], log.discs.mass[:, np.newaxis] * state.velocity)
+        kinetic = (log.discs.mass * (state.velocity**2).sum(axis=1)).sum() / 2
+        assert atoms.get_kinetic_energy() == pytest.approx(kinetic, rel=1e-13)
+
+
+def test_species_with_names_of_elements_have_their_symbols(tmp_path):
+    ase = pytest.importorskip("ase.io")
+    names = ('species.0.name="He"', 'species.1.name="heavy"')
+    simulate(scene_of("mixture", "run.events=20", *names), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        export(log, "extxyz", tmp_path / "run.extxyz", [0.0])
+        species = log.discs.species
+    atoms = ase.read(tmp_path / "run.extxyz")
+    assert np.array_equal(atoms.symbols == "He", species == 0)
+    assert np.array_equal(atoms.symbols == "X", species == 1)
+
+
+def test_every_element_has_its_symbol():
+    data = pytest.importorskip("ase.data")
+    assert set(data.chemical_symbols) - {"X"} == ELEMENTS
+
+
+@pytest.mark.parametrize("kind", ["extxyz", "gsd"])
+def test_ovito_reads_it(log, frames, kind, tmp_path):
+    ovito = pytest.importorskip("ovito.io", reason="no OVITO: pip install ovito")
+    times, states = frames
+    path = tmp_path / f"run.{kind}"
+    export(log, kind, path, times)
+    pipeline = ovito.import_file(str(path))
+    assert pipeline.source.num_frames == FRAMES
+    for frame, (time, state) in enumerate(zip(times, states, strict=True)):
+        data = pipeline.compute(frame)
+        assert data.attributes["Time" if kind == "extxyz" else "time"] == time
+        discs, middle = data.particles, np.array(log.box) / 2 * (kind == "gsd")
+        expected = {"Position": state.position - middle, "Velocity": state.velocity, "Radius": log.discs.radius}
+        if kind == "extxyz" or (log.discs.mass != 1).any():  # 1 is what no mass in a GSD file means
+            expected["Mass"] = log.discs.mass
+        bound = max(log.box) * (2.0**-23 if kind == "gsd" else 2.0**-52)  # its decimals are an ulp off
+        for name, values in expected.items():
+            found = discs[name][...].reshape(len(values), -1)[:, : values.ndim]
+            assert np.abs(found - values.reshape(len(values), -1)).max() <= bound, name
+        names = {kind.id: kind.name for kind in discs.particle_types.types}
+        species = [log.discs.species_names[k] for k in log.discs.species]
+        assert [names[k] for k in discs.particle_types[...]] == species
 
 
 def test_h5md_in_three_dimensions(log, frames, tmp_path):
@@ -127,7 +175,9 @@ def test_h5md_in_three_dimensions(log, frames, tmp_path):
         universe.load_new(str(path), format="H5MD", convert_units=False)
         assert len(universe.trajectory) == FRAMES
         for step, state in zip(universe.trajectory, states, strict=True):
+            assert step.time == state.time
             assert np.array_equal(step.positions[:, :2], state.position.astype(np.float32))
+            assert np.array_equal(step.velocities[:, :2], state.velocity.astype(np.float32))
             assert not step.positions[:, 2].any()
 
 
@@ -206,6 +256,16 @@ def test_a_gas_without_positions_has_tables_only(tmp_path):
         for kind in set(FORMATS) - {"csv", "parquet"}:
             with pytest.raises(LogError, match="no positions"):
                 export(log, kind, tmp_path / "out", [0.0])
+
+
+def test_names_are_short_enough_for_a_table(tmp_path):
+    """Every row of a table repeats them."""
+    simulate(scene_of("mixture", "run.events=20", f'species.0.name="{"ü" * 255}"'), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        export(log, "csv", tmp_path / "frames.csv", [0.0])
+    assert "ü" * 255 in read_table(tmp_path / "frames.csv")["species"]
+    with pytest.raises(SceneError, match=r"species\.0\.name: too long \(got .*; allowed up to 255 characters\)"):
+        scene_of("mixture", f'species.0.name="{"a" * 256}"')
 
 
 @pytest.mark.parametrize("kind", ["csv", "parquet"])
