@@ -95,6 +95,13 @@ def periodic(log: Log) -> Named:
     yield "contact value", found.contacts[0].value
     yield "diffusion coefficient", found.diffusion[0].coefficient
     yield "velocity correlation time", found.diffusion[0].velocity_correlation_time
+    assert found.collective is not None
+    for name, one in found.collective.coefficients.items():
+        yield name.replace("_", " "), one.value
+        if one.difference is not None:
+            yield f"{name.replace('_', ' ')}, difference of routes", one.difference
+    for name in ("xx", "xy"):
+        yield f"pressure tensor, {name}", found.collective.pressure[name]
 
 
 def bath(log: Log) -> Named:
@@ -201,6 +208,9 @@ EXACT = (
     "temperature, heavy",
     "temperature",
     "mean vx (histogram)",
+    "viscosity, difference of routes",
+    "heat conductivity, difference of routes",
+    "pressure tensor, xy",
 )
 """Estimates whose theory is exact for this number of discs; others are compared with their mean over all seeds."""
 

@@ -237,6 +237,26 @@ def enskog_viscosity(diameter: float, number_density: float, temperature: float,
     return dilute * (1 / chi + y + 0.8729 * chi * y * y)
 
 
+def enskog_bulk_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
+    """Bulk viscosity ζ = (4/π) χ y² √(mT/π)/2σ by Enskog's theory, mass/time; y = πnσ²/2.
+
+    It is exact within this theory: collisions of discs that are distributed as in equilibrium. Gass, J. Chem. Phys. 54,
+    1898 (1971), writes 1.246 times the η₀ of `enskog_viscosity`.
+    """
+    y = math.pi * number_density * diameter**2 / 2
+    return 4 / math.pi * chi * y * y * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
+
+
+def enskog_conductivity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
+    """Heat conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) by Enskog's theory, 1/time; y = πnσ²/2.
+
+    λ₀ = 1.029 (2/σ) √(T/πm): Gass, J. Chem. Phys. 54, 1898 (1971).
+    """
+    y = math.pi * number_density * diameter**2 / 2
+    dilute = 1.029 * 2 / diameter * math.sqrt(temperature / (math.pi * mass))
+    return dilute * (1 / chi + 1.5 * y + 0.8718 * chi * y * y)
+
+
 def long_time_tail(time: ArrayLike, number_density: float, diffusion: float, kinematic_viscosity: float) -> np.ndarray:
     """Velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at late times t (no unit).
 

@@ -1,13 +1,29 @@
-"""Transport: collision rates, free paths, velocity correlation, diffusion and pair distribution."""
+"""Transport: collision rates, free paths, diffusion, viscosities, heat conductivity and pair distribution."""
 
-from idealgas.analysis.core.declaration import Analysis, Section
+from idealgas.analysis.core.declaration import Analysis, Option, Section
 
 ANALYSIS = Analysis(
     __name__,
-    help="""Measure collision rates, free paths, velocity correlation, diffusion and the pair distribution.
+    help="""Measure diffusion, viscosities and heat conductivity, collision rates, free paths and the pair distribution.
 
-    They are compared with the rates of kinetic theory and Enskog's diffusion coefficient. `idealgas histogram
-    --quantity free-path` measures the distribution of free paths.
+    They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, heat conductivity and the
+    pressure tensor take a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution
+    of free paths.
     """,
-    sections=(Section("Transport", "Velocity correlation, mean square displacement and pair distribution"),),
+    sections=(
+        Section(
+            "Transport",
+            "Velocity correlation, mean square displacement, pair distribution, and transport coefficients over time",
+        ),
+    ),
+    options=(
+        Option(
+            "lag",
+            float,
+            "Longest time for which discs and currents are followed, in mean free times.",
+            default=20.0,
+            positive=True,
+            metavar="X",
+        ),
+    ),
 )

@@ -1,15 +1,17 @@
 """Picture of the transport in a gas."""
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import COLOURS, GREY, panels
-from idealgas.analysis.transport.measure import Transport
+from idealgas.analysis.transport.coefficients import SYMBOLS
+from idealgas.analysis.transport.measure import FITTED_FROM, Transport
 
 
 def transport_figure(result: Transport) -> Figure:
-    """Picture of velocity correlation, mean square displacement and pair distribution."""
-    figure, (correlation, displacement, pairs) = panels(3)
+    """Picture of velocity correlation, mean square displacement, pair distribution and coefficients against time."""
+    figure, (correlation, displacement, pairs, coefficients) = panels(2, 2)
     for entry, colour in zip(result.diffusion, COLOURS * len(result.diffusion), strict=False):
         correlation.errorbar(entry.lag, entry.correlation, entry.correlation_error, color=colour, label=entry.species)
         if entry.coefficient.theory is not None and entry.tail is not None:
@@ -31,12 +33,40 @@ def transport_figure(result: Transport) -> Figure:
             if (contact.species, contact.other) == (found.species, found.other):
                 pairs.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
     pairs.axhline(1.0, color=GREY, linewidth=0.8)
+    unit = _draw_coefficients(coefficients, result)
     for ax, x, y in (
         (correlation, "t (time)", "⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)"),
         (displacement, "t (time)", "mean square displacement (length²)"),
         (pairs, "r (length)", "g(r) (no unit)"),
+        (coefficients, "t (time)", f"coefficient at time t over {unit}"),
     ):
         ax.set_xlabel(x)
         ax.set_ylabel(y)
         ax.legend(frameon=False, fontsize="small")
     return figure
+
+
+def _draw_coefficients(ax: Axes, result: Transport) -> str:
+    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or, where there is none, over their own values.
+
+    Returns what they are drawn over.
+    """
+    curves = [
+        (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient)
+        for entry in result.diffusion
+    ]
+    if result.collective:
+        curves += [
+            (SYMBOLS[name], one.times, one.running, one.running_error, one.value)
+            for name, one in result.collective.coefficients.items()
+        ]
+    by_theory = all(value.theory for *_, value in curves)
+    for (name, times, running, error, value), colour in zip(curves, COLOURS * len(curves), strict=False):
+        one = (by_theory and value.theory) or value.value
+        ax.plot(times, running / one, color=colour, label=name)
+        ax.fill_between(times, (running - error) / one, (running + error) / one, color=colour, alpha=0.2, linewidth=0)
+    last = float(result.diffusion[0].lag[-1])
+    ax.axvspan(FITTED_FROM * last, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
+    ax.axhline(1.0, color=GREY, linewidth=0.8)
+    ax.set_ylim(0.0, 1.6)
+    return "Enskog's" if by_theory else "its mean in the plateau"

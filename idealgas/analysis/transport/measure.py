@@ -1,7 +1,7 @@
-"""Transport: collision rates, free paths, velocity correlation, diffusion and pair distribution.
+"""Transport: collision rates, free paths, diffusion, viscosities, heat conductivity and pair distribution.
 
-Rates and free paths count every event of the window. Velocity correlation and displacement use the exact positions and
-velocities of discs at evenly spaced instants.
+Rates and free paths count every event of the window, and so do the currents of momentum and energy. Velocity
+correlation and displacement use the exact positions and velocities of discs at evenly spaced instants.
 """
 
 import math
@@ -27,14 +27,14 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import Theory, diffusion_error
+from idealgas.analysis.transport.coefficients import Collective, collective
+from idealgas.analysis.transport.enskog import Enskog, enskog
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import UserError
 from idealgas.log import Log
 
 LAGS = 200  # number of steps of the correlation functions
-LONGEST_LAG = 20.0  # mean free times; a step is a tenth of a mean free time
 FEWEST_SEGMENTS, MOST_SEGMENTS = 8, 64
 MOST_SAMPLES = 2**21  # largest number of discs times instants
 FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
@@ -48,7 +48,8 @@ class Diffusion:
 
     species: name. lag: (L,), time. correlation, correlation_error: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩ and its standard error (no
     unit). displacement, displacement_error: (L,), mean square displacement and its standard error, length². tail: (L,),
-    correlation at late times by theory; None for several species or above freezing. coefficient: diffusion coefficient
+    correlation at late times by theory; None for several species or above freezing. running, running_error: (L,), a
+    quarter of the slope of the displacement, length²/time, and its standard error. coefficient: diffusion coefficient
     D, a quarter of the slope of the displacement at late lags, length²/time; its theory is Enskog's.
     velocity_correlation_time: integral of the correlation up to the last lag, time.
     """
@@ -60,12 +61,15 @@ class Diffusion:
     displacement: np.ndarray
     displacement_error: np.ndarray
     tail: np.ndarray | None
+    running: np.ndarray
+    running_error: np.ndarray
     coefficient: Estimate
     velocity_correlation_time: Estimate
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        series = ("lag", "correlation", "correlation_error", "displacement", "displacement_error")
+        pairs = ("correlation", "displacement", "running")
+        series = ("lag", *(name + ending for name in pairs for ending in ("", "_error")))
         return {
             "species": self.species,
             "coefficient": self.coefficient.as_dict(),
@@ -92,16 +96,22 @@ class Contact:
 class Transport(Result):
     """Transport in the gas of one log.
 
-    window: the time that was used. walled: whether walls reflect diffusing discs. collision_rates, contacts,
-    pair_distributions: of each pair of species. free_paths, diffusion: of each species.
+    window: the time that was used. packing_fraction: φ. number: of discs. free_times: lag up to which discs and
+    currents are followed, in mean free times of the slowest species. walled: whether walls reflect diffusing discs.
+    collision_rates, contacts, pair_distributions: of each pair of species. free_paths, diffusion: of each species.
+    collective: viscosities, heat conductivity and pressure tensor; None with walls, which change the currents.
     """
 
     window: Window
+    packing_fraction: float
+    number: int
+    free_times: float
     walled: bool
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
     contacts: tuple[Contact, ...]
     diffusion: tuple[Diffusion, ...]
+    collective: Collective | None
     pair_distributions: tuple[PairDistribution, ...]
 
     def as_dict(self) -> dict[str, Any]:
@@ -110,7 +120,9 @@ class Transport(Result):
             name: [entry.as_dict() for entry in getattr(self, name)]
             for name in ("collision_rates", "free_paths", "contacts", "diffusion", "pair_distributions")
         }
-        return super().as_dict() | {"window": self.window.as_dict(), "walled": self.walled, **values}
+        plain = {name: getattr(self, name) for name in ("packing_fraction", "number", "free_times", "walled")}
+        whole = self.collective and self.collective.as_dict()
+        return super().as_dict() | {"window": self.window.as_dict(), **plain, **values, "collective": whole}
 
 
 def transport(
@@ -118,15 +130,19 @@ def transport(
     start: float | None = None,
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
+    lag: float = 20.0,
 ) -> Transport:
-    """Measure how discs of a gas move about between two times of its log, and compare with Enskog's theory.
+    """Measure how discs, momentum and heat spread in a gas between two times of its log, beside Enskog's theory.
 
     Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
-    displacement, velocity autocorrelation and from the first the diffusion coefficient; pair distribution functions.
+    displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity, heat
+    conductivity and pressure tensor in a periodic box; pair distribution functions.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
-    events are read. Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects
-    other than periodic sides.
+    events are read. lag: longest time for which discs and currents are followed, in mean free times.
+
+    Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects other than
+    periodic sides.
     """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
@@ -134,16 +150,26 @@ def transport(
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
     window = measure(log, [moments, impacts], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
-    expected = expected_rates(discs, gas.box, equilibrium, theory_of(log, discs))
+    box = theory_of(log, discs)
+    expected, enskogs = expected_rates(discs, gas.box, equilibrium, box), enskog(log, discs, equilibrium)
     rates = collision_rates(discs, expected, window, impacts)
-    diffusion = _diffusion(log, discs, window, equilibrium, rates)
+    free_time = _free_time(discs, rates)
+    longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
+    diffusion = _diffusion(log, discs, window, longest, enskogs)
+    whole = None
+    if all(log.periodic):
+        whole = collective(log, discs, window, equilibrium, longest, (enskogs, box.pairs), progress)
     return Transport(
         window=window,
+        packing_fraction=gas.packing_fraction,
+        number=len(gas),
+        free_times=longest / free_time,
         walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
         contacts=_contacts(discs, gas.area, equilibrium, rates),
         diffusion=diffusion,
+        collective=whole,
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
         premises=(*_short_lags(rates, diffusion), *_reflected(log, diffusion)),
     )
@@ -187,12 +213,17 @@ def _contacts(
     return tuple(contacts)
 
 
-def _diffusion(
-    log: Log, discs: Composition, window: Window, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
-) -> tuple[Diffusion, ...]:
+def _free_time(discs: Composition, rates: tuple[CollisionRate, ...]) -> float:
+    """Mean free time of the species that collides most seldom, time; infinite if none collides."""
     per_disc = [sum(r.rate.value for r in rates if r.species == name) for name in discs.name]
     slowest = min((rate for rate in per_disc if rate > 0), default=0.0)
-    longest = min(LONGEST_LAG / slowest if slowest else math.inf, window.duration / FEWEST_SEGMENTS)
+    return 1 / slowest if slowest else math.inf
+
+
+def _diffusion(
+    log: Log, discs: Composition, window: Window, longest: float, expected: Enskog | None
+) -> tuple[Diffusion, ...]:
+    """Diffusion of each species up to the longest lag, time."""
     segments = min(int(window.duration / longest), MOST_SEGMENTS)
     lag = np.linspace(0.0, longest, LAGS + 1)
     starts = np.linspace(window.start, window.end - longest, segments)
@@ -206,23 +237,8 @@ def _diffusion(
     places, velocities = places.reshape(shape), velocities.reshape(shape) - drift(log)
     places = places - lag[:, None, None] * drift(log)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
-    enskog = _enskog(log, discs, equilibrium) if len(discs.name) == 1 else None
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), strict=True)
-    return tuple(
-        _of_species(name, lag, r, v, enskog, diffusion_error(log.discs.packing_fraction)) for name, r, v in parts
-    )
-
-
-def _enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> tuple[float, float, float] | None:
-    """Number density, Enskog's diffusion coefficient and kinematic viscosity of equal discs; None above φ = 0.62."""
-    gas = log.discs
-    if gas.packing_fraction > hard_discs.HIGHEST:
-        return None
-    density, sigma = len(gas) / gas.area, 2 * discs.radius[0]
-    chi = hard_discs.fluid_contact_value(gas.packing_fraction)
-    state = (sigma, density, equilibrium.temperature, discs.mass[0], chi)
-    viscosity = hard_discs.enskog_viscosity(*state) / (density * discs.mass[0])
-    return density, hard_discs.enskog_diffusion(*state), viscosity
+    return tuple(_of_species(name, lag, r, v, expected) for name, r, v in parts)
 
 
 def _of_species(
@@ -230,18 +246,15 @@ def _of_species(
     lag: np.ndarray,
     places: np.ndarray,
     velocities: np.ndarray,
-    enskog: tuple[float, float, float] | None,
-    off: float,
+    expected: Enskog | None,
 ) -> Diffusion:
-    """Diffusion of one species from positions and velocities (segments, L, discs, 2).
-
-    off: relative error of Enskog's diffusion coefficient.
-    """
+    """Diffusion of one species from positions and velocities (segments, L, discs, 2)."""
     correlation = autocorrelation(velocities)
     square = correlation[:, 0].mean()
     displacement = mean_square_displacement(places)
     late = slice(int(FITTED_FROM * LAGS), None)
     slope = np.polyfit(lag[late], displacement[:, late].T, 1)[0] / 4
+    running = np.gradient(displacement, lag, axis=1) / 4
     correlation_time = np.trapezoid(correlation, lag, axis=1) / square
     count = math.sqrt(len(places))
     return Diffusion(
@@ -251,10 +264,16 @@ def _of_species(
         correlation.std(axis=0, ddof=1) / square / count,
         displacement.mean(axis=0),
         displacement.std(axis=0, ddof=1) / count,
-        tail=None if enskog is None else hard_discs.long_time_tail(np.maximum(lag, 1e-300), *enskog),
-        coefficient=mean(slope, theory=Theory(enskog[1], off * enskog[1], "Enskog") if enskog else None),
+        tail=_tail(np.maximum(lag, 1e-300), expected) if expected else None,
+        running=running.mean(axis=0),
+        running_error=running.std(axis=0, ddof=1) / count,
+        coefficient=mean(slope, theory=expected.diffusion if expected else None),
         velocity_correlation_time=mean(correlation_time),
     )
+
+
+def _tail(lag: np.ndarray, expected: Enskog) -> np.ndarray:
+    return hard_discs.long_time_tail(lag, expected.density, expected.diffusion.value, expected.kinematic_viscosity)
 
 
 def autocorrelation(velocities: np.ndarray) -> np.ndarray:

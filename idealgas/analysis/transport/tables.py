@@ -2,12 +2,16 @@
 
 from dataclasses import replace
 
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Table, collision_tables, describe, estimates
+from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
 from idealgas.analysis.transport.measure import Transport
+
+WALLS = "No viscosities and heat conductivity: they take periodic sides, as walls change the currents of the whole gas."
 
 
 def transport_tables(result: Transport) -> list[Table]:
-    """Tables of collisions, pair distribution at contact, and diffusion of each species."""
+    """Tables of collisions, pair distribution at contact, diffusion of each species, and of the currents of the gas."""
     rates, paths = collision_tables(result.collision_rates, result.free_paths)
     contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in result.contacts]
     diffusion = [
@@ -22,5 +26,28 @@ def transport_tables(result: Transport) -> list[Table]:
         replace(rates, notes=(describe(result.window),)),
         paths,
         estimates("g(r) at contact (no unit)", contacts),
-        estimates("Diffusion, theory Enskog's", diffusion),
+        estimates("Diffusion, theory Enskog's", diffusion, () if result.collective else (WALLS,)),
+        *(_of_currents(result.collective, result.free_times) if result.collective else ()),
     ]
+
+
+def _of_currents(found: Collective, free_times: float) -> list[Table]:
+    first, last = found.plateau
+    plateau = (
+        f"plateau: t = {first:.4g} to {last:.4g} ({free_times * first / last:.3g} to {free_times:.3g} mean free times)"
+    )
+    rows = [row for name, one in found.coefficients.items() for row in _rows(SYMBOLS[name], one)]
+    return [
+        estimates("Viscosity η, heat conductivity λ and bulk viscosity ζ, theory Enskog's", rows, (plateau,)),
+        estimates("Pressure tensor (energy/length²)", [(f"P {name}", one) for name, one in found.pressure.items()]),
+    ]
+
+
+def _rows(name: str, found: Coefficient) -> list[tuple[str, Estimate]]:
+    """Rows of a coefficient, of its routes if there are several, and of their difference."""
+    rows = [(f"{name}, {found.unit}", found.value)]
+    if found.difference is not None:
+        one, other = found.routes
+        rows += [(f"   by {route}", value) for route, value in found.routes.items()]
+        rows.append((f"   {one} less {other}", found.difference))
+    return rows

@@ -134,3 +134,17 @@ def test_box_of_equals_given_as_two_species():
 def test_no_theory_beyond_its_range():
     for width, known in ((12.6, True), (12.5, False), (11.0, False)):
         assert math.isfinite(hard_discs.box_compressibility([0.5], [99], (10.0, width))) == known
+
+
+@pytest.mark.parametrize("phi", [0.0001, 0.1, 0.5])
+def test_enskogs_coefficients_have_their_parts(phi):
+    """Flights: (1 + yχ/2)²/χ and (1 + 3yχ/4)²/χ times the dilute one; collisions: ζ/2 and ζ/m. Gass has 4 digits."""
+    sigma, temperature, mass, chi = 0.7, 1.3, 2.0, 1 / (1 - phi) ** 2
+    state = (sigma, 4 * phi / (math.pi * sigma**2), temperature, mass, chi)
+    y, unit = 2 * phi, math.sqrt(mass * temperature / math.pi) / sigma
+    bulk = hard_discs.enskog_bulk_viscosity(*state)
+    assert bulk == pytest.approx(2 / math.pi * chi * y**2 * unit)
+    viscosity = 1.022 / 2 * unit / chi * (1 + y * chi / 2) ** 2 + bulk / 2
+    assert hard_discs.enskog_viscosity(*state) == pytest.approx(viscosity, rel=1e-4)
+    conductivity = 2 * 1.029 * unit / mass / chi * (1 + 3 / 4 * y * chi) ** 2 + bulk / mass
+    assert hard_discs.enskog_conductivity(*state) == pytest.approx(conductivity, rel=1e-4)

@@ -1,0 +1,176 @@
+"""Currents, their growth and transport coefficients against slow and obvious computations."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.stream import stream
+from idealgas.analysis.transport.currents import CARRIED, PASSED_ON, XX, YY, Currents
+from idealgas.analysis.transport.helfand import Lags, growth, lags_of
+from idealgas.analysis.transport.measure import transport
+from idealgas.analysis.transport.tables import WALLS, transport_tables
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+scene.seed = 3
+box = {{size = [6, 5], left = "{x}", right = "{x}", bottom = "periodic", top = "periodic"}}
+species = [
+    {{name = "gas", count = 12, radius = 0.3, temperature = 1.0}},
+    {{name = "heavy", count = {heavy}, radius = 0.4, mass = 2.5, temperature = 1.0}},
+]
+run.collisions_per_disc = 60
+"""
+
+
+def run(folder, x="periodic", heavy=0):
+    scene = SCENE.format(x=x, heavy=heavy)
+    if not heavy:
+        scene = "\n".join(line for line in scene.splitlines() if "heavy" not in line)
+    simulate(parse_scene(scene), folder / "small.h5")
+    return open_log(folder / "small.h5")
+
+
+@pytest.fixture(scope="module", params=[0, 3], ids=["equal", "mixture"])
+def log(request, tmp_path_factory):
+    with run(tmp_path_factory.mktemp("currents"), heavy=request.param) as log:
+        yield log
+
+
+@pytest.fixture(scope="module", params=[(0.0, 1.0, 7), (0.23, 0.71, 4), (0.1, 1.0, 900)], ids=str)
+def edges(log, request):
+    start, end, blocks = request.param
+    return np.linspace(start * log.end_time, end * log.end_time, blocks + 1)
+
+
+def obvious(log, edges):
+    """Currents in blocks by plain loops over flights and collisions."""
+    flow = np.zeros((len(edges) - 1, 2, 5))
+    mass, box = log.discs.mass, np.array(log.box)
+    frame = mass @ log.discs.velocity / mass.sum()
+    velocity = log.state_at(edges[0]).velocity - frame
+    since = np.full(len(mass), edges[0])
+
+    def fly(i, until):
+        carried = [*(mass[i] * velocity[i][[0, 0, 1]] * velocity[i][[0, 1, 1]]), *velocity[i] * _energy(i)]
+        for k in range(len(edges) - 1):
+            duration = min(until, edges[k + 1]) - max(since[i], edges[k])
+            if duration > 0:
+                flow[k, CARRIED] += duration * np.array(carried)
+        since[i] = until
+
+    def _energy(i):
+        return mass[i] * (velocity[i] @ velocity[i]) / 2
+
+    columns = ("time", "disc", "partner", "position", "velocity")
+    (rows,) = log.chunks(columns, log.row_at(edges[0], "right"), log.row_at(edges[-1], "right"))
+    for row, (time, i, j) in enumerate(zip(rows.time, rows.disc, rows.partner, strict=True)):
+        fly(i, time)
+        before, energy = velocity[i].copy(), _energy(i)
+        velocity[i] = rows.velocity[row] - frame
+        if i < j:  # the next row is that of the partner
+            apart = rows.position[row] - rows.position[row + 1]
+            apart -= box * np.round(apart / box)
+            (px, py), gain = mass[i] * (velocity[i] - before), _energy(i) - energy
+            k = min(max(int(np.searchsorted(edges, time, "left")) - 1, 0), len(edges) - 2)
+            flow[k, PASSED_ON] += [px * apart[0], px * apart[1], py * apart[1], *gain * apart]
+    for i in range(len(mass)):
+        fly(i, edges[-1])
+    return flow
+
+
+def test_currents(log, edges):
+    currents, moments, impacts = Currents(), Moments(), Impacts(len(log.walls), log.periodic)
+    stream(log, edges, [currents, moments, impacts])
+    assert currents.flow == pytest.approx(obvious(log, edges), rel=1e-10, abs=1e-10)
+    flights = moments.flights.sum(axis=1)[:, 1:3]
+    assert currents.flow[:, CARRIED, XX : YY + 1 : 2] == pytest.approx(flights, rel=1e-11, abs=1e-11)
+    trace = currents.flow[:, PASSED_ON, XX] + currents.flow[:, PASSED_ON, YY]
+    assert trace == pytest.approx(impacts.pair_virial, rel=1e-11, abs=1e-11)
+
+
+def test_growth_is_half_the_slope_of_plain_averages():
+    flow, lags = np.random.default_rng(2).normal(size=(2, 101)) + 0.3, Lags(0.5, 3, 7)
+    found = growth(flow, lags)
+    squares = np.zeros((2, 8, 95))
+    for route, series in enumerate(flow - flow.mean(axis=1, keepdims=True)):
+        for start in range(95):
+            for steps in range(8):
+                squares[route, steps, start] = series[start : start + steps].sum() ** 2
+    long, short = (t - t * t / (101 * 0.5) for t in (3.5, 1.5))
+    assert found.series == pytest.approx((squares[:, 7] - squares[:, 3]) / 2 / (long - short))
+    assert lags.plateau == (1.5, 3.5)
+    time = np.arange(8) * 0.5
+    used = squares.mean(axis=0)[:, : 95 - 95 % 13].mean(axis=1)
+    assert found.running == pytest.approx(np.diff(used) / np.diff(time - time**2 / 50.5) / 2)
+    assert lags.times == pytest.approx((time[1:] + time[:-1]) / 2)
+
+
+def test_growth_of_a_current_that_is_known():
+    """Noise that forgets: x_t = a x_{t-1} + noise has K = 1/2(1 - a)² in steps of time 1; four standard errors."""
+    random, a, n = np.random.default_rng(3), 0.5, 200_000
+    noise = random.normal(size=(2, n))
+    current = np.zeros((2, n))
+    for t in range(1, n):
+        current[:, t] = a * current[:, t - 1] + noise[:, t]
+    found = growth(current, lags_of(1.0, 20.0, 0.5))
+    expected = 1 / (2 * (1 - a) ** 2)
+    assert len(found.running) == 20
+    assert (np.abs(found.running[10:] - expected) < 4 * found.error[10:]).all()
+    assert (found.error[10:] < 0.05 * expected).all()
+    assert found.running[0] < 0.7 * expected  # it has not forgotten yet
+
+
+@pytest.mark.parametrize(("width", "longest"), [(1.0, 20.0), (1.0, 1.0), (30.0, 20.0), (0.2, 3.0)])
+def test_lags_leave_a_plateau(width, longest):
+    lags = lags_of(width, longest, 0.5)
+    assert 0 < lags.first < lags.last
+    assert lags.width * lags.last == pytest.approx(max(longest, 2 * width), abs=width)
+
+
+def test_coefficients_of_a_log(log):
+    found = transport(log)
+    whole = found.collective
+    single = len(log.discs.species_names) == 1
+    assert list(whole.coefficients) == ["viscosity", *["heat_conductivity"] * single, "bulk_viscosity"]
+    assert whole.plateau[1] == pytest.approx(2 * whole.plateau[0])
+    for one in whole.coefficients.values():
+        routes = [route.value for route in one.routes.values()]
+        assert one.value.value == pytest.approx(np.mean(routes))
+        assert one.value.value > 0
+        assert (one.value.theory is not None) == single
+        assert (one.difference is None) == (len(routes) == 1)
+        if one.difference is not None:
+            assert one.difference.value == pytest.approx(routes[0] - routes[1])
+    trace = (whole.pressure["xx"].value + whole.pressure["yy"].value) / 2
+    impacts = Impacts(len(log.walls), log.periodic)
+    stream(log, np.array([found.window.start, found.window.end]), [impacts])
+    gas, dof = log.discs, 2 * len(log.discs) - 2
+    frame = gas.mass @ gas.velocity / gas.mass.sum()
+    temperature = (gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum() / dof
+    virial = impacts.pair_virial[0] / found.window.duration / 2
+    assert trace == pytest.approx((len(gas) * temperature + virial) / gas.area, rel=1e-9)
+    assert abs(whole.pressure["xy"].deviation) < 4
+    assert json.dumps(found.as_dict(), allow_nan=False)
+    assert any("plateau: t = " in note for table in transport_tables(found) for note in table.notes)
+
+
+def test_walls_have_no_coefficients_of_the_whole_gas(tmp_path):
+    with run(tmp_path, x="reflecting") as log:
+        found = transport(log)
+    assert found.collective is None
+    assert any(WALLS in table.notes for table in transport_tables(found))
+    assert math.isfinite(found.diffusion[0].coefficient.value)
+
+
+def test_a_longer_lag_is_a_later_plateau(tmp_path):
+    with run(tmp_path) as log:
+        short, long = (transport(log, lag=lag) for lag in (2.0, 4.0))
+    assert long.collective.plateau == pytest.approx(tuple(2 * t for t in short.collective.plateau), rel=0.02)
+    assert long.diffusion[0].lag[-1] == pytest.approx(2 * short.diffusion[0].lag[-1])
+    assert (short.free_times, long.free_times) == pytest.approx((2.0, 4.0))
