@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from idealgas.analysis.evolution.measure import evolution
     from idealgas.analysis.heat_capacity.measure import heat_capacity
     from idealgas.analysis.histogram.measure import histogram
+    from idealgas.analysis.order.measure import order
     from idealgas.analysis.pressure.measure import pressure
     from idealgas.analysis.profile.measure import profile
     from idealgas.analysis.registry import analyse
@@ -81,6 +82,7 @@ __all__ = [
     "histogram",
     "load_scene",
     "open_log",
+    "order",
     "parse_scene",
     "pressure",
     "profile",

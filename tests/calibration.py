@@ -26,6 +26,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.effusion.measure import effusion
 from idealgas.analysis.heat_capacity.measure import heat_capacity
 from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.order.measure import order
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.relaxation.measure import relaxation
@@ -104,6 +105,12 @@ def periodic(log: Log) -> Named:
         yield f"pressure tensor, {name}", found.collective.pressure[name]
 
 
+def ordered(log: Log) -> Named:
+    """Hexagonal order in a periodic box."""
+    found = order(log)
+    yield from (("ψ₆ of a disc", found.local), ("Ψ₆ of all discs", found.whole), ("six neighbours", found.hexagons))
+
+
 def bath(log: Log) -> Named:
     """A gas between thermal walls: fluctuations of its energy, and heat."""
     yield "heat capacity Var(E)/T²", heat_capacity(log).routes["Var(E)/T²"]
@@ -157,6 +164,7 @@ CASES = {
     "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),
     "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
     "periodic box": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, periodic),
+    "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, ordered),
     "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, bath, SELDOM),
     "rough discs": Case(
         GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN

@@ -17,6 +17,7 @@ NAMES: tuple[str, ...] = (
     "histogram",
     "relaxation",
     "transport",
+    "order",
     "profile",
     "evolution",
     "heat_capacity",

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
-from idealgas.analysis.core.autoregression import is_constant, process_of, variance_of_mean
+from idealgas.analysis.core.autoregression import error_of_mean, is_constant, process_of, variance_of_mean
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import Tally
@@ -48,6 +48,9 @@ STARTS = 33
 
 SHORTEST = 4
 """Number of blocks of the shortest stretch that is tested; each longer one is twice as long."""
+
+FEWEST_SAMPLES = 4.0
+"""Least number of independent samples with which a series counts as longer than its fluctuations."""
 
 ROUNDING = 1e-9
 """Relative change below which a series is constant."""
@@ -130,6 +133,22 @@ def steady_from(series: Iterable[np.ndarray]) -> int | None:
     last = max(r.first for r in references)
     start = _first_steady(some, references, last)
     return None if drifts and last - start < n // BEYOND else start
+
+
+def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:
+    """Sentence on a series (n,) at times (n,) whose mean is taken though it is not known to be steady."""
+    first, samples = steady_from([series]), error_of_mean(series).samples
+    if first:
+        return (
+            f"{name} is not steady in the window: only from t = {time[first]:.4g} on do the means of its parts agree. "
+            "It takes a later start or a longer run.",
+        )
+    if first is None or samples < FEWEST_SAMPLES:
+        return (
+            f"{name} changes as slowly as the window is long: its mean and error may be those of one fluctuation, or "
+            "of a change that is not over. It takes a longer run.",
+        )
+    return ()
 
 
 def _reference(series: np.ndarray, first: int) -> Reference:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.steadiness import steady_from
+from idealgas.analysis.core.steadiness import steady_from, unsteady
 
 
 def noise(rng, length, memory=0.0):
@@ -57,3 +57,16 @@ def test_constant_and_short_series_are_steady():
     assert steady_from([np.full(100, 3.0), 1.0 + 1e-13 * np.arange(100)]) == 0
     assert steady_from([np.arange(10.0)]) == 0
     assert steady_from([]) == 0
+
+
+def test_a_mean_of_what_is_not_steady_is_said():
+    rng = np.random.default_rng(4)
+    time = np.arange(200.0)
+    assert unsteady("x", noise(rng, 200, 0.5), time) == ()
+    assert unsteady("x", np.full(200, 1.5), time) == ()
+    (jump,) = unsteady("x", noise(rng, 200) + 9 * (time < 60), time)
+    assert jump.startswith("x is not steady in the window: only from t = ")
+    (drift,) = unsteady("x", noise(rng, 200) + time / 5, time)
+    assert drift.startswith("x changes as slowly as the window is long")
+    (walk,) = unsteady("x", noise(rng, 60, 1.0), time)
+    assert walk == drift
