@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @scene_argument
-@click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and a picture (PNG).")
+@click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and pictures (PNG).")
 @click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
 @force_option
 @json_option
@@ -39,21 +39,23 @@ def accuracy(
     gas = make_gas(scene)
     on_orbit = not scene.effects and is_on_orbit(gas)
     name = "orbit" if on_orbit else "accuracy"
-    paths = [] if output is None else accuracy_report.outputs(output, name, force)
+    pictures = ("",) if on_orbit else ("", "-details")
+    paths = [] if output is None else accuracy_report.outputs(output, name, pictures, force)
     if on_orbit:
         with _progress_bar() as progress:
             orbit = study_orbit(gas, seed=scene.scene.seed, progress=progress)
         result = accuracy_report.orbit_dict(orbit)
         rows = [{key: value for key, value in row.items() if key != "times"} for row in result["survivals"]]
-        figure, show = accuracy_figure.orbit_figure(orbit), lambda: _print_orbit(orbit)
+        figures, show = [accuracy_figure.orbit_figure(orbit)], lambda: _print_orbit(orbit)
     else:
         with _progress_bar() as progress:
             found = study_accuracy(scene, repeats, progress)
         result = accuracy_report.accuracy_dict(found)
         rows = [accuracy_report.flat_row(row, found) for row in found.rows]
-        figure, show = accuracy_figure.accuracy_figure(found), lambda: _print_rows(rows)
+        figures = [accuracy_figure.accuracy_figure(found), accuracy_figure.details_figure(found)]
+        show = lambda: _print_rows(rows)  # noqa: E731
     if paths:
-        accuracy_report.write_files(paths, result, rows, figure, force)
+        accuracy_report.write_files(paths, result, rows, figures, force)
     if as_json:
         print_json(result)
         return

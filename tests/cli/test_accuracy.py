@@ -35,7 +35,9 @@ def test_it_prints_tables_and_sentences_and_nothing_else(small):
     assert "Time and averages" in done.stdout
     assert "event-driven" in done.stdout
     assert "- No trajectories were compared: no other precision than float64 knows of periodic sides." in done.stdout
-    assert done.stdout.splitlines()[-1] == "out/accuracy.csv, out/accuracy.json, out/accuracy.png"
+    assert done.stdout.splitlines()[-1] == ", ".join(
+        f"out/accuracy{end}" for end in (".csv", ".json", ".png", "-details.png")
+    )
 
 
 @pytest.mark.slow
@@ -52,7 +54,8 @@ def test_its_files_hold_all_numbers(small):
     assert float(coarse["missed_share"]) > 0
     assert float(coarse["deepest_overlap"]) > 0.1 > 1e-9 > float(rows[0]["deepest_overlap"])
     assert all(float(row["cpu_s_per_time"]) > 0 for row in rows)
-    assert (folder / "out/accuracy.png").read_bytes().startswith(b"\x89PNG")
+    for picture in ("accuracy", "accuracy-details"):
+        assert (folder / f"out/{picture}.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.slow

@@ -52,7 +52,7 @@ def test_names_in_a_picture(tmp_path):
     show_names(figure)
     file = io.StringIO()
     figure.savefig(file, format="svg")
-    assert file.getvalue().count(r"10^{5}") == 1
+    assert file.getvalue().count(r"10^{6}") == 1
     assert ax.get_xlabel() == SHOWN
 
 

@@ -148,7 +148,7 @@ class Analysis:
         values = {name: option.default for name, option in known.items()} | options
         found = self._code("measure", self.name)(log, start=start, end=end, progress=progress, **values)
         origin = premises.origin_of(log.scene, str(log.path))
-        return replace(found, premises=(*premises.of_log(log), *found.premises), origin=origin)
+        return replace(found, premises=(*premises.of_log(log), *found.premises), origin=origin, title=origin.title)
 
     @cached_property
     def function(self) -> Callable[..., Any]:
@@ -177,7 +177,8 @@ class Analysis:
         combined = self._code("combine", f"combine_{self.name}")(results)
         if len(results) == 1 and combined is results[0]:
             return combined
-        return replace(combined, premises=(*premises.of_several(results), *independent, *combined.premises))
+        sentences = (*premises.of_several(results), *independent, *combined.premises)
+        return replace(combined, premises=sentences, title=premises.title_of(results))
 
     def restore(self, found: dict[str, Any], label: str, origin: "Origin | None" = None) -> Any:
         """Make a result again from the values of its `as_dict()` that a sweep stored.
@@ -185,7 +186,8 @@ class Analysis:
         label: name of the point. origin: its run.
         """
         result = self._code("combine", f"restore_{self.name}")(found, label)
-        return replace(result, premises=tuple(found.get("premises", ())), origin=origin)  # those of before have none
+        premises = tuple(found.get("premises", ()))  # those of before have none
+        return replace(result, premises=premises, origin=origin, title=origin.title if origin else label)
 
     def tables(self, combined: Any) -> "list[Table]":
         """Tables of a combined result; the first one has a note for each premise that does not hold."""
@@ -193,9 +195,12 @@ class Analysis:
         notes = (*(f"premise: {sentence}" for sentence in combined.premises), *first.notes)
         return [replace(first, notes=notes), *others]
 
-    def figure(self, combined: Any) -> "Figure":
-        """Picture of a combined result."""
-        return self._code("figure", f"{self.name}_figure")(combined)
+    def figure(self, combined: Any, titled: bool = True) -> "Figure":
+        """Picture of a combined result; titled: whether it names the run and the analysis above it."""
+        from idealgas.analysis.core.style import entitle
+
+        figure = self._code("figure", f"{self.name}_figure")(combined)
+        return entitle(figure, f"{combined.title}: {self.key}") if titled else figure
 
     def _code(self, module: str, function: str) -> Callable[..., Any]:
         return getattr(import_module(f"{self.package}.{module}"), function)

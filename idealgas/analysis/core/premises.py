@@ -29,8 +29,24 @@ def origin_of(scene: Scene, path: str) -> Origin:
     """Run of a scene; path: of its log, or another name for it."""
     seed = scene.scene.seed if draws_random_numbers(scene) else None
     return Origin(
-        path, run_digest(scene), gas_digest(scene), describe_gas(scene), gas_kind(scene), is_mixture(scene), seed
+        path,
+        run_digest(scene),
+        gas_digest(scene),
+        describe_gas(scene),
+        gas_kind(scene),
+        is_mixture(scene),
+        seed,
+        scene.scene.title or path,
     )
+
+
+def title_of(results: Sequence[Result]) -> str:
+    """Title of the picture of the results of one or several runs: their titles, or how many they are."""
+    titles = list(dict.fromkeys(r.title for r in results))
+    if len(titles) > NAMED:
+        return f"{len(results)} runs"
+    runs = f" ({len(results)} runs)" if len(results) > len(titles) else ""
+    return ", ".join(titles) + runs
 
 
 def of_several(results: Sequence[Result]) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ class Origin:
     path: of its log, or name of its point in a sweep. run: digest of all that determines the motion, the same for two
     logs of one run. gas: digest of the discs, the box and the effects, the same at another temperature. words: the gas
     in words. kind: kind of gas in words, whatever the number of discs and the size of the box. mixture: whether radii
-    differ. seed: of the random numbers of the run; None if it draws none.
+    differ. seed: of the random numbers of the run; None if it draws none. title: of its scene, or else its path.
     """
 
     path: str
@@ -27,6 +27,7 @@ class Origin:
     kind: str
     mixture: bool
     seed: int | None
+    title: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,11 +36,12 @@ class Result:
 
     premises: one sentence for each premise of the numbers that does not hold, or that people should know of; empty if
     none was found. Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from
-    several runs, or if the analysis was not called by `Analysis.measure`.
+    several runs, or if the analysis was not called by `Analysis.measure`. title: name of the run or runs in pictures.
     """
 
     premises: tuple[str, ...] = ()
     origin: Origin | None = None
+    title: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""

@@ -3,12 +3,16 @@
 import io
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from textwrap import fill
+from typing import Any, cast
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.text import Text
+from matplotlib.transforms import ScaledTranslation
 
 from idealgas.files import written
 from idealgas.plain import plain
@@ -16,7 +20,73 @@ from idealgas.plain import plain
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
 
-GREY = "#767676"
+BLACK, GREY = "#000000", "#767676"
+GRID = "#dddddd"
+
+WIDTH, HEIGHT = 5.2, 3.2
+"""Size of a panel, inches."""
+
+BELOW = 30
+"""Distance of a legend from the axis above it, points."""
+
+LONG_LABEL = 30
+"""Number of characters from which on labels of a legend stand in one column."""
+
+LABEL_CHARACTERS = 52
+"""Number of characters after which the text of a label goes on in the next line."""
+
+DPI = 200
+TITLE_CHARACTERS, TITLE_LINES = 10, 2
+"""Characters of a title on an inch, and largest number of its lines."""
+
+
+@dataclass(frozen=True)
+class Strips:
+    """Strips that a panel shows the density of discs in: axis 0 for x or 1 for y; first and last edge (length), number.
+
+    area: of one strip, length².
+    """
+
+    axis: int
+    first: float
+    last: float
+    number: int
+    area: float
+
+
+class Panel(Axes):
+    """One panel of a picture: what its vertical axis shows is written above it, and what its curves are, below it.
+
+    in_time: whether its horizontal axis is the time of a run, so that a page can show an instant in it. strips: what a
+    page can show of an instant in a profile of the density; None for other panels.
+    """
+
+    in_time = False
+    strips: Strips | None = None
+
+    def set_ylabel(self, ylabel: str, *args: Any, **options: Any) -> Text:  # type: ignore[override]
+        """Write above the panel what its vertical axis shows."""
+        return self.set_title(ylabel, loc="left", fontsize="medium")
+
+    def get_ylabel(self) -> str:
+        """What the vertical axis shows, as `set_ylabel` took it."""
+        return self.get_title(loc="left")
+
+    def legend(self, *args: Any, **options: Any) -> Legend:
+        """Say below the panel what its curves are."""
+        _, labels = self.get_legend_handles_labels()
+        below = self.transAxes + ScaledTranslation(0, -BELOW / 72, self.figure.dpi_scale_trans)
+        columns = 1 if max(map(len, labels), default=0) > LONG_LABEL else 2
+        place = {"loc": "upper left", "bbox_to_anchor": (-0.02, 0), "bbox_transform": below, "ncols": columns}
+        legend = super().legend(*args, **(options | place | {"frameon": False, "fontsize": "small"}))
+        for text in legend.get_texts():
+            text.set_text(fill(text.get_text(), LABEL_CHARACTERS))
+        return legend
+
+    def time_axis(self) -> None:
+        """Declare that the horizontal axis is the time of a run."""
+        self.in_time = True
+        self.set_xlabel("t (time)")
 
 
 class Picture(Figure):
@@ -40,7 +110,7 @@ def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> N
     show_names(figure)
     with written(path, kind, force) as part:
         file = io.BytesIO()  # not every format of matplotlib ends well on a disk that is full
-        figure.savefig(file, dpi=150, format=kind.removeprefix("."))
+        figure.savefig(file, dpi=DPI, format=kind.removeprefix("."))
         part.write_bytes(file.getvalue())
 
 
@@ -52,18 +122,27 @@ def name_rows(ax: Axes, names: Sequence[str], **options: Any) -> None:
 def show_names(figure: Figure) -> None:
     """Show every text of a figure as it is: `$` and control characters in names have no meaning."""
     for text in figure.findobj(Text):
-        text.set_text(plain(text.get_text()))
+        text.set_text("\n".join(map(plain, text.get_text().split("\n"))))
         if "$" in text.get_text():
             text.set_parse_math(False)
 
 
-def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Axes]]:
+def entitle(figure: Figure, title: str) -> Figure:
+    """Write a title above a picture, in at most TITLE_LINES lines, and return the picture."""
+    width = int(TITLE_CHARACTERS * figure.get_figwidth())
+    text = fill(plain(title), width, max_lines=TITLE_LINES, placeholder=" …")
+    figure.suptitle(text, x=0.02, ha="left", weight="bold", size="medium")
+    return figure
+
+
+def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
     """Make a figure with panels in rows and columns; the panels are listed row by row."""
-    figure = Picture(figsize=(1.5 + 5.5 * columns, 1.2 + 3.0 * rows), layout="constrained")
-    axes = [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
+    figure = Picture(figsize=(WIDTH * columns, 0.3 + HEIGHT * rows), layout="constrained")
+    axes = [cast(Panel, figure.add_subplot(rows, columns, k + 1, axes_class=Panel)) for k in range(rows * columns)]
     for ax in axes:
-        ax.grid(color="#dddddd", linewidth=0.6)
+        ax.grid(color=GRID, linewidth=0.6)
         ax.set_axisbelow(True)
+        ax.spines[["top", "right"]].set_visible(False)
     return figure, axes
 
 

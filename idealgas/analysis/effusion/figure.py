@@ -28,6 +28,6 @@ def effusion_figure(found: Effusions) -> Figure:
     course.set_ylabel("discs beyond the slit (no unit)")
     flux.set_xlabel("n⟨v⟩/π (1/(length time))")
     flux.set_ylabel("flux (1/(length time))")
-    course.legend(frameon=False, fontsize="x-small", ncols=2)
-    flux.legend(frameon=False)
+    course.legend()
+    flux.legend()
     return figure

@@ -9,12 +9,15 @@ import numpy as np
 from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.wall_pressure import WallGauge
-from idealgas.analysis.evolution.theory import StateLines, state_lines
+from idealgas.analysis.evolution.theory import StateLines, room, state_lines
 from idealgas.log import Log
 from idealgas.sides import FIRST_SEGMENT
 
 BLOCKS = 2048
 """Number of blocks of time that are counted; a bin is a number of them, whose spread gives its error bar."""
+
+POINTS = 256
+"""Number of points of the track of a piston."""
 
 MOST_BINS = 64
 HITS = 32
@@ -33,7 +36,8 @@ class PressureCourse:
     edges: (B + 1,), times between the bins. area: (B,), mean area that the gas has, length². pressure, error: (B,),
     momentum given per time and length and its standard error, energy/length², by the name of the wall; nan as the error
     of a wall that was not hit. shown: names of the walls in table and picture: a piston, all sides of a uniform gas
-    together, or each of them. lines: isotherm and adiabat through the start; None without a theory or a piston.
+    together, or each of them. lines: isotherm and adiabat through the start; None without a theory or a piston. track:
+    times (T,) and mean coordinates (T,) of the piston in POINTS blocks of time; None without a piston.
     """
 
     edges: np.ndarray
@@ -42,6 +46,7 @@ class PressureCourse:
     error: dict[str, np.ndarray]
     shown: tuple[str, ...]
     lines: StateLines | None
+    track: tuple[np.ndarray, np.ndarray] | None
 
     @property
     def middles(self) -> np.ndarray:
@@ -56,6 +61,7 @@ class PressureCourse:
             "pressure": {name: values.tolist() for name, values in self.pressure.items()},
             "standard_error": {name: list(map(_finite, values.tolist())) for name, values in self.error.items()},
             "lines": self.lines.as_dict() if self.lines else None,
+            "track": [values.tolist() for values in self.track] if self.track else None,
         }
 
 
@@ -90,7 +96,15 @@ def pressure_course(log: Log, first: float, last: float) -> PressureCourse | Non
         {name: errors for name, (_, errors) in found.items()},
         tuple(shown),
         state_lines(log, gauge.area(blocks)) if gauge.moving else None,
+        _track(log, gauge.moving.depth, blocks) if gauge.moving else None,
     )
+
+
+def _track(log: Log, depth: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Times and mean coordinates of the piston in POINTS blocks, from its mean depth in each of BLOCKS."""
+    lengths = room(log, depth.reshape(POINTS, -1).mean(axis=1))  # a mirror image: its own inverse
+    edges = blocks[:: BLOCKS // POINTS]
+    return (edges[1:] + edges[:-1]) / 2, lengths
 
 
 def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarray, np.ndarray]:

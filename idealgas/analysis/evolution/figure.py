@@ -1,10 +1,15 @@
 """Picture of the evolution of a gas in time."""
 
+import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.core.style import BLACK, COLOURS, GREY, Panel, panels
 from idealgas.analysis.evolution.course import PressureCourse
 from idealgas.analysis.evolution.measure import Evolution
+from idealgas.analysis.evolution.theory import Law
+
+WIDER = 1.2
+"""Range of the areas at which isotherm and adiabat are drawn, in units of that of the gas."""
 
 
 def evolution_figure(result: Evolution) -> Figure:
@@ -12,7 +17,7 @@ def evolution_figure(result: Evolution) -> Figure:
 
     With a piston the pressure against the area comes last, with the isotherm and the adiabat through the start.
     """
-    course, has_piston = result.pressure, result.piston is not None
+    course, has_piston = result.pressure, result.track is not None
     shown = [result.beyond, course, has_piston, result.given, course and has_piston]
     figure, axes = panels(1 + sum(map(bool, shown)))
     _temperature(axes[0], result)
@@ -24,33 +29,34 @@ def evolution_figure(result: Evolution) -> Figure:
         ax.set_ylim(-0.05, 1.05)
         ax.set_ylabel("share beyond the gate (no unit)")
     if course:
-        _pressure(next(rest), course)
-    if result.piston is not None:
+        _pressure(next(rest), course, result.law)
+    if result.track:
         ax = next(rest)
-        ax.plot(result.samples, result.piston, "o-", ms=3, color=COLOURS[0], label="piston")
+        ax.plot(*result.track, color=COLOURS[0], label="piston")
         if result.law is not None and result.law.piston is not None:
-            ax.axhline(result.law.piston, color=GREY, linestyle="--", label="theory")
+            place = result.law.piston
+            ax.axhline(place, color=BLACK, linestyle="--", label=f"theory: at rest at {place:.4g}")
         ax.set_ylabel("place of the piston (length)")
     if result.given:
         ax = next(rest)
         for (name, energy), colour in zip(result.given.items(), COLOURS * len(result.given), strict=False):
-            ax.plot(result.samples, energy, "o-", ms=3, color=colour, label=f"given by: {name}")
+            ax.plot(result.samples, energy, "o-", ms=3, color=colour, label=f"given by {name}")
         ax.set_ylabel("energy (k_B = 1)")
     for ax in axes:
-        ax.set_xlabel("t (time)")
+        ax.time_axis()
     if course and has_piston:
         _state(next(rest), course)
     for ax in axes:
-        ax.legend(frameon=False, fontsize="small")
+        ax.legend()
     return figure
 
 
-def _temperature(ax, result: Evolution) -> None:  # type: ignore[no-untyped-def]
+def _temperature(ax: Panel, result: Evolution) -> None:
     ax.plot(result.time, result.temperature, color=COLOURS[0], label="m v²/2 a disc")
     if result.spin is not None:
         ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² a disc")
     if result.law is not None:
-        ax.plot(result.time, result.law.temperature, "--", color=GREY, label=result.law.text)
+        ax.plot(result.time, result.law.temperature, "--", color=BLACK, label=result.law.text)
     low, high = result.temperature.min(), result.temperature.max()
     if high > 10 * low > 0:
         ax.set_yscale("log")
@@ -59,21 +65,30 @@ def _temperature(ax, result: Evolution) -> None:  # type: ignore[no-untyped-def]
     ax.set_ylabel("temperature (energy, k_B = 1)")
 
 
-def _pressure(ax, course: PressureCourse) -> None:  # type: ignore[no-untyped-def]
+def _pressure(ax: Panel, course: PressureCourse, law: Law | None) -> None:
+    """Pressure against time, and the outer pressure on a piston, or the adiabat of a piston that is moved."""
     for name, colour in zip(course.shown, COLOURS, strict=False):
         p, error = course.pressure[name], course.error[name]
         ax.errorbar(course.middles, p, error, fmt="o", ms=3, color=colour, elinewidth=0.8, label=f"P on {name}")
+    if law and law.pressure:
+        ax.axhline(law.pressure, ls="--", color=BLACK, label="theory: outer pressure")
+    elif law and course.lines and course.lines.adiabat is not None:
+        adiabat = np.interp(course.area, course.lines.area, course.lines.adiabat)
+        ax.plot(course.middles, adiabat, "--", color=BLACK, label="theory: adiabat")
     ax.set_ylabel("pressure (energy/length²)")
 
 
-def _state(ax, course: PressureCourse) -> None:  # type: ignore[no-untyped-def]
+def _state(ax: Panel, course: PressureCourse) -> None:
     """Pressure against area, in order of time, with isotherm and adiabat."""
     for name, colour in zip(course.shown, COLOURS, strict=False):
         p, error = course.pressure[name], course.error[name]
         ax.errorbar(course.area, p, error, fmt="o-", ms=3, lw=0.5, color=colour, elinewidth=0.8, label=f"P on {name}")
-    if course.lines:
-        ax.plot(course.lines.area, course.lines.isotherm, "--", color=GREY, label="isotherm through the start")
-        if course.lines.adiabat is not None:
-            ax.plot(course.lines.area, course.lines.adiabat, "-", color=GREY, label="adiabat through the start")
+    if lines := course.lines:
+        middle = course.area.mean()
+        near = np.abs(lines.area - middle) <= WIDER * np.abs(course.area - middle).max()
+        ax.plot(lines.area[near], lines.isotherm[near], "--", color=GREY, label="isotherm through the start")
+        if lines.adiabat is not None:
+            ax.plot(lines.area[near], lines.adiabat[near], "-", color=GREY, label="adiabat through the start")
+    ax.in_time = False
     ax.set_xlabel("area of the gas (length²)")
     ax.set_ylabel("pressure (energy/length²)")

@@ -47,6 +47,13 @@ class Evolution(Result):
     dissipated: dict[str, np.ndarray]
     pressure: PressureCourse | None = None
 
+    @property
+    def track(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Times and coordinates of the piston, means over short blocks or samples; None without a piston."""
+        if self.pressure and self.pressure.track:
+            return self.pressure.track
+        return None if self.piston is None else (self.samples, self.piston)
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         lists = {name: values.tolist() for name, values in vars(self).items() if isinstance(values, np.ndarray)}

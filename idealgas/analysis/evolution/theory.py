@@ -22,13 +22,15 @@ class Law:
     """Law of the temperature of a gas at F times.
 
     text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
-    coordinate of the piston at rest, length. premises: sentences on what it takes and does not hold.
+    coordinate of the piston at rest, length. pressure: outer pressure on it, energy/length². premises: sentences on
+    what it takes and does not hold.
     """
 
     text: str
     temperature: np.ndarray
     spin: float | None = None
     piston: float | None = None
+    pressure: float | None = None
     premises: tuple[str, ...] = ()
 
 
@@ -182,4 +184,5 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
         t = energy / (n + 0.5 + n * z + 1)
         length = diameter + (n * z + 1) * t / force
     piston = length if table.outward > 0 else log.box[table.axis] - length
-    return Law(f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}", t * one, None, piston)
+    text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
+    return Law(text, t * one, None, piston, table.pressure)

@@ -21,7 +21,7 @@ def histogram_figure(result: Histogram) -> Figure:
         ax.set_xlim(found.edges[0], _last_seen(found.density, found.edges))
         ax.set_xlabel(f"{result.quantity} ({result.unit})")
         ax.set_ylabel(f"density ({'time/length' if result.unit == 'length/time' else f'1/{result.unit}'})")
-        ax.legend(frameon=False)
+        ax.legend()
     return figure
 
 

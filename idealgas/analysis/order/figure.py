@@ -16,7 +16,8 @@ def order_figure(result: Order) -> Figure:
     course, correlation = axes[:2]
     course.plot(result.time, result.course, color=COLOURS[0], label="measured")
     course.axvspan(result.window.start, result.window.end, color=GREY, alpha=0.12, label="window of the averages")
-    course.set(ylim=(0, 1), xlabel="t (time)", ylabel="|Ψ₆| of all discs (no unit)")
+    course.time_axis()
+    course.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
     x, y, error = result.distance, result.correlation, result.correlation_error
     correlation.errorbar(x, y, error, fmt=".", ms=3, color=COLOURS[0], label="measured")
     correlation.axhline(result.whole.value**2, color=GREY, linewidth=0.9, label="|Ψ₆|² (no correlation left)")
@@ -25,7 +26,7 @@ def order_figure(result: Order) -> Figure:
         _draw_rings(axes[2], result.structure, result.compressibility)
         _draw_vectors(axes[3], result.structure)
     for ax in axes[:3]:
-        ax.legend(frameon=False, fontsize="small")
+        ax.legend()
     return figure
 
 

@@ -21,34 +21,38 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
     walls = found.walls[::-1]
     values, errors = [w.pressure.value for w in walls], [w.pressure.standard_error for w in walls]
     ax.errorbar(values, range(len(walls)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
-    held = [(k, wall.pressure.theory) for k, wall in enumerate(walls) if wall.pressure.theory is not None]
-    for k, theory in held:
-        ax.plot(theory, k, "|", ms=18, color=COLOURS[1], label="outer pressure")
+    for k, wall in enumerate(walls):
+        if wall.pressure.theory is not None:
+            theory = [wall.pressure.theory] * 2
+            ax.plot(theory, [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label="outer pressure")
     name_rows(ax, [wall.name for wall in walls])
-    ax.set_xlabel("P on the wall (energy/length²)")
-    ax.set_ylabel("wall")
-    if held:
-        ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(0, -0.2))
+    ax.set_xlabel("P (energy/length²)")
+    ax.set_ylabel("pressure on every wall")
+    figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
     return figure
 
 
 def _of_log(result: Pressure) -> Figure:
-    """Picture of Z of one log: every route with its error bar, theories as lines."""
+    """Picture of Z of one log: every route with its error bar beside its own theory, that of the gas in its box."""
     if result.mechanical:
         return _of_walls(result, result.mechanical)
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
     values = [route.compressibility.value for route in routes]
     errors = [route.compressibility.standard_error for route in routes]
-    ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3)
+    known = [(route.compressibility.theory, k) for k, route in enumerate(routes) if route.compressibility.theory]
+    for z, k in known:
+        label = "theory of what is measured" if (z, k) == known[-1] else None
+        ax.plot([z, z], [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label=label)
+    ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     name_rows(ax, [route.name for route in routes])
-    for (name, theory), colour, style in zip(
-        result.theories.items(), (GREY, *COLOURS[1:]), _repeated(("-", "--", ":")), strict=False
-    ):
-        ax.axvline(theory.value, color=colour, linestyle=style, label=f"{name}: {theory.value:.5g}")
-    ax.set_xlabel(f"Z = PA/NT (no unit) at packing fraction {result.packing_fraction:.4g}")
-    ax.set_ylabel("route")
-    ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(0, -0.2))
+    low, high = ax.get_xlim()
+    for (name, theory), style in zip(result.theories.items(), _repeated(("-", "--", ":")), strict=False):
+        if low < theory.value < high and theory.value not in (z for z, _ in known):
+            ax.axvline(theory.value, color=GREY, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
+    ax.set_xlabel("Z = PA/NT (no unit)")
+    ax.set_ylabel(f"Z by every route, at packing fraction {result.packing_fraction:.4g}")
+    figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
     return figure
 
 
@@ -76,5 +80,5 @@ def _of_states(result: EquationOfState) -> Figure:
     above.set_ylabel("Z = PA/NT (no unit), N → ∞")
     below.set_ylabel("deviation (‰ of Z)")
     below.set_xlabel("packing fraction φ (no unit)")
-    above.legend(frameon=False)
+    above.legend()
     return figure

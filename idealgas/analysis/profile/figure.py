@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.core.style import BLACK, COLOURS, Panel, Strips, panels
 from idealgas.analysis.profile.measure import Profile
 
 
@@ -18,20 +18,22 @@ def profile_figure(result: Profile) -> Figure:
         if entry.spin is not None:
             _draw(temperature, result, entry.spin, points | {"fmt": "x", "label": f"{entry.species}: I ω²"})
     if result.law is not None:
-        density.plot([], [], "--", color=GREY, label=f"theory: {result.law}")
+        density.plot([], [], "--", color=BLACK, label=f"theory: {result.law}")
         highest = [e.theory or 0.0 for entry in result.species for e in entry.density]
         if max(highest) > 20 * min(highest) > 0:
             density.set_yscale("log")
     for ax in (density, temperature):
         ax.set_xlabel(f"{'xy'[result.axis]} (length)")
-        ax.legend(frameon=False, fontsize="small")
+        ax.legend()
+    low, high, number = result.edges[0], result.edges[-1], len(result.middles)
+    density.strips = Strips(result.axis, float(low), float(high), number, result.strip)
     density.set_ylabel("n (1/length²)")
     temperature.set_ylabel("temperature (energy, k_B = 1)")
     return figure
 
 
-def _draw(ax, result: Profile, column: tuple[Estimate, ...], style: dict) -> None:  # type: ignore[no-untyped-def]
+def _draw(ax: Panel, result: Profile, column: tuple[Estimate, ...], style: dict) -> None:
     value, error = (np.array([getattr(e, name) for e in column]) for name in ("value", "standard_error"))
     theory = np.array([np.nan if e.theory is None else e.theory for e in column])
-    ax.plot(result.middles, theory, "--", color=GREY, linewidth=0.9)
+    ax.plot(result.middles, theory, "--", color=BLACK, linewidth=0.9, zorder=3)
     ax.errorbar(result.middles, value, error, **style)

@@ -47,14 +47,15 @@ class SpeciesProfile:
 class Profile(Result):
     """Profiles of all species in K strips along one axis.
 
-    window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. frames: number
-    of averaged frames. law: name of the theory; None without one. species: profiles of each species. heat: energy per
-    time that each wall gives to the discs, by the name of the wall.
+    window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. strip: area of
+    one strip, length². frames: number of averaged frames. law: name of the theory; None without one. species: profiles
+    of each species. heat: energy per time that each wall gives to the discs, by the name of the wall.
     """
 
     window: Window
     axis: int
     edges: np.ndarray
+    strip: float
     frames: int
     law: str | None
     species: tuple[SpeciesProfile, ...]
@@ -108,7 +109,7 @@ def profile(
     species = tuple(_of_species(name, sums[:, s], strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
     premises = (*_unknown_strips(species), *_not_dilute(log, species, expected))
-    return Profile(window, axis, edges, len(sums), law, species, _heat(log, window), premises=premises)
+    return Profile(window, axis, edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:

@@ -1,8 +1,8 @@
-"""Picture of the temperature of every species against time."""
+"""Picture of the temperature of every species, or of both directions, against time."""
 
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, _repeated, panels
+from idealgas.analysis.core.style import BLACK, COLOURS, GREY, _repeated, panels
 from idealgas.analysis.temperature.measure import Temperature
 
 LEAST_RANGE = 0.05
@@ -10,20 +10,25 @@ LEAST_RANGE = 0.05
 
 
 def temperature_figure(result: Temperature) -> Figure:
-    """Picture of the temperature of every species against time; the time before the window is shaded."""
+    """Picture of the temperature against time: of every species, or along x and y; before the window it is shaded."""
     figure, (ax,) = panels(1)
     edges = result.window.edges
-    for entry, colour in zip(result.apart, _repeated(COLOURS), strict=False):
-        ax.stairs(entry.history, edges, baseline=None, color=colour, label=f"{entry.species} (N = {entry.number})")
+    if len(result.apart) == 1:
+        x, y = result.apart[0].directions.T
+        courses = {"m vx²": x, "m vy²": y}
+    else:
+        courses = {f"{entry.species} (N = {entry.number})": entry.history for entry in result.apart}
+    for (name, values), colour in zip(courses.items(), _repeated(COLOURS), strict=False):
+        ax.stairs(values, edges, baseline=None, color=colour, linewidth=0.9, label=name)
     if result.expected is not None:
-        ax.axhline(result.expected, color=GREY, linestyle="--", label="E/N")
+        ax.axhline(result.expected, color=BLACK, linestyle="--", label="theory: E/N")
     if result.window.first:
         ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
-    ax.set_xlabel("t (time)")
+    ax.time_axis()
     ax.set_ylabel("temperature (energy, k_B = 1)")
     ax.ticklabel_format(useOffset=False)
     low, high = ax.get_ylim()
     middle, reach = (low + high) / 2, max(high - low, LEAST_RANGE * (low + high)) / 2
     ax.set_ylim(middle - reach, middle + reach)
-    ax.legend(frameon=False)
+    ax.legend()
     return figure

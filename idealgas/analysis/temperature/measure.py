@@ -21,8 +21,8 @@ from idealgas.log import Log
 class SpeciesTemperature:
     """Temperatures of the discs of one species (energy, k_B = 1), compared with equipartition.
 
-    species: name. number: of its discs. x, y, both: mean of m vx², m vy² and m v²/2. history: (B,), mean m v²/2 in
-    every block that was read, including those before the window.
+    species: name. number: of its discs. x, y, both: mean of m vx², m vy² and m v²/2. directions: (B, 2), mean m vx² and
+    m vy² in every block that was read, including those before the window.
     """
 
     species: str
@@ -30,7 +30,12 @@ class SpeciesTemperature:
     x: Estimate
     y: Estimate
     both: Estimate
-    history: np.ndarray
+    directions: np.ndarray
+
+    @property
+    def history(self) -> np.ndarray:
+        """Mean m v²/2 (B,) in every block that was read, energy."""
+        return self.directions.mean(axis=1)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -98,10 +103,10 @@ def temperature(
 
     def entry(name: str, number: int, expected: float | None, directions: np.ndarray) -> SpeciesTemperature:
         """Temperatures of one species from sums (B, 2) of m vx² and m vy² over its discs."""
-        x, y = directions[window.first :].T / number
-        history = directions.sum(axis=1) / (2 * number)
+        means = directions / number
+        x, y = means[window.first :].T
         return SpeciesTemperature(
-            name, number, mean(x, expected), mean(y, expected), mean((x + y) / 2, expected), history
+            name, number, mean(x, expected), mean(y, expected), mean((x + y) / 2, expected), means
         )
 
     entries = [

@@ -42,7 +42,7 @@ def transport_figure(result: Transport) -> Figure:
     ):
         ax.set_xlabel(x)
         ax.set_ylabel(y)
-        ax.legend(frameon=False, fontsize="small")
+        ax.legend()
     return figure
 
 

@@ -1,12 +1,12 @@
-"""Pictures of the accuracy: errors against CPU time, errors against collisions, and lifetime of an orbit."""
+"""Pictures of the accuracy: what it costs, every error in detail, and the lifetime of an orbit."""
 
 from collections.abc import Callable
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import PercentFormatter
 
-from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.core.style import COLOURS, GREY, Panel, entitle, panels
 from idealgas.study.accuracy.orbit import OrbitStudy
 from idealgas.study.accuracy.study import Accuracy, Row
 
@@ -47,8 +47,8 @@ def _trajectory(index: int) -> Measure:
 
 
 AVERAGES: dict[str, Measure] = {
-    "collision rate (relative)": _estimate("rate"),
     "pressure, pairs (relative)": _estimate("z_pairs"),
+    "collision rate (relative)": _estimate("rate"),
     "pressure, walls (relative)": _estimate("z_walls"),
     "missed collisions (share)": _missed,
     "deepest overlap (σ)": _overlap,
@@ -56,25 +56,80 @@ AVERAGES: dict[str, Measure] = {
 }
 MARKERS = "osD^vP*X"
 ENTRIES = (0.5, 1.0, 2.0)  # collisions per disc at which errors of trajectories are shown against CPU time
+LEAST = 1e-17  # error in diameters below which nothing is drawn
+SHOWN_STEPS = 5
+"""Number of time steps, evenly chosen, whose length is written at their points."""
 
 
 def accuracy_figure(found: Accuracy) -> Figure:
-    """Picture of errors of averages and of the motion against CPU time, and of trajectories against collisions."""
+    """Picture of what accuracy costs: the error of an average against CPU time, and what digits do to trajectories."""
+    motion = bool(len(found.collisions))
+    figure, axes = panels(1 + motion)
+    _cost(axes[0], found)
+    if motion:
+        _digits(axes[1], found)
+    return entitle(figure, f"{found.title}: what accuracy costs")
+
+
+def _cost(ax: Panel, found: Accuracy) -> None:
+    """Draw the error of the first average that was measured against CPU time: one curve of time steps, and one point.
+
+    The statistical error is the least that an error is drawn as, as a smaller one cannot be seen.
+    """
+    own = found.event_driven.timing.median
+    names = [name for name, measure in AVERAGES.items() if any(measure(row) for row in found.steps)]
+    measure = AVERAGES[names[0]]
+    shown = [(row.timing.median / own, *error, row.case.dt) for row in found.steps if (error := measure(row))]
+    cost, error, spread, steps = np.array(shown, float).T
+    error = np.maximum(error, spread)
+    ax.errorbar(cost, error, np.minimum(spread, 0.9 * error), fmt="o-", ms=5, color=COLOURS[1])
+    for k in np.unique(np.linspace(0, len(steps) - 1, SHOWN_STEPS).round().astype(int)):
+        text = f"{'time step ' if k == 0 else ''}{steps[k]:.2g}"
+        ax.annotate(text, (cost[k], error[k]), (7, 5), textcoords="offset points", color=COLOURS[1])
+    best = max(measure(found.event_driven) or (0.5 * float(error.min()), 0.0))
+    ax.plot(1, best, "*", ms=18, color=COLOURS[0])
+    ax.annotate("event-driven", (1, best), (12, -4), textcoords="offset points", color=COLOURS[0], weight="bold")
+    ax.set(xscale="log", yscale="log", xlim=(0.75, 2 * cost.max()), ylim=(0.5 * min(*error, best), 2 * error.max()))
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.yaxis.set_major_formatter(PercentFormatter(1))
+    ax.set_xlabel("CPU time, of the event-driven run (no unit)")
+    ax.set_ylabel(f"error of the {names[0]}")
+
+
+def _digits(ax: Panel, found: Accuracy) -> None:
+    """Draw the distance from the true paths against collisions: of both precisions, and of the shortest time step."""
+    finest = found.steps[-1]
+    rows = {
+        "7 digits": (found.precisions[0], COLOURS[2]),
+        "16 digits: event-driven": (found.event_driven, COLOURS[0]),
+        f"time step {finest.case.dt:.2g}": (finest, COLOURS[1]),
+    }
+    for name, (row, colour) in rows.items():
+        assert row.trajectory is not None
+        ax.plot(found.collisions, np.maximum(row.trajectory, LEAST), "o-", ms=4, color=colour, label=name)
+    ax.set(yscale="log", ylim=(LEAST, 100))
+    ax.set_xlabel("collisions a disc (no unit)")
+    ax.set_ylabel("rms distance from the true paths (diameters)")
+    ax.legend()
+
+
+def details_figure(found: Accuracy) -> Figure:
+    """Picture of all errors of averages and of the motion against CPU time, and of all trajectories."""
     motion = bool(len(found.collisions))
     figure, axes = panels(3 if motion else 1)
     _errors_against_time(axes[0], found, AVERAGES)
     axes[0].set_ylabel("error of averages (no unit)")
     if motion:
         picks = [int(np.abs(found.collisions - entry).argmin()) for entry in ENTRIES]
-        measures = {f"trajectory at {found.collisions[k]:.2g} collisions a disc": _trajectory(k) for k in picks}
+        measures = {f"path at {found.collisions[k]:.2g} collisions a disc": _trajectory(k) for k in picks}
         _errors_against_time(axes[1], found, measures | {"way back (σ)": _way_back, "energy drift (relative)": _drift})
         axes[1].set_ylabel("error of the motion (diameters)")
         _trajectories(axes[2], found)
     figure.set_figheight(4.6 * len(axes))
-    return figure
+    return entitle(figure, f"{found.title}: every error")
 
 
-def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]) -> None:
+def _errors_against_time(ax: Panel, found: Accuracy, measures: dict[str, Measure]) -> None:
     """Draw one curve over the time steps for each error; the event-driven run and the precisions are points."""
     for (name, measure), colour, marker in zip(measures.items(), COLOURS, MARKERS, strict=False):
         points = [(row.timing.median, *error) for row in found.steps if (error := measure(row))]
@@ -89,19 +144,16 @@ def _errors_against_time(ax: Axes, found: Accuracy, measures: dict[str, Measure]
     ax.axvline(own, color=GREY, linestyle="--", linewidth=0.8, label="event-driven (filled)")
     for k, row in enumerate(found.precisions):
         ax.axvline(row.timing.median, color=GREY, linestyle=":", linewidth=0.8)
-        place = (row.timing.median, 1.0)
         ax.annotate(
-            row.case.precision or "", place, xycoords=("data", "axes fraction"), rotation=90, fontsize="x-small",
-            color=GREY, ha="left" if k % 2 else "right", va="top",
+            row.case.precision or "", (row.timing.median, 1.0), xycoords=("data", "axes fraction"), rotation=90,
+            fontsize="small", color=GREY, ha="left" if k % 2 else "right", va="top",
         )  # fmt: skip
-    ax.set_xscale("log")
-    ax.set_yscale("log")
+    ax.set(xscale="log", yscale="log")
     ax.set_xlabel("CPU seconds per unit of simulated time")
-    ax.plot([], [], color=GREY, label="lines: time steps, long to short")
-    ax.legend(frameon=False, fontsize="x-small", loc="center left", bbox_to_anchor=(1, 0.5))
+    ax.legend()
 
 
-def _trajectories(ax: Axes, found: Accuracy) -> None:
+def _trajectories(ax: Panel, found: Accuracy) -> None:
     """Draw the rms distance from the double-double motion against collisions per disc."""
     rows = [row for row in found.rows if row.case.precision != "float64"]
     for k, row in enumerate(rows):
@@ -110,19 +162,12 @@ def _trajectories(ax: Axes, found: Accuracy) -> None:
         steps = row.case.dt is not None
         colour = COLOURS[1] if steps else COLOURS[0] if row.case.precision is None else COLOURS[2]
         shade = 0.3 + 0.7 * k / len(rows) if steps else 1.0
-        ax.plot(
-            found.collisions,
-            np.maximum(row.trajectory, 1e-17),
-            "-o",
-            ms=3,
-            color=colour,
-            alpha=shade,
-            label=row.case.name,
-        )
+        path = np.maximum(row.trajectory, LEAST)
+        ax.plot(found.collisions, path, "-o", ms=3, color=colour, alpha=shade, label=row.case.name)
     ax.set_yscale("log")
     ax.set_xlabel("collisions a disc (no unit)")
     ax.set_ylabel("rms distance from the truth (diameters)")
-    ax.legend(frameon=False, fontsize="x-small", loc="center left", bbox_to_anchor=(1, 0.5))
+    ax.legend()
 
 
 def orbit_figure(found: OrbitStudy) -> Figure:
@@ -142,6 +187,5 @@ def orbit_figure(found: OrbitStudy) -> Figure:
     ax.set_ylim(bottom=0)
     ax.set_xlabel("decimal digits carried (no unit)")
     ax.set_ylabel("orbit lasts (time, at speed 1)")
-    ax.legend(frameon=False)
-    figure.set_figheight(4.5)
-    return figure
+    ax.legend()
+    return entitle(figure, "Unstable periodic orbit: how long digits keep it")

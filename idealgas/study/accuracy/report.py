@@ -200,8 +200,10 @@ def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
     return asdict(found) | {"sentences": found.sentences()}
 
 
-def outputs(path: str | os.PathLike[str], name: str, force: bool = False) -> list[Path]:
-    """Paths NAME.csv, NAME.json and NAME.png in a folder, which is made if it does not exist.
+def outputs(
+    path: str | os.PathLike[str], name: str, pictures: Sequence[str] = ("",), force: bool = False
+) -> list[Path]:
+    """Paths NAME.csv, NAME.json and a picture NAME….png for each ending, in a folder that is made if it is not there.
 
     Raises:
         OutputError: if the folder cannot be made, or one of the files not be written.
@@ -211,25 +213,30 @@ def outputs(path: str | os.PathLike[str], name: str, force: bool = False) -> lis
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise storage_error(folder, error) from error
-    paths = [folder / f"{name}{kind}" for kind in (".csv", ".json", ".png")]
+    paths = [folder / f"{name}{end}" for end in (".csv", ".json", *(f"{ending}.png" for ending in pictures))]
     for found in paths:
         check_output(found, found.suffix, force)
     return paths
 
 
 def write_files(
-    paths: Sequence[Path], result: dict[str, Any], rows: list[dict[str, Any]], figure: Figure, force: bool = False
+    paths: Sequence[Path],
+    result: dict[str, Any],
+    rows: list[dict[str, Any]],
+    figures: Sequence[Figure],
+    force: bool = False,
 ) -> None:
     """Write the files that `outputs` gave; existing ones are replaced only with `force`.
 
     Raises:
         OutputError: if a file cannot be written.
     """
-    table, numbers, picture = paths
+    table, numbers, *pictures = paths
     with written(table, ".csv", force) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]), restval="")
         writer.writeheader()
         writer.writerows(rows)
     with written(numbers, ".json", force) as part:
         part.write_text(json.dumps(result, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    save(figure, picture, force)
+    for figure, picture in zip(figures, pictures, strict=True):
+        save(figure, picture, force)
