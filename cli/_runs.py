@@ -48,6 +48,8 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
     table.add_row("events", f"{summary.events:,}")
     table.add_row("  disc collisions", f"{summary.disc_collisions:,}")
     table.add_row("  wall hits", f"{summary.wall_hits:,}")
+    if summary.kicks:
+        table.add_row("  kicks by the heat bath", f"{summary.kicks:,}")
     if summary.trials:
         share = summary.disc_collisions / summary.trials
         table.add_row("trials", f"{summary.trials:,}")

@@ -122,6 +122,8 @@ def _gas_table(expected: "Forecast", until: float | None) -> "Table":
     table.add_row("collisions per disc and time Γ", _number(expected.collision_rate, rough=rough))
     table.add_row("pair collisions per time", _number(expected.pair_collision_rate, rough=rough))
     table.add_row("wall hits per time", _number(expected.wall_hit_rate, rough=rough))
+    if expected.kick_rate:
+        table.add_row("kicks by the heat bath per time", _number(expected.kick_rate))
     table.add_row("end of the run, time", _number(expected.duration, rough=ends))
     table.add_row("events", _number(expected.events, ",.0f", rough))
     table.add_row("rows in the log", _number(expected.rows, ",.0f", rough))

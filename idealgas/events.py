@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.sides import HEAT_BATH
+
 BLOCK = 65_536
 """Number of rows of a full batch, and of a chunk in the file."""
 
@@ -20,6 +22,12 @@ class Kind(IntEnum):
     WALL = 1
     WALL_END = 2
     PISTON = 3
+    KICK = 4
+    """The heat bath of a thermostat."""
+
+
+BATH = -1 - HEAT_BATH
+"""Partner of a disc in a row of kind KICK."""
 
 
 class Column(NamedTuple):
@@ -70,7 +78,7 @@ class EventBatch(NamedTuple):
     Attributes:
         time: (n,) f8, time.
         disc: (n,) u4, id of the disc.
-        partner: (n,) i4, id of the other disc, or -1 - k for wall k.
+        partner: (n,) i4, id of the other disc, -1 - k for wall k, or BATH.
         kind: (n,) u1, a `Kind`.
         position: (n, 2) f8, length, after the event; None where the method has no positions.
         velocity: (n, 2) f8, length/time, after the event.

@@ -1,4 +1,7 @@
-"""Numbers of the walls: 0 to 3 are the sides of the box, wall segments follow. Events name wall k as partner -1 - k."""
+"""Numbers of the walls: 0 to 3 are the sides of the box, wall segments follow. Events name wall k as partner -1 - k.
+
+A heat bath has a number beyond all walls.
+"""
 
 from collections.abc import Sequence
 
@@ -7,6 +10,9 @@ SIDES = ("left", "right", "bottom", "top")
 
 FIRST_SEGMENT = len(SIDES)
 """Number of the first wall segment; the others follow in the order of the scene."""
+
+HEAT_BATH = 1 << 30
+"""Number that stands for a heat bath, which kicks discs wherever they are: events name it as partner -1 - HEAT_BATH."""
 
 OUTWARD = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
 """Unit normals (x, y) of the sides, pointing out of the box."""

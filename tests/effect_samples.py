@@ -17,6 +17,7 @@ from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
+from idealgas.physics.thermostat import Thermostat, draw_first_kicks
 from idealgas.run.effects.wall import make_segments
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
@@ -24,7 +25,7 @@ from idealgas.sides import FIRST_SEGMENT
 
 BOX = (12.0, 9.0)
 
-NAMES = ("gravity", "periodic", "segments", "gates", "rotation", "restitution", "thermal", "piston")
+NAMES = ("gravity", "periodic", "segments", "gates", "rotation", "restitution", "thermal", "piston", "thermostat")
 
 
 def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
@@ -72,10 +73,19 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
         thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
         piston=piston if "piston" in names else None,
+        thermostat=make_thermostat(n, seed) if "thermostat" in names else None,
         wall_energy=make_sums([1.0] * (FIRST_SEGMENT + len(walls))),
         dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + len(walls))),
+        bath_energy=make_sums([1.0]) if "thermostat" in names else None,
         flow=make_flow(gas, FIRST_SEGMENT + 2 * len(walls), 7 if "rotation" in names else 6),
     )
+
+
+def make_thermostat(n: int, seed: int) -> Thermostat:
+    """A heat bath that kicks n discs about as often as they collide."""
+    thermostat = Thermostat(2.0, 0.5, np.uint64(seed), np.empty(n), np.zeros(n, np.uint64))
+    draw_first_kicks(thermostat)
+    return thermostat
 
 
 def make_flow(gas: Gas, faces: int, tensor: int = 6) -> MomentumFlow:

@@ -20,7 +20,7 @@ from idealgas.gas.state import Gas
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.sides import SIDES
 
-EFFECTS = ("periodic x", "periodic y", "walls", "gravity", "rotation", "restitution", "thermal", "piston")
+EFFECTS = ("periodic x", "periodic y", "walls", "gravity", "rotation", "restitution", "thermal", "piston", "thermostat")
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
 MASSES = (1.0, 1e-8, 1e8)
@@ -176,6 +176,9 @@ def tables_of(draw) -> dict[str, Any]:
         tables["restitution"]["contact_duration"] = pick(draw, 1e-6, 1e-3)
     if piston:
         tables["piston"] = piston
+    if "thermostat" in called:
+        tables["thermostat"] = {"temperature": masses[0] * pick(draw, 1.0, 1e-4, 100.0)}
+        tables["thermostat"]["rate"] = pick(draw, 0.1, 1e-3, 10.0)
     if n and n <= 9 and share <= 0.5 and draw(st.booleans()):
         tables["species"] = draw_species(draw, size, masses[0], radius.max(), spins)
     return tables
@@ -189,7 +192,7 @@ def dimension(path: tuple[str, ...]) -> tuple[int, int, int]:
         "velocity": (0, 1, 0), "speed": (0, 1, 0), "mass": (0, 0, 1), "angular_velocity": (-1, 1, 0),
         "temperature": (0, 2, 1), "thermal": (0, 2, 1), "spin_temperature": (0, 2, 1), "acceleration": (-1, 2, 0),
         "pressure": (-2, 2, 1), "until": (1, -1, 0), "opens_at": (1, -1, 0), "closes_at": (1, -1, 0),
-        "contact_duration": (1, -1, 0),
+        "contact_duration": (1, -1, 0), "rate": (-1, 1, 0),
     }  # fmt: skip
     return powers.get(key, (0, 0, 0))
 

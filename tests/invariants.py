@@ -15,7 +15,7 @@ import numpy as np
 from random_walls import crossings, distances
 
 from idealgas.engine.simulation import Simulation
-from idealgas.events import EventBatch, Kind
+from idealgas.events import BATH, EventBatch, Kind
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.piston import piston_motion
@@ -102,10 +102,14 @@ class InvariantChecker:
             self.fly(disc, time)
         if rows.kind[0] == Kind.DISC:
             self.meet(rows, velocity[discs], time)
+        elif rows.kind[0] == Kind.KICK:
+            assert rows.partner[0] == BATH
         else:
             self.bounce(int(rows.kind[0]), int(rows.partner[0]), rows, velocity[discs[0]], simulation, time)
         self.position[discs], self.velocity[discs] = after, rows.velocity
-        self.since[discs] = self.last[discs] = self.now = time
+        self.since[discs] = self.now = time
+        if rows.kind[0] != Kind.KICK:
+            self.last[discs] = time
         if rows.angular_velocity is not None:
             self.omega[discs] = rows.angular_velocity
         self.events += 1
@@ -331,7 +335,7 @@ class InvariantChecker:
         self.scale = max(self.scale, energy.scale)
         weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
         bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
-        sums = [entry for entry in (effects.wall_energy, effects.dissipated) if entry is not None]
+        sums = [entry for entry in (effects.wall_energy, effects.dissipated, effects.bath_energy) if entry is not None]
         bound += sum(self.events / entry.per_unit.min() for entry in sums)  # each event adds a rounded term to each
         kept = energy.balance - energy.lost
         assert kept <= self.lowest + bound, "energy gained"

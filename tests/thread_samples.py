@@ -21,6 +21,9 @@ EAGER = Tuning(rows=LEAST_ROWS, discs=1, events=1, race=False)
 SMALLEST_CELLS = 1e-9  # discs a cell
 
 EVERYTHING = """
+[thermostat]
+temperature = 2.0
+rate = 0.5
 [gravity]
 acceleration = [0.0, -0.05]
 [rotation]

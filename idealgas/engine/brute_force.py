@@ -9,8 +9,22 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
 from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
-from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
-from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
+from idealgas.engine.resolve import (
+    resolve_kick,
+    resolve_pair,
+    resolve_piston,
+    resolve_segment,
+    resolve_side,
+    resolve_stop,
+)
+from idealgas.engine.rows import (
+    batch_capacity,
+    write_kick,
+    write_pair,
+    write_piston_hit,
+    write_segment_hit,
+    write_side_hit,
+)
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.box_side import arrival_delay, side_contact
@@ -22,7 +36,7 @@ from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact
 
 U = np.uintp
-PAIR, SIDE, SEGMENT, PISTON, STOP, BOUNDARY_CROSSING = range(6)
+PAIR, SIDE, SEGMENT, PISTON, STOP, KICK, BOUNDARY_CROSSING = range(7)
 
 
 @inline
@@ -67,6 +81,16 @@ def segment_event(disc, i, segments, effects, best):
                         )
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)
+    return best
+
+
+@inline
+def kick_event(i, thermostat, best):
+    """The earlier of the event `best` and disc i's next kick by the heat bath."""
+    if thermostat is not None:
+        time = thermostat.time[U(i)]
+        if time < best[0]:
+            best = (time, KICK, i, 0, 0, 0)
     return best
 
 
@@ -125,11 +149,12 @@ def next_event(record, box, effects):
     """Earliest event as (local time, sort of event, disc, partner, image_x, image_y); records are in order of id.
 
     For a BOUNDARY_CROSSING the partner is the axis, and image_x the direction. Events are compared in the order that
-    decides between simultaneous ones: the smaller id first, then walls, then the other id.
+    decides between simultaneous ones: the smaller id first, then walls, then a kick, then the other id.
     """
     best = (NEVER, PAIR, 0, 0, 0, 0)
     for i in range(record.shape[0]):
         best = wall_event(record, i, effects, box[0], box[1], best)
+        best = kick_event(i, effects.thermostat, best)
         for j in range(i + 1, record.shape[0]):
             best = pair_event(record, i, j, effects, best)
         best = boundary_crossing_event(record, i, effects, effects.periodic, best)
@@ -153,6 +178,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
     rows = 0
     events = 0
     collisions = 0
+    kicks = 0
     now = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
     reached = False
@@ -182,13 +208,17 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             images = images_to_wall(effects.periodic, i, (image_x, image_y))
             at_end = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
             rows += write_segment_hit(batch, rows, clock, i, partner, at_end, disc, effects)
+        elif what == KICK:
+            resolve_kick(disc, i, time, effects.thermostat, effects)
+            rows += write_kick(batch, rows, clock, i, disc, effects)
+            kicks += 1
         else:
             resolve_piston(disc, i, time, effects.piston, effects)
             rows += write_piston_hit(batch, rows, clock, i, effects.piston, disc, effects)
         events += 1
         events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, 0, 0, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, kicks, 0, 0, now, events_at_this_time)
     return rows, reached
 
 

@@ -41,18 +41,22 @@ def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:
 
 
 def epoch_length(
-    gas: Gas, encounters: float, extra_speed: float = 0.0, periodic: Sequence[bool] = (False, False)
+    gas: Gas,
+    encounters: float,
+    extra_speed: float = 0.0,
+    periodic: Sequence[bool] = (False, False),
+    kicks: float = 0.0,
 ) -> float:
-    """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if no disc moves.
+    """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if it has none.
 
     In a dilute gas it is fewer events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
     speeds to be expected from gravity or a piston, length/time. periodic: whether the sides along x and along y are
-    periodic. The sum of the speeds is exactly rounded, so it depends neither on the order of the discs nor on the
-    processor.
+    periodic. kicks: of all discs per time, 1/time. The sum of the speeds is exactly rounded, so it depends neither on
+    the order of the discs nor on the processor.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
-    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, periodic)
+    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, periodic) + kicks
     if rate == 0.0:
         return math.inf
     longest_flight = 2.0 * LONGEST_WAY * float(gas.radius.min()) / (float(speeds.max()) + extra_speed)
@@ -62,13 +66,24 @@ def epoch_length(
 
 
 def speed_beyond(gas: Gas, effects: Effects) -> float:
-    """Estimated increase of the mean speed of the discs by gravity or a piston, length/time; for epoch lengths only."""
+    """Estimated increase of the mean speed of the discs by gravity, a piston or a heat bath, length/time.
+
+    For epoch lengths only.
+    """
     speed = 0.0
     if effects.gravity is not None:
         speed += math.sqrt(math.hypot(*effects.gravity) * sum(gas.box))
     if effects.piston is not None:
         speed += abs(float(effects.piston[0].v))
+    if effects.thermostat is not None:
+        fastest = math.sqrt(float((gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2).max()))
+        speed += max(math.sqrt(effects.thermostat.temperature / float(gas.mass.min())) - fastest, 0.0)
     return speed
+
+
+def kick_rate(gas: Gas, effects: Effects) -> float:
+    """Kicks of all discs by a heat bath per time, 1/time."""
+    return 0.0 if effects.thermostat is None else len(gas) * effects.thermostat.rate
 
 
 def energy_beyond(gas: Gas, effects: Effects) -> float:

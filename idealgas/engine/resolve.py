@@ -12,6 +12,7 @@ from idealgas.physics.periodic import wrap
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.thermal import is_thermal
+from idealgas.physics.thermostat import kick
 from idealgas.physics.wall import segment_normal
 from idealgas.physics.wall_collision import collide_with_wall
 from idealgas.sides import FIRST_SEGMENT
@@ -33,6 +34,13 @@ def record_wall_energy(wall_energy, wall, energy):
     """Add an energy (mass length²/time²) to what a wall has given to discs, where that is recorded."""
     if wall_energy is not None:
         add(wall_energy[U(wall)], energy)
+
+
+@inline
+def record_bath_energy(bath_energy, energy):
+    """Add an energy (mass length²/time²) to what the heat bath has given to discs, where that is recorded."""
+    if bath_energy is not None:
+        add(bath_energy[0], energy)
 
 
 @inline
@@ -86,7 +94,7 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
 @inline
 def arrive(disc, time, effects):
-    """Move a disc's record to the local time at which it meets a wall."""
+    """Move a disc's record to the local time at which it meets a wall, or is kicked."""
     record_flight(effects.flow, disc, time, effects.gravity)
     advance(disc, time, effects.gravity)
 
@@ -165,3 +173,15 @@ def resolve_stop(time, piston):
         advance_piston(p, time)
         p.v = -p.v
         p.count += np.uint32(1)
+
+
+@inline
+def resolve_kick(disc, own, time, thermostat, effects):
+    """Give a disc a new velocity from the heat bath at a local time; it is no collision: no contact duration begins."""
+    if thermostat is not None:
+        arrive(disc, time, effects)
+        energy = energy_of(disc, own, effects.rotation)
+        kick(disc, own, thermostat, effects.rotation)
+        record_bath_energy(effects.bath_energy, energy_of(disc, own, effects.rotation) - energy)
+        wrap(disc, own, effects.periodic)
+        disc.count += np.uint32(1)

@@ -3,10 +3,10 @@
 import numpy as np
 
 from idealgas._jit import fetch_next_line, inline
-from idealgas.events import Kind
+from idealgas.events import BATH, Kind
 from idealgas.sides import FIRST_SEGMENT
 
-DISC, WALL, WALL_END, PISTON = int(Kind.DISC), int(Kind.WALL), int(Kind.WALL_END), int(Kind.PISTON)
+DISC, WALL, WALL_END, PISTON, KICK = (int(kind) for kind in Kind)
 NO_END = 1 << 62  # rows, where no log is kept
 
 
@@ -123,5 +123,14 @@ def write_piston_hit(batch, row, time, own, piston, disc, effects):
     """Write the row of a disc that hit the piston."""
     if batch is not None and piston is not None:
         write_row(batch, row, time, np.int64(own), -1 - piston[0].side, PISTON, disc, effects)
+        return 1
+    return 0
+
+
+@inline
+def write_kick(batch, row, time, own, disc, effects):
+    """Write the row of a disc that the heat bath kicked."""
+    if batch is not None:
+        write_row(batch, row, time, np.int64(own), BATH, KICK, disc, effects)
         return 1
     return 0

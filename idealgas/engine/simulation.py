@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from idealgas.engine.audit import Audit, audit
-from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond
+from idealgas.engine.epoch import encounters_per_length, epoch_length, kick_rate, speed_beyond
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
@@ -106,12 +106,14 @@ class Totals:
         events: all events that are logged.
         disc_collisions: collisions of two discs.
         wall_hits: hits of walls, piston included.
+        kicks: of discs by a heat bath.
         trials: pairs tried by Monte Carlo.
     """
 
     events: int = 0
     disc_collisions: int = 0
     wall_hits: int = 0
+    kicks: int = 0
     trials: int = 0
 
 
@@ -147,7 +149,8 @@ class Simulation:
         self.length = until_change
         if not self.method.single_epoch:
             periodic, extra_speed = periodic_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
-            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic), until_change)
+            kicks = kick_rate(self.gas, self.effects)
+            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic, kicks), until_change)
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
@@ -217,6 +220,7 @@ class Simulation:
             self.totals.events + int(counter["events"]),
             self.totals.disc_collisions + int(counter["disc_collisions"]),
             self.totals.wall_hits + int(counter["wall_hits"]),
+            self.totals.kicks + int(counter["kicks"]),
             int(counter["trials"]),
         )
 

@@ -18,12 +18,13 @@ def check_scene(
     walls: Sequence[Wall],
     periodic: tuple[bool, ...],
     gravity: tuple[float, float],
+    kicks: bool,
     kept: Collection[str],
 ) -> None:
     """Raise ValueError where a scene has other discs, walls or effects than a log.
 
-    periodic: of the box, along x and along y. kept: names of the columns of events, and of what checkpoints have of
-    each disc.
+    periodic: of the box, along x and along y. kicks: whether a heat bath kicks discs. kept: names of the columns of
+    events, and of what checkpoints have of each disc.
     """
     if scene.box.size != gas.box:
         raise ValueError(f"a box of {scene.box.size} (box: {gas.box})")
@@ -41,6 +42,8 @@ def check_scene(
         raise ValueError(f"gravity {scene.properties.acceleration} (gravity: {gravity})")
     if scene.properties.periodic != periodic:
         raise ValueError(f"periodic sides {scene.properties.periodic} (box: {periodic})")
+    if (scene.properties.bath is not None) != kicks:
+        raise ValueError(f"{'no' if kicks else 'a'} heat bath (got kinds of events with{'' if kicks else 'out'} kicks)")
     has = {
         POSITIONS: scene.run.method != "monte_carlo",
         TRIALS: scene.run.method == "monte_carlo",

@@ -51,7 +51,7 @@ class LogHeader:
         def read() -> Scene:
             scene = parse_scene(self.scene_text, "scene")
             kept = {*self._source.names("events"), *self._source.names("checkpoints")}
-            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, kept)
+            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._source.kicks, kept)
             return scene
 
         return self._source.checked(read, "runs/scene")

@@ -1,17 +1,20 @@
-"""The rule of pairs: a collision of two discs is two rows with one time, one for each disc, the smaller id first."""
+"""The rule of pairs: a collision of two discs is two rows with one time, one for each disc, the smaller id first.
+
+The kind of a row is that of its partner: a disc, the heat bath or a wall.
+"""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from idealgas._jit import njit
-from idealgas.events import Column, Kind, columns_named
+from idealgas.events import BATH, Column, Kind, columns_named
 
 RULED = columns_named(("time", "disc", "partner", "kind"))
 """Columns of events that the rule is about."""
 
 NO_PAIR, OTHER_KIND = 1, 2
-DISC = int(Kind.DISC)
+DISC, KICK = int(Kind.DISC), int(Kind.KICK)
 
 
 def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
@@ -43,7 +46,11 @@ def _first_fault(time, disc, partner, kind, is_second_allowed):
     allowed = is_second_allowed  # whether the row may be the second one of a pair
     for k in range(n):
         one, other = np.int64(disc[k]), np.int64(partner[k])
-        if kind.shape[0] > 0 and (kind[k] == DISC) != (other >= 0) and odd < 0:
+        if (
+            kind.shape[0] > 0
+            and odd < 0
+            and ((kind[k] == DISC) != (other >= 0) or (kind[k] == KICK) != (other == BATH))
+        ):
             odd = k
         if other >= 0 and one >= other and not allowed:
             return NO_PAIR, k

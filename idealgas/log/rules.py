@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from idealgas.events import EVENT_COLUMNS, IMAGE, TRIALS, VELOCITY, Column, Kind
+from idealgas.events import BATH, EVENT_COLUMNS, IMAGE, TRIALS, VELOCITY, Column
 from idealgas.log.components import components
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.schema import (
@@ -26,6 +26,7 @@ from idealgas.log.schema import (
     SAMPLE_COLUMNS,
     SUMMARY_COLUMNS,
     Wall,
+    kinds,
 )
 from idealgas.sides import SIDES, side_ends
 
@@ -53,16 +54,21 @@ Range = tuple[float, float | tuple[float, float]]
 class Rules:
     """The rules for one log."""
 
-    def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int, complete: bool) -> None:
-        """box: width and height, length. discs, species, walls: how many there are. complete: whether the run ended."""
-        self._complete = complete
+    def __init__(
+        self, box: tuple[float, float], discs: int, species: int, walls: int, complete: bool, kicks: bool = False
+    ) -> None:
+        """box: width and height, length. discs, species, walls: how many there are.
+
+        complete: whether the run ended. kicks: whether a heat bath kicks discs.
+        """
+        self._complete, self._kicks = complete, kicks
         width, height = box
         self._ranges: dict[str, Range] = {
             **dict.fromkeys(ORDERED, (0, LARGEST)),
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
-            "kind": (0, max(Kind)),
+            "kind": (0, max(kinds(kicks))),
             "position": (0, width if width == height else box),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
@@ -150,6 +156,8 @@ class Rules:
         name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
+        if name == "partner" and self._kicks:
+            data = np.where(data == BATH, 0, data)
         unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
         low, high = self._ranges.get(name, (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST))
         in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())

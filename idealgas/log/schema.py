@@ -24,7 +24,8 @@ from idealgas.log.hdf5.objects import Objects, set_attributes
 from idealgas.sides import SIDES, side_ends
 
 FORMAT = "idealgas log"
-VERSION = 1
+BEFORE_KICKS, VERSION = 1, 2
+"""Versions of the format: that of a log in which no disc is kicked, which programs of before read, and the last one."""
 H5MD_VERSION = (1, 1)
 FILE_OPTIONS: dict = {"libver": ("v110", "v110")}
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
@@ -81,6 +82,11 @@ COMMAND_SIZE = 1024
 """Bytes by which the text of a scene may grow as its run gets a new end, and of a command."""
 
 
+def kinds(kicks: bool) -> tuple[Kind, ...]:
+    """Kinds of events that a log may have. kicks: whether a heat bath kicks discs."""
+    return tuple(kind for kind in Kind if kicks or kind != Kind.KICK)
+
+
 def box_walls(box: tuple[float, float]) -> list[Wall]:
     """The four sides of the box."""
     return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
@@ -91,15 +97,17 @@ class LogLayout:
     """What a log has room for, and what a disc flies in, as both are known before the run.
 
     walls: wall k of the events. boundary: of each axis, "none" or "periodic". gravity: acceleration between events,
-    length/time². disc_columns: (N,) further constants and start values. event_columns: of an event's row; without any
-    no events are kept. checkpoint_arrays, checkpoint_values: what a checkpoint has of each disc, and of the whole.
-    observables: of a sample. snapshot_arrays: what a snapshot has of each disc; without any there are none. most_rows:
-    how many event rows the run may have, if that is less than a full chunk. compression: "gzip" or "none".
+    length/time². kicks: whether a heat bath kicks discs. disc_columns: (N,) further constants and start values.
+    event_columns: of an event's row; without any no events are kept. checkpoint_arrays, checkpoint_values: what a
+    checkpoint has of each disc, and of the whole. observables: of a sample. snapshot_arrays: what a snapshot has of
+    each disc; without any there are none. most_rows: how many event rows the run may have, if that is less than a full
+    chunk. compression: "gzip" or "none".
     """
 
     walls: Sequence[Wall]
     boundary: tuple[str, str] = ("none", "none")
     gravity: tuple[float, float] = (0.0, 0.0)
+    kicks: bool = False
     disc_columns: Mapping[Column, np.ndarray] = field(default_factory=dict)
     event_columns: Sequence[Column] = PLAIN_COLUMNS
     checkpoint_arrays: Sequence[Column] = CHECKPOINT_ARRAYS
@@ -116,7 +124,7 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
     set_attributes(
         file.id,
         format=np.bytes_(FORMAT),
-        format_version=VERSION,
+        format_version=VERSION if layout.kicks else BEFORE_KICKS,
         seed=np.bytes_(str(seed)),  # a seed may have more than 64 bits
         created=np.bytes_(datetime.now(UTC).isoformat(timespec="seconds")),
     )
@@ -149,7 +157,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
     def add(path: str, column: Column, rows: int) -> None:
         dtype: Any = column.dtype
         if path == "events/kind":
-            dtype = h5py.enum_dtype({kind.name: kind.value for kind in Kind}, basetype="u1")
+            dtype = h5py.enum_dtype({kind.name: kind.value for kind in kinds(layout.kicks)}, basetype="u1")
         elif path.startswith("runs/"):
             dtype = h5py.string_dtype("utf-8", text_sizes[column.name])
         objects.column(path, dtype, (rows, *column.shape), column.unit)

@@ -144,6 +144,7 @@ class Source:
             raise LogError(f"{self.path}: of format {version} (allowed 1 to {schema.VERSION})")
         if version > schema.VERSION:
             raise LogError(f"{self.path}: of format {version}; this version of idealgas reads up to {schema.VERSION}")
+        self.kicks = version > schema.BEFORE_KICKS
         self.commit = Commit.read(self._file)
         size = self.path.stat().st_size
         if marked and size < self.commit.file_size:
@@ -160,7 +161,8 @@ class Source:
         counts = (discs.extent, species.extent, walls.extent)
         check_sizes(*counts, size)
         box = self._column_at("box")
-        rules = Rules(box_of(box.whole(0) if box.chunk == (2,) else np.empty(0)), *counts, self.commit.complete)
+        size_of_box = box_of(box.whole(0) if box.chunk == (2,) else np.empty(0))
+        rules = Rules(size_of_box, *counts, self.commit.complete, self.kicks)
         for table, names in self._names.items():
             columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
             rules.check_table(columns, self.rows(table), size)

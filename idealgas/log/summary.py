@@ -12,12 +12,13 @@ class Summary:
     """What a run came to, all of the log included if it was resumed.
 
     completed: whether the run reached the end that its scene asks for. end_time: time at which it ended. events: number
-    of events, the sum of disc_collisions (of two discs) and wall_hits (of discs with walls and the piston). trials:
-    number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision. epochs: number of them.
+    of events, the sum of disc_collisions (of two discs), wall_hits (of discs with walls and the piston) and kicks (by a
+    heat bath). trials: number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision.
+    epochs: number of them.
 
     energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston, with
-    what collisions lost and less what walls gave, relative to the largest of these: rounding errors only. None where
-    collisions lose energy in a log of before, which has no account of that.
+    what collisions lost and less what walls and a heat bath gave, relative to the largest of these: rounding errors
+    only. None where collisions lose energy in a log of before, which has no account of that.
     deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
     in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
     the overlap is that of all collisions, each of which has one.
@@ -46,6 +47,7 @@ class Summary:
     threads_because: str = ""
     shared_slices: int = 0
     given_up_slices: int = 0
+    kicks: int = 0
 
     @classmethod
     def of(cls, found: Mapping[str, Any]) -> Self:

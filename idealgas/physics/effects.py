@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas.physics import momentum_flow, periodic, piston, restitution, wall
+from idealgas.physics import momentum_flow, periodic, piston, restitution, thermostat, wall
 from idealgas.physics.exact_sum import add_sums, clear
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.momentum_flow import MomentumFlow
@@ -18,6 +18,7 @@ from idealgas.physics.periodic import Periodic
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
+from idealgas.physics.thermostat import Thermostat
 
 
 class Effects(NamedTuple):
@@ -31,10 +32,12 @@ class Effects(NamedTuple):
         restitution: inelastic collisions.
         thermal: walls with a temperature.
         piston: (1,) PISTON.
+        thermostat: heat bath that kicks the discs.
         wall_energy: (walls,) SUM, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
         dissipated: (1 + walls,) SUM, energy that was lost in collisions of two discs, then in hits of each wall that
             emits none, mass length²/time²; None if nothing is lost. What a wall at rest gave is less by what was lost
             there.
+        bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without one.
         flow: momentum that the gas carries and passes on; None where it is not recorded.
     """
 
@@ -45,8 +48,10 @@ class Effects(NamedTuple):
     restitution: Restitution | None = None
     thermal: Thermal | None = None
     piston: np.ndarray | None = None
+    thermostat: Thermostat | None = None
     wall_energy: np.recarray | None = None
     dissipated: np.recarray | None = None
+    bath_energy: np.recarray | None = None
     flow: MomentumFlow | None = None
 
 
@@ -56,8 +61,12 @@ AT_BEGIN: dict[str, Callable[[Any, float], None]] = {"periodic": periodic.begin_
 AT_END: dict[str, Callable[[Any, float], None]] = {
     "restitution": restitution.end_epoch,
     "piston": piston.end_epoch,
+    "thermostat": thermostat.end_epoch,
 }
 """By name of an effect: the function that finishes an epoch, called with the epoch's length (time)."""
+
+ENERGIES = ("wall_energy", "dissipated", "bath_energy")
+"""Fields that are sums of energies."""
 
 CHANGES: dict[str, Callable[[Any, float], float]] = {"segments": wall.next_change}
 """By name of an effect: the function that gives its next change after a time, at which an epoch must end."""
@@ -79,11 +88,8 @@ def end_epoch(effects: Effects, length: float) -> None:
 
 def with_own_sums(effects: Effects) -> Effects:
     """The same effects with sums of their own, which are 0: what several threads add up can be put together."""
-    own = effects._replace(
-        flow=momentum_flow.copy_of(effects.flow),
-        wall_energy=None if effects.wall_energy is None else effects.wall_energy.copy(),
-        dissipated=None if effects.dissipated is None else effects.dissipated.copy(),
-    )
+    sums = {name: None if (found := getattr(effects, name)) is None else found.copy() for name in ENERGIES}
+    own = effects._replace(flow=momentum_flow.copy_of(effects.flow), **sums)
     clear_sums(own)
     return own
 
@@ -109,7 +115,7 @@ def add_sums_of(effects: Effects, part: Effects) -> None:
 def _sums(effects: Effects) -> list[np.ndarray]:
     """All arrays of SUM."""
     found = [] if effects.flow is None else momentum_flow.sums_of(effects.flow)
-    return [*found, *(sums for sums in (effects.wall_energy, effects.dissipated) if sums is not None)]
+    return [*found, *(sums for name in ENERGIES if (sums := getattr(effects, name)) is not None)]
 
 
 def _counts(effects: Effects) -> list[np.ndarray]:

@@ -27,3 +27,15 @@ def mix(z):
 def unit_interval(bits):
     """Random number in (0, 1] from 64 random bits."""
     return (np.float64(bits >> _S11) + 1.0) * 2.0**-53
+
+
+@inline
+def disc_uniform(seed, own, number, draw):
+    """Random number in (0, 1], a pure function of four numbers.
+
+    seed: u8. own: id of a disc. number: u8, of what happens to that disc, from 0. draw: which of the eight random
+    numbers that this may have, 0 to 7; walls that emit discs have 0 to 2, a heat bath has 3 to 7.
+    """
+    key = mix(seed + GOLDEN * (np.uint64(own) + np.uint64(1)))
+    count = number * np.uint64(8) + np.uint64(draw)
+    return unit_interval(mix(mix(key + GOLDEN * (count + np.uint64(1))) + key))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import inline
-from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
+from idealgas.physics.random_numbers import disc_uniform
 
 
 class Thermal(NamedTuple):
@@ -39,9 +39,7 @@ def is_thermal(thermal, wall):
 @inline
 def uniform(thermal, own, draw):
     """Random number in (0, 1] for a disc's present emission; draw: index of the number within the emission."""
-    key = mix(thermal.seed + GOLDEN * (np.uint64(own) + np.uint64(1)))
-    count = thermal.emissions[np.uintp(own)] * np.uint64(8) + np.uint64(draw)
-    return unit_interval(mix(mix(key + GOLDEN * (count + np.uint64(1))) + key))
+    return disc_uniform(thermal.seed, own, thermal.emissions[np.uintp(own)], draw)
 
 
 @inline

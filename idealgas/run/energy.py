@@ -14,8 +14,8 @@ class Energy(NamedTuple):
     """The energy of a gas by its parts.
 
     kinetic, rotational, potential: of the discs. piston: of motion and position of a piston with a mass. given: energy
-    that walls gave to the discs, less what was lost at them; what a piston with a mass gave is not counted, as its own
-    energy is. lost: what collisions between discs, and with a piston with a mass, have lost.
+    that walls and a heat bath gave to the discs, less what was lost at them; what a piston with a mass gave is not
+    counted, as its own energy is. lost: what collisions between discs, and with a piston with a mass, have lost.
     """
 
     kinetic: float
@@ -32,7 +32,7 @@ class Energy(NamedTuple):
 
     @property
     def balance(self) -> float:
-        """What stays the same: discs and piston with what was lost, less what walls gave."""
+        """What stays the same: discs and piston with what was lost, less what came from outside."""
         return self.gas + self.piston + self.lost - self.given
 
     @property
@@ -45,7 +45,8 @@ def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
     """Energy of a gas; local_time: of the gas, from the start of the epoch."""
     by_wall = np.zeros(0) if effects.wall_energy is None else values(effects.wall_energy)
     losses = np.zeros(0) if effects.dissipated is None else values(effects.dissipated)
-    given, lost, parts = float(by_wall.sum()), float(losses[:1].sum()), {}
+    from_bath = np.zeros(0) if effects.bath_energy is None else values(effects.bath_energy)
+    given, lost, parts = float(by_wall.sum() + from_bath.sum()), float(losses[:1].sum()), {}
     for effect, state in present(effects):
         if effect.energy is not None:
             parts[effect.energy.part] = effect.energy.of(state, gas, local_time)

@@ -16,7 +16,7 @@ from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
 
 TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
-"""What is counted from time 0 on."""
+"""What every run counts from time 0 on."""
 
 AUDITED = (
     Column("kinetic_energy", "f8", unit="energy"),
@@ -38,15 +38,21 @@ def layout_of(
         walls=[Wall(wall.name, wall.start, wall.end) for wall in number_walls(scene)],
         boundary=(x, y),
         gravity=scene.properties.acceleration,
+        kicks=scene.properties.bath is not None,
         disc_columns=bundle.disc_constants(effects),
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
-        checkpoint_values=(*TOTALS, *kept, *whole_state(effects)),
-        observables=(*AUDITED, *TOTALS, *kept, *observed(gas, effects)),
+        checkpoint_values=(*totals(effects), *kept, *whole_state(effects)),
+        observables=(*AUDITED, *totals(effects), *kept, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,
     )
+
+
+def totals(effects: Effects) -> tuple[Column, ...]:
+    """What a run with these effects counts from time 0 on."""
+    return *TOTALS, *bundle.counted(effects)
 
 
 def row_columns(effects: Effects, without_positions: bool = False) -> tuple[Column, ...]:

@@ -13,7 +13,7 @@ from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
-from idealgas.run.layout import TOTALS, layout_of, restore, row_columns
+from idealgas.run.layout import layout_of, restore, row_columns, totals
 from idealgas.run.simulate import LoggedRun, Progress, RunHistory, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
 
@@ -103,8 +103,8 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     if checkpoint is None:
         return Simulation(start, method, effects)
     gas, effects = restore(start, effects, checkpoint)
-    totals = Totals(**{column.name: int(checkpoint.values[column.name]) for column in TOTALS})
-    return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, totals)
+    done = Totals(**{column.name: int(checkpoint.values[column.name]) for column in totals(effects)})
+    return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, done)
 
 
 def _check_columns(log: Log, layout: LogLayout) -> None:

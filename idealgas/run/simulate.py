@@ -269,7 +269,7 @@ class LoggedRun:
             completed=simulation.finished(stop),
             end_time=end_time,
             **asdict(totals),
-            rows=2 * totals.disc_collisions + totals.wall_hits,
+            rows=totals.events + totals.disc_collisions,
             epochs=simulation.epoch + 1,
             energy_change=end.gas - start.gas,
             energy_drift=drift if is_conserved(simulation.effects) else None,

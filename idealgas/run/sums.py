@@ -26,7 +26,8 @@ LEAST_SHARE = 2.0**-40
 def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool) -> Effects:
     """The effects with all sums that a run needs, at time 0. gas: its discs at time 0.
 
-    gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any.
+    gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any. What a
+    heat bath gives has a sum of its own.
     """
     speed, walls = _speed(scene, gas, effects), len(number_walls(scene))
     largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects))
@@ -34,6 +35,7 @@ def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, l
     return effects._replace(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
+        bath_energy=None if scene.properties.bath is None else make_sums([energy]),
         flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
     )
 
@@ -76,6 +78,8 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
         yield Column("wall_energy", "f8", given.shape, ENERGY), given
     if (lost := effects.dissipated) is not None:
         yield Column("dissipated_energy", "f8", lost.shape, ENERGY), lost
+    if (heat := effects.bath_energy) is not None:
+        yield Column("bath_energy", "f8", (), ENERGY), heat
     if (flow := effects.flow) is not None:
         tensor = np.asarray(flow.tensor)  # a slice of a recarray takes ten times as long
         yield Column("kinetic_flow", "f8", (3,), ACTION), tensor[KINETIC]

@@ -12,6 +12,7 @@ from idealgas.scene.tables.restitution import Rest, Restitution
 from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
 from idealgas.scene.tables.thermal import ThermalSide
+from idealgas.scene.tables.thermostat import Thermostat
 from idealgas.scene.tables.wall import Wall
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "SceneError",
     "Species",
     "ThermalSide",
+    "Thermostat",
     "Wall",
     "load_scene",
     "parse_scene",

@@ -50,8 +50,9 @@ class Properties:
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
     are. acceleration: of all discs between events, length/time². emits: temperature of each wall that emits what it
-    takes, by number; None for those that reflect. clear_from: time from which on no wall is inside the box; infinite if
-    one always is.
+    takes, by number; None for those that reflect. bath: temperature of a heat bath that gives discs new velocities
+    wherever they are; None without one. kicks: how often it does so to one disc, 1/time. clear_from: time from which on
+    no wall is inside the box; infinite if one always is.
     """
 
     uniform: bool = _plain(True, operator.and_)
@@ -70,6 +71,8 @@ class Properties:
     periodic: tuple[bool, bool] = _plain((False, False), _either)
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
     emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _either)
+    bath: float | None = _plain(None, _said)
+    kicks: float = _plain(0.0, max)
     clear_from: float = _plain(0.0, max)
 
     @property
@@ -79,17 +82,17 @@ class Properties:
 
     @property
     def temperatures(self) -> frozenset[float]:
-        """Those of all walls that emit."""
-        return frozenset(temperature for temperature in self.emits if temperature is not None)
+        """Those of all walls that emit, and of the heat bath."""
+        return frozenset(temperature for temperature in (*self.emits, self.bath) if temperature is not None)
 
     @property
     def isolated(self) -> bool:
-        """Whether no heat comes through the walls."""
+        """Whether no heat comes through the walls or from a heat bath."""
         return not self.temperatures
 
     @property
     def conserves_energy(self) -> bool:
-        """Whether nothing but heat from walls changes the energy of motion and spin."""
+        """Whether nothing but heat, from walls or a heat bath, changes the energy of motion and spin."""
         return self.lossless and self.straight_flight and self.fixed_walls
 
     @property
@@ -105,7 +108,7 @@ class Properties:
     @property
     def conserves_momentum(self) -> tuple[bool, bool]:
         """Along which axes nothing takes momentum from the discs: smooth walls take none along themselves."""
-        free = self.empty and (all(self.periodic) or not self.grip)
+        free = self.empty and self.bath is None and (all(self.periodic) or not self.grip)
         return self.periodic[0] and free, self.periodic[1] and free
 
     def __and__(self, other: "Properties") -> "Properties":

@@ -165,7 +165,7 @@ def kind_and_partner(editor: Editor, random: Generator) -> Effect | None:
         return None
     kind, partner = editor.values("events/kind"), editor.values("events/partner")
     row = row_in(editor, "events/partner", random)
-    kind[row] = Kind.DISC if partner[row] < 0 else random.choice([Kind.WALL, Kind.WALL_END, Kind.PISTON])
+    kind[row] = Kind.DISC if partner[row] < 0 else random.choice([Kind.WALL, Kind.WALL_END, Kind.PISTON, Kind.KICK])
     editor.store("events/kind", kind)
     return broken("a kind that is not its partner's", "events/kind", "events/partner")
 

@@ -28,11 +28,13 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
+from idealgas.physics.thermostat import Thermostat
 from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects
 from idealgas.run.simulate import stop_of
@@ -77,8 +79,10 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
         thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
         piston=beyond,
+        thermostat=Thermostat(1.0, 1.0, np.uint64(0), np.full(n, math.inf), np.zeros(n, np.uint64)),
     )
     neutral = with_sums(neutral, scene, gas, gives_energy=True, loses_energy=True)
+    neutral = neutral._replace(bath_energy=make_sums([1.0]))
     return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
 
 

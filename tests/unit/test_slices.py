@@ -11,7 +11,7 @@ from idealgas.run.effects.bundle import SLICES
 from idealgas.scene import EFFECTS
 from idealgas.scene.tables.document import Document
 
-WORDS = ("gravity", "periodic", "wall", "rotation", "restitution", "thermal", "piston")
+WORDS = ("gravity", "periodic", "wall", "rotation", "restitution", "thermal", "piston", "thermostat")
 PLACES = ("scene/tables", "scene/checks", "physics", "run/effects")
 
 NOTHING_TO_HOLD = {"scene/checks/thermal.py": "a temperature > 0 is all they ask for, and its type says so"}
@@ -52,10 +52,10 @@ PATHS = {path.relative_to(ROOT / "idealgas").as_posix(): path for path in sorted
 PATHS |= {path.relative_to(ROOT).as_posix(): path for path in sorted((ROOT / "cli").rglob("*.py"))}
 SLICED = {f"{place}/{word}.py" for place in PLACES for word in WORDS}
 
-SUMS = ("wall_energy", "dissipated", "flow")
+SUMS = ("wall_energy", "dissipated", "bath_energy", "flow")
 """What the bundle has beside the effects: sums over a run."""
 
-FIELDS = {"gravity", "wall", "rotation", "restitution", "piston"}
+FIELDS = {"gravity", "wall", "rotation", "restitution", "piston", "thermostat"}
 SAID = dict(zip(EFFECTS, WORDS, strict=True)) | {word: word for word in WORDS if word != "wall"} | {"segments": "wall"}
 """Strings that name an effect; "wall" does not, as a wall is anything that has a number."""
 

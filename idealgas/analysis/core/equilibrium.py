@@ -14,7 +14,7 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath of its walls.
+    """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath.
 
     drift: (2,), velocity of the centre of mass that is subtracted from all velocities, length/time; see `drift`.
     dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
@@ -54,7 +54,7 @@ def ensemble(log: Log) -> Ensemble:
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
-    """Ensemble of the gas of a log; None if the energy is neither conserved nor set by walls of one temperature."""
+    """Ensemble of the gas of a log; None if the energy is neither conserved nor set by heat of one temperature."""
     properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
     if not properties.conserves_energy or len(properties.temperatures) > 1:
         return None
@@ -66,7 +66,7 @@ def known_ensemble(log: Log) -> Ensemble | None:
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
     share = 1 - kept.mean() * mass / gas.mass.sum()
-    if properties.temperatures:  # the walls' heat bath has no limit to its energy
+    if properties.temperatures:  # a heat bath has no limit to its energy
         (temperature,) = properties.temperatures
         return Ensemble(frame, math.inf, temperature, temperature * share)
     temperature = energy / dof
@@ -76,15 +76,15 @@ def known_ensemble(log: Log) -> Ensemble | None:
 def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
     """Equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
 
-    It is the temperature of the thermal walls or, without them, the one at which a dilute gas has the conserved energy
-    of the start: kinetic energy, spin and height in the barometric distribution. None if other effects leave it
-    unknown, and for a single disc, which cannot share its energy.
+    It is the temperature of thermal walls or a thermostat or, without them, the one at which a dilute gas has the
+    conserved energy of the start: kinetic energy, spin and height in the barometric distribution. None if other effects
+    leave it unknown, and for a single disc, which cannot share its energy.
     """
     properties, gas = log.scene.properties, log.discs
     if not properties.fixed_walls or not properties.elastic or log.periodic[1 - axis] or len(gas) == 1:
         return None
-    if walls := properties.temperatures:
-        return min(walls) if len(walls) == 1 else None
+    if baths := properties.temperatures:
+        return min(baths) if len(baths) == 1 else None
     if not properties.lossless:
         return None
     g = log.gravity[axis]

@@ -16,6 +16,7 @@ from idealgas.analysis.core.falls import (
     velocity_quantity,
 )
 from idealgas.analysis.core.stream import block_at, block_back
+from idealgas.events import BATH
 from idealgas.gas.state import Gas
 from idealgas.physics.motion import velocity_after
 
@@ -112,7 +113,7 @@ def _add_moments(time, disc, partner, velocity, gravity, species, mass, tracks, 
         track[VX] = velocity[row, 0]
         track[VY] = velocity[row, 1]
         if partner[row] < 0:
-            events[block, 1] += 1
+            events[block, 1] += partner[row] != BATH
         elif disc[row] > partner[row]:
             events[block, 0] += 1
     return block

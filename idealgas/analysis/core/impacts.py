@@ -6,6 +6,7 @@ import numpy as np
 
 from idealgas._jit import njit
 from idealgas.analysis.core.stream import block_at
+from idealgas.events import BATH
 from idealgas.gas.state import Gas
 from idealgas.physics.periodic import nearest_image
 from idealgas.sides import SIDES
@@ -91,6 +92,8 @@ def _add_impacts(
                     passed_on[block, 2 * axis] -= (1.0 - near) * given
                 if partner[row] != -2 - 2 * axis:
                     passed_on[block, 2 * axis + 1] += near * given
+        if partner[row] == BATH:
+            continue
         if partner[row] < 0:
             wall = -1 - partner[row]
             hits[block, wall] += 1

@@ -22,7 +22,8 @@ def why_no_equilibrium(log: Log) -> str:
         return why
     scene, properties = log.scene, log.scene.properties
     if len(properties.temperatures) > 1:
-        return f"walls have {len(properties.temperatures)} temperatures"
+        sources = "walls" if properties.bath is None else "walls and heat bath"
+        return f"{sources} have {len(properties.temperatures)} temperatures"
     if not properties.lossless:
         return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
     return ""

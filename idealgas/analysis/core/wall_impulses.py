@@ -10,7 +10,7 @@ import numpy as np
 
 from idealgas._jit import njit
 from idealgas.analysis.core.stream import block_at
-from idealgas.events import Kind
+from idealgas.events import BATH, Kind
 from idealgas.gas.state import Gas
 from idealgas.log import Log
 from idealgas.physics.motion import velocity_after
@@ -70,7 +70,7 @@ def _add_impulses(
         now = time[row]
         block = block_at(edges, block, now)
         track = tracks[i]
-        if partner[row] < 0:
+        if partner[row] < 0 and partner[row] != BATH:
             wall = -1 - partner[row]
             since = now - track[T]
             px = mass[i] * (velocity_after(track[VX], gravity[0], since) - velocity[row, 0])

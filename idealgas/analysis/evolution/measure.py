@@ -26,9 +26,9 @@ class Evolution(Result):
     time: (F,), times. temperature: (F,), mean m v²/2 per disc, energy. spin: (F,), mean I ω² per disc, energy; None
     without spin. beyond: share of the discs of each species beyond the first gate along an axis, (F,), by the name of
     the species. law: theory of the temperature at these times; None without one.
-    samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall gave
-    since the start, (P,), by the name of the wall. piston: (P,), its coordinate, length; None without one.
-    balance: (P,), change since the start of the energy of discs and piston minus the energy given by walls, relative to
+    samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall, and
+    a heat bath, gave since the start, (P,), by name. piston: (P,), its coordinate, length; None without one.
+    balance: (P,), change since the start of the energy of discs and piston minus the energy from outside, relative to
     the largest part of the energy. Only inelastic collisions change the balance, in logs of before, which have no
     account of them. dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
     pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
@@ -70,6 +70,8 @@ class Evolution(Result):
         series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
+
+HEAT_BATH = "the heat bath"
 
 TABLES = ("beyond", "parts", "given", "dissipated")
 
@@ -160,7 +162,7 @@ Series = dict[str, np.ndarray]
 
 
 def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
-    """Parts of the energy by name, energy given by each wall, energy lost by collisions of each kind, the balance."""
+    """Parts of the energy by name, given by walls and a heat bath, lost by collisions of each kind, and the balance."""
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
     given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
@@ -173,10 +175,12 @@ def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.nda
         pull = piston.acceleration(log.box, log.scene.gravity)
         place, velocity = observed["piston_position"], observed["piston_velocity"]
         parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
-    from_outside = given[:, counted].sum(axis=1)
+    bath = observed.get("bath_energy", np.zeros(len(given)))
+    from_outside = given[:, counted].sum(axis=1) + bath
     total = sum(parts.values()) + unpaid - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
     walls = [wall.name for wall in log.walls]
-    by_wall = {name: series for name, series in zip(walls, given.T, strict=False) if series.any()}
+    sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath}
+    by_source = {name: series for name, series in sources.items() if series.any()}
     losses = {name: series for name, series in zip(("discs", *walls), lost.T, strict=True) if series.any()}
-    return parts, by_wall, losses, (total - total[0]) / (scale or 1.0)
+    return parts, by_source, losses, (total - total[0]) / (scale or 1.0)

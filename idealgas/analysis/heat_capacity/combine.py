@@ -15,7 +15,7 @@ from idealgas.analysis.heat_capacity.measure import BATH, CLOSED, PISTON, ROUGH,
 ROUTES = {
     "dE/dT": "it takes logs of one gas at several energies",
     "E/T": "it takes the pressure on the walls of a closed box, in a log with events",
-    "Var(E)/T²": "it takes thermal walls of one temperature",
+    "Var(E)/T²": "it takes thermal walls of one temperature, or a thermostat",
     "fluctuations of the kinetic energy": "it takes an isolated gas with spin, gravity or a piston",
     "γ": "it takes a piston with a mass",
 }

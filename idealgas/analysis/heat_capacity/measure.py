@@ -1,7 +1,8 @@
 """Heat capacity from one log: energy, temperature, and the routes that need no other log.
 
 The temperature must be measured independently of the energy: by the pressure on the walls where all energy is kinetic,
-as the temperature of the thermal walls in a heat bath, and by the kinetic energy where that is a part of the energy.
+as the temperature of thermal walls or of a thermostat in a heat bath, and by the kinetic energy where that is a part of
+the energy.
 """
 
 import math
@@ -112,7 +113,10 @@ def heat_capacity(
     capacity, excess = expected_capacity(log, series)
     if BATH in kinds:
         (bath,) = properties.temperatures
-        temperature, thermometer = Estimate(bath, 0.0, math.inf), "the walls' own"
+        temperature, thermometer = (
+            Estimate(bath, 0.0, math.inf),
+            "the walls' own" if properties.bath is None else "the heat bath's own",
+        )
         route = "Var(E)/T²"
         found, fluctuating = _bath_fluctuations(series, n, bath, capacity, PISTON in kinds), series.energy
     else:

@@ -236,6 +236,8 @@ def _free_flight_rates(
     why_not = known.why_not
     if uneven := log.scene.lacking("uniform"):
         why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"
+    if log.scene.properties.kicks:
+        why_not = why_not or "a heat bath changes velocities in flight"
     if known.ensemble and not why_not:
         theory = theory_of(log, discs) if log.has_positions else None
         rates = expected_rates(discs, log.box, known.ensemble, theory).rate

@@ -195,7 +195,7 @@ def _without_theory(
         theories={},
         collision_rates=(),
         free_paths=(),
-        no_theory=f"no equation of state holds under {', '.join(causes) or 'walls of several temperatures'}",
+        no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
         mechanical=found,
     )
 

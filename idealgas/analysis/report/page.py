@@ -54,6 +54,7 @@ SUMMARY = {
     "events": "events",
     "disc_collisions": "disc collisions",
     "wall_hits": "wall hits",
+    "kicks": "kicks by the heat bath",
     "trials": "trials of pairs",
     "rows": "event rows",
     "epochs": "epochs",

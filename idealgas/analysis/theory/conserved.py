@@ -44,13 +44,14 @@ def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
 
 
 def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Sentence on the part of `motion_at_start` that walls take away; empty if there is none."""
+    """Sentence on the part of `motion_at_start` that walls or a heat bath take away; empty if there is none."""
     lost = motion_at_start(scene, gas) - common_motion(scene, gas)
     if not lost.any():
         return ()
     return (
         f"The gas starts with a common motion ({lost[0]:.4g}, {lost[1]:.4g}), {share_of_motion(gas, lost):.1%} of its "
-        "kinetic energy; it is not in the temperatures at the start, and becomes heat at the walls.",
+        "kinetic energy; it is not in the temperatures at the start, and "
+        f"{'becomes heat at the walls' if scene.properties.bath is None else 'is lost to the heat bath'}.",
     )
 
 

@@ -46,16 +46,16 @@ class SpeciesForecast:
 class Forecast:
     """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    Values are None if the theory does not know them: it is that of a uniform gas of constant energy, or of a dilute
-    column under gravity.
+    Values are None if the theory does not know them: it is that of a uniform gas of constant energy or in a heat bath,
+    or of a dilute column under gravity.
 
     number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
     the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
-    discs per time. pair_collision_rate, wall_hit_rate: pair collisions and wall hits of the whole gas per time.
-    duration: simulated time at the end of the run. events: number of events. rows: number of event rows in the log.
-    bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from them, are
-    approximate; empty if their error is below 2 %. premises: sentences on what the start of the gas takes from averages
-    over time, and on its motion as a whole. rest: what discs do that have come to rest; None if none can.
+    discs per time. pair_collision_rate, wall_hit_rate, kick_rate: pair collisions, wall hits and kicks of the whole gas
+    per time. duration: simulated time at the end of the run. events: number of events. rows: number of event rows in
+    the log. bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from
+    them, are approximate; empty if their error is below 2 %. premises: sentences on what the start of the gas takes
+    from averages over time, and on its motion as a whole. rest: what discs do that have come to rest; None if none can.
     """
 
     number: int
@@ -65,6 +65,7 @@ class Forecast:
     collision_rate: float | None
     pair_collision_rate: float | None
     wall_hit_rate: float | None
+    kick_rate: float
     duration: float | None
     events: float | None
     rows: float | None
@@ -75,8 +76,8 @@ class Forecast:
     rest: Rest | None = None
 
 
-KNOWN = ("uniform", "conserves_energy", "isolated")
-"""Properties that a scene needs for the theory to apply."""
+KNOWN = ("uniform", "conserves_energy")
+"""Properties that a scene needs for the theory to apply; no heat may come from walls either."""
 
 
 ROUGH = 0.02
@@ -86,8 +87,9 @@ ROUGH = 0.02
 class _Rates(NamedTuple):
     """Rates of a gas in equilibrium, in 1/time.
 
-    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials: pair collisions,
-    wall hits and Monte Carlo trials of the whole gas. rough: why the rates are approximate; empty if they are not.
+    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials, kicks: pair
+    collisions, wall hits, Monte Carlo trials and kicks by a heat bath, of the whole gas. rough: why the rates are
+    approximate; empty if they are not.
     """
 
     temperature: float
@@ -95,7 +97,13 @@ class _Rates(NamedTuple):
     pairs: float
     hits: float
     trials: float = 0.0
+    kicks: float = 0.0
     rough: str = ""
+
+    @property
+    def events(self) -> float:
+        """All events of the whole gas but trials."""
+        return self.pairs + self.hits + self.kicks
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
@@ -103,13 +111,14 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
     Of a gas under gravity they are those of a dilute column.
     """
-    beyond = scene.lacking(*KNOWN)
+    one_bath = scene.properties.temperatures == {scene.properties.bath}
+    beyond = scene.lacking(*KNOWN) if one_bath else scene.lacking(*KNOWN, "isolated")
     rates = _column(scene, gas) if beyond else _rates(scene, gas)
     duration = _duration(scene, len(gas), rates)
     events = rows = None
     if rates and duration is not None:
-        events = duration * (rates.pairs + rates.hits)
-        rows = duration * (2 * rates.pairs + rates.hits)
+        events = duration * rates.events
+        rows = duration * (rates.pairs + rates.events)
     if not scene.log.events:
         rows = 0.0
     x0, y0, x1, y1 = scene.room
@@ -122,6 +131,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         collision_rate=2 * rates.pairs / len(gas) if rates else None,
         pair_collision_rate=rates.pairs if rates else None,
         wall_hit_rate=rates.hits if rates else None,
+        kick_rate=len(gas) * scene.properties.kicks,
         duration=duration,
         events=events,
         rows=rows,
@@ -163,6 +173,8 @@ def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     frame = conserved.common_motion(scene, gas)
     kinetic = gas.kinetic_energy - float(gas.mass.sum() * (frame @ frame)) / 2
     temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / (freedom * len(gas))
+    if scene.properties.bath is not None:
+        temperature = scene.properties.bath
     number = np.bincount(gas.species)
     _, first = np.unique(gas.species, return_index=True)
     radius, mass = gas.radius[first], gas.mass[first]
@@ -174,7 +186,8 @@ def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, rough=rough)
+    kicks = len(gas) * scene.properties.kicks
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, kicks=kicks, rough=rough)
 
 
 def _column(scene: Scene, gas: Gas) -> _Rates | None:
@@ -235,7 +248,7 @@ def _rates_without_positions(
     fastest = math.sqrt(2 * temperature * math.log(speeds) / mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough)
+    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough=rough)
 
 
 def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
@@ -283,8 +296,8 @@ def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None
     ends = [run.until or math.inf]
-    if run.events is not None and rates.pairs + rates.hits > 0:
-        ends.append(run.events / (rates.pairs + rates.hits))
+    if run.events is not None and rates.events > 0:
+        ends.append(run.events / rates.events)
     if run.collisions_per_disc is not None and rates.pairs > 0:
         ends.append(run.collisions_per_disc * number / (2 * rates.pairs))
     if run.trials is not None and rates.trials > 0:

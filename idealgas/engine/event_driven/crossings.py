@@ -1,10 +1,10 @@
-"""The time at which a disc crosses into the next cell or meets a side of the box, and the crossing itself."""
+"""The time at which a disc crosses into the next cell, meets a side of the box or is kicked; and cell crossings."""
 
 import numpy as np
 
 from idealgas._jit import inline
 from idealgas.engine.event_driven.cells import cell_index, enter, leave
-from idealgas.engine.event_driven.scheduler import SIDE_OF_BOX
+from idealgas.engine.event_driven.scheduler import KICK, SIDE_OF_BOX
 from idealgas.physics.box_side import arrival_delay, centre_range
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane
@@ -95,7 +95,7 @@ def axis_crossing(disc, along_y, cells, own, now, effects):
 
 @inline
 def predict_crossing(record, ids, state, i, now, effects):
-    """Store the time and kind of disc i's next cell crossing or side contact in its prediction."""
+    """Store the time and kind of disc i's next cell crossing, side contact or kick in its prediction."""
     disc = record[U(i)]
     own = ids[U(i)]
     x_time, right, x_side = axis_crossing(disc, False, state.cells, own, now, effects)
@@ -106,6 +106,25 @@ def predict_crossing(record, ids, state, i, now, effects):
     prediction.crossing = y_time if along_y else x_time
     side = (2 if along_y else 0) + (1 if forward else 0)
     prediction.crossing_code = side + (SIDE_OF_BOX if (y_side if along_y else x_side) else 0)
+    keep_kick_if_earlier(prediction, own, effects.thermostat)
+
+
+@inline
+def keep_kick_if_earlier(prediction, own, thermostat):
+    """Store a disc's next kick in its prediction, in place of its crossing if that is later."""
+    if thermostat is not None:
+        time = thermostat.time[U(own)]
+        if time < prediction.crossing:
+            prediction.crossing = time
+            prediction.crossing_code = KICK
+
+
+@inline
+def is_kick(crossing_code, thermostat):
+    """Whether a disc's crossing is a kick by the heat bath."""
+    if thermostat is not None:
+        return crossing_code == KICK
+    return False
 
 
 @inline

@@ -10,7 +10,7 @@ from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.border import OVER
 from idealgas.engine.event_driven.cells import cell_index, enter
 from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
-from idealgas.engine.event_driven.crossings import cross_cell, predict_crossing
+from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.scheduler import (
     SIDE_OF_BOX,
@@ -21,15 +21,29 @@ from idealgas.engine.event_driven.scheduler import (
 )
 from idealgas.engine.event_driven.turns import count_at_one_time, enter_in_schedule, leave, next_turn
 from idealgas.engine.records import add_to_counters
-from idealgas.engine.resolve import resolve_pair, resolve_piston, resolve_segment, resolve_side, resolve_stop
-from idealgas.engine.rows import batch_capacity, write_pair, write_piston_hit, write_segment_hit, write_side_hit
+from idealgas.engine.resolve import (
+    resolve_kick,
+    resolve_pair,
+    resolve_piston,
+    resolve_segment,
+    resolve_side,
+    resolve_stop,
+)
+from idealgas.engine.rows import (
+    batch_capacity,
+    write_kick,
+    write_pair,
+    write_piston_hit,
+    write_segment_hit,
+    write_side_hit,
+)
 
 U = np.uintp
 
 
 @inline
 def predict(record, ids, state, i, now, effects, border):
-    """Predict disc i's next contact and its next crossing, and enter the earlier one in the schedule."""
+    """Predict disc i's next contact and its next crossing or kick, and enter the earlier one in the schedule."""
     predict_contact(record, ids, state, i, now, effects)
     predict_crossing(record, ids, state, i, now, effects)
     enter_in_schedule(record, ids, state, i, border)
@@ -73,6 +87,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     """
     events = 0
     collisions = 0
+    kicks = 0
     crossings = 0
     stale = 0
     rows = 0
@@ -123,6 +138,10 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             crossings += 1
             enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)
             continue
+        elif is_kick(prediction.crossing_code, effects.thermostat):
+            kicks += 1
+            resolve_kick(record[U(i)], ids[U(i)], time, effects.thermostat, effects)
+            rows += write_kick(batch, rows, epoch_start + time, ids[U(i)], record[U(i)], effects)
         else:
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
@@ -133,5 +152,5 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         events += 1
         now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
     leave(border, reached)
-    add_to_counters(counters[0], events, collisions, crossings, stale, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, kicks, crossings, stale, now, events_at_this_time)
     return rows, reached

@@ -11,12 +11,12 @@ import numpy as np
 from idealgas._jit import aligned, inline, njit
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.physics.constants import NEVER
-from idealgas.sides import FIRST_SEGMENT
+from idealgas.sides import FIRST_SEGMENT, HEAT_BATH
 
 PREDICTION = np.dtype(
     [
         ("contact", "f8"),  # local time of the earliest contact with a disc or a wall segment
-        ("crossing", "f8"),  # local time at which the disc leaves its cell or meets a side of the box
+        ("crossing", "f8"),  # local time at which the disc leaves its cell, meets a side of the box or is kicked
         ("partner", "i4"),  # index of the other disc, -1 for none, -2 - k for wall segment k
         (
             "partner_count",
@@ -24,11 +24,13 @@ PREDICTION = np.dtype(
         ),  # the partner's count when predicted: the contact is stale once it differs
         ("image_x", "i2"),  # box lengths to the partner's record or the segment, where sides are periodic
         ("image_y", "i2"),
-        ("crossing_code", "i4"),  # 0-3: crosses to the cell left, right, below, above; 4-7: meets that side of the box
+        ("crossing_code", "i4"),  # 0-3: crosses to the cell left, right, below, above; 4-7: meets that side; or KICK
     ],
     align=True,
 )
 SIDE_OF_BOX = 4
+KICK = SIDE_OF_BOX + HEAT_BATH
+"""Codes of what is no cell crossing: SIDE_OF_BOX and the number of what the disc meets."""
 
 NO_CONTACT = 0.5 * NEVER  # before NEVER: a pair without a contact, at NEVER, is not simultaneous with it
 NO_CONTACT_KEY = int(np.float64(NO_CONTACT).view(np.int64))

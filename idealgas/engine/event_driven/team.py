@@ -199,7 +199,7 @@ class Team:
             why = self._share(goal, batch, 0)
             strips, total = self._strips, counters.copy()
             for strip in strips:
-                for name in ("events", "disc_collisions", "wall_hits", "crossings", "stale"):
+                for name in ("events", "disc_collisions", "wall_hits", "kicks", "crossings", "stale"):
                     total[name] += strip.counters[name]
             last = max(strips, key=lambda strip: strip.counters[0]["time"]).counters[0]
             done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}

@@ -3,15 +3,16 @@
 from collections.abc import Iterator
 from typing import Any
 
+from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint
 from idealgas.physics.effects import Effects
-from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, wall
+from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, thermostat, wall
 from idealgas.run.effects.slice import Arrays, Slice, Values
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
 
-SLICES = tuple(effect.SLICE for effect in (gravity, periodic, wall, rotation, restitution, thermal, piston))
+SLICES = tuple(effect.SLICE for effect in (gravity, periodic, wall, rotation, restitution, thermal, piston, thermostat))
 
 
 def make_effects(scene: Scene, gas: Gas) -> Effects:
@@ -27,6 +28,11 @@ def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
     for effect in SLICES:
         if (state := getattr(effects, effect.field)) is not None:
             yield effect, state
+
+
+def counted(effects: Effects) -> tuple[Column, ...]:
+    """Totals of events that only these effects have."""
+    return tuple(effect.counted for effect, _ in present(effects) if effect.counted is not None)
 
 
 def disc_state(effects: Effects) -> Arrays:

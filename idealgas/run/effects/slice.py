@@ -51,8 +51,9 @@ class Slice:
     at the start. values: what checkpoints and samples keep of the effect as a whole, at a local time. restore: give the
     state the values of a checkpoint, by name; arrays by disc are restored without it. gives_energy: whether walls give
     energy to discs, or take some, by this effect. loses_energy: whether energy is lost in collisions by it. own_wall:
-    number of a wall whose energy is counted as its own, so that what it gives is not from outside. conserves: whether
-    the account of the walls has all energy that is lost by this effect, among all; logs of before have no other.
+    number of a wall whose energy is counted as its own, so that what it gives is not from outside. counted: the total
+    of events that only this effect has; a log without the effect has no such column. conserves: whether the account of
+    the walls has all energy that is lost by this effect, among all; logs of before have no other.
     """
 
     field: str
@@ -65,4 +66,5 @@ class Slice:
     gives_energy: Callable[[Any], bool] = lambda state: False
     loses_energy: Callable[[Any], bool] = lambda state: False
     own_wall: Callable[[Any], int | None] = lambda state: None
+    counted: Column | None = None
     conserves: Callable[[Effects], bool] = lambda effects: True

@@ -7,7 +7,7 @@ from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.document.error import Issue
-from idealgas.scene.checks import gravity, periodic, piston, restitution, rotation, wall
+from idealgas.scene.checks import gravity, periodic, piston, restitution, rotation, thermostat, wall
 from idealgas.scene.checks.discs import overlap_issues, room_issues, species_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.scene.checks.valid import valid
@@ -15,7 +15,7 @@ from idealgas.scene.checks.valid import valid
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document
 
-EFFECTS = (rotation, restitution, periodic, wall, gravity, piston)
+EFFECTS = (rotation, restitution, periodic, wall, gravity, piston, thermostat)
 """Checks of the effects; of thermal walls there is nothing to check that their numbers do not say."""
 
 

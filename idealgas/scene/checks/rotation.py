@@ -26,7 +26,8 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
                 yield Issue((*keys, ("rotation",)), "a spin without rotation", given[0], "it with a table [rotation]")
             elif len(given) > 1:
                 yield Issue(keys, "two spins", " and ".join(given), "one of them")
-    if rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1:
+    smooth = rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1
+    if smooth and scene.thermostat is None and "thermostat" not in invalid:
         keys = (("rotation", "roughness"), ("rotation", "wall_roughness"))
         allowed = "no [rotation], or a roughness > -1"
         yield Issue(keys, "spins that nothing changes", "smooth discs and smooth walls", allowed)

@@ -79,7 +79,7 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
     """Effects that need positions, and gases in which no pair ever meets."""
     for place in _keys(scene, "without_places"):
         got = f'method = "{MONTE_CARLO}"'
-        yield Issue((place, ("run", "method")), "needs discs that are somewhere", got, "event_driven, brute_force")
+        yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
     if not {"species", "disc"} & invalid and (scene.species or scene.disc):
         if sum(s.count for s in scene.species) + len(scene.disc) < 2:
             yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
@@ -149,5 +149,5 @@ def endless_issues(scene: Document) -> Iterator[Issue]:
         yield Issue(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
     elif run.events is None and alone:
         yield Issue(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
-    elif alone and all(scene.properties.periodic) and scene.properties.empty:
+    elif alone and all(scene.properties.periodic) and scene.properties.empty and scene.properties.isolated:
         yield Issue(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")

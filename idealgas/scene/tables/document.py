@@ -13,7 +13,7 @@ from pydantic import Field
 from idealgas.document.table import Rectangle, Table, Vector
 from idealgas.scene.defaults import mean_free_time, number_of_discs, trial_time
 from idealgas.scene.properties import Effect, Properties, combine, lacking
-from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, wall
+from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, thermostat, wall
 from idealgas.scene.tables.box import Box
 from idealgas.scene.tables.discs import Disc, Species
 from idealgas.scene.tables.gravity import Gravity
@@ -21,6 +21,7 @@ from idealgas.scene.tables.piston import Piston
 from idealgas.scene.tables.restitution import Rest, Restitution
 from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
+from idealgas.scene.tables.thermostat import Thermostat
 from idealgas.scene.tables.wall import Wall
 
 
@@ -36,6 +37,7 @@ class Document(Table):
     rotation: Rotation | None = Field(default=None, description="[rotation]: inertia, roughness, wall_roughness")
     restitution: Restitution | None = Field(default=None, description="[restitution]: normal, wall, contact_duration")
     piston: Piston | None = Field(default=None, description="[piston]: side, position, velocity or mass and pressure")
+    thermostat: Thermostat | None = Field(default=None, description="[thermostat]: temperature, rate")
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
     log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
 
@@ -120,6 +122,7 @@ CALLS: dict[str, Callable[[Document], Effect | None]] = {
     restitution.NAME: lambda scene: restitution.effect(scene.restitution),
     thermal.NAME: lambda scene: thermal.effect(scene.box.sides if scene.box else (), scene.wall),
     piston.NAME: lambda scene: piston.effect(scene.piston),
+    thermostat.NAME: lambda scene: thermostat.effect(scene.thermostat),
 }
 """Every effect by its name, and whether a scene calls for it; one that is being checked may lack its box."""
 

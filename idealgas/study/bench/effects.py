@@ -38,6 +38,7 @@ GRAVITY = f"[gravity]\nacceleration = [0, {-1 / SIDE!r}]\n"
 ROTATION = "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"
 RESTITUTION = "[restitution]\nnormal = 0.999\nwall = 0.999\n"
 PISTON = f'[piston]\nside = "top"\nposition = {0.95 * SIDE!r}\nmass = 100\npressure = {1.2 * NUMBER / SIDE**2!r}\n'
+THERMOSTAT = "[thermostat]\ntemperature = 1\nrate = 0.053\n"  # a tenth of the collisions of a disc per time
 
 
 def thermal(*sides: str) -> str:
@@ -54,9 +55,10 @@ SCENES = {
     "restitution": ("", RESTITUTION),
     "thermal walls": (thermal("left", "right", "bottom", "top"), ""),
     "piston": ("", PISTON),
+    "thermostat": ("", THERMOSTAT),
     "all": (
         PERIODIC.format("left", "right") + thermal("bottom"),
-        polygon(6, height=5.0) + GRAVITY + ROTATION + RESTITUTION + PISTON,
+        polygon(6, height=5.0) + GRAVITY + ROTATION + RESTITUTION + PISTON + THERMOSTAT,
     ),
 }
 """Keys of `[box]` and further tables that each effect adds to the scene of the plain box."""

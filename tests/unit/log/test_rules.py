@@ -10,6 +10,7 @@ from crafted import craft, put, read_path, refused, swap
 from log_compare import scene_of
 from log_samples import write_log
 
+from idealgas.events import BATH, Kind
 from idealgas.log import LogError, open_log
 from idealgas.run.simulate import simulate
 
@@ -75,6 +76,7 @@ VALUES = {
     "disc N": (put("events/disc", 17, 25), "events/disc .*: 25 in row 17 .allowed 0 to 24"),
     "disc 4e9": (put("events/disc", 17, 4_000_000_000), "events/disc .*: 4e.09 in row 17"),
     "partner N": (put("events/partner", 17, 25), "events/partner .*: 25 in row 17 .allowed -4 to 24"),
+    "heat bath": (put("events/partner", 17, BATH), "events/partner .*in row 17 .allowed -4 to 24"),
     "partner -2e9": (put("events/partner", 17, -2_000_000_000), "events/partner .*in row 17"),
     "wall W": (put("events/partner", 17, -5), "events/partner .*: -5 in row 17"),
     "pair of one": (put("events/partner", 17, 3), "events/partner: no pair in row"),
@@ -168,6 +170,48 @@ def test_values(sound, tmp_path, case):
     assert re.search(expected, message), message
 
 
+def kicked(partner, kind):
+    """Row 17 with this partner and kind."""
+
+    def edit(file):
+        put("events/partner", 17, partner)(file)
+        put("events/kind", 17, kind)(file)
+
+    return edit
+
+
+NOT_OF_PARTNER = "events/kind: not that of its partner in row 17"
+
+
+@pytest.mark.parametrize(
+    ("partner", "kind", "expected"),
+    [
+        (BATH, Kind.KICK, ""),
+        (BATH, Kind.WALL, NOT_OF_PARTNER),
+        (BATH, Kind.DISC, NOT_OF_PARTNER),
+        (-1, Kind.KICK, NOT_OF_PARTNER),
+        (BATH + 1, Kind.KICK, "events/partner .*in row 17 .allowed -4 to 24"),
+        (BATH, 5, r"events/kind .*: 5 in row 17 .allowed 0 to 4"),
+    ],
+)
+def test_kicks(tmp_path, partner, kind, expected):
+    """A kick has the heat bath as its partner; what a log without kicks may say of it is in VALUES."""
+    path = craft(write_log(tmp_path / "run.h5", STOP, kicks=True), kicked(partner, kind))
+    if expected:
+        assert re.search(expected, refused(path))
+    else:
+        with open_log(path) as log:
+            (rows,) = log.chunks()
+            assert log.attributes["format_version"] == 2
+        assert (rows.partner[17], rows.kind[17]) == (BATH, Kind.KICK)
+
+
+def test_a_log_without_kicks_is_read_by_programs_of_before(sound):
+    with h5py.File(sound) as file:
+        assert file.attrs["format_version"] == 1
+        assert sorted(h5py.check_enum_dtype(file["events/kind"].dtype)) == ["DISC", "PISTON", "WALL", "WALL_END"]
+
+
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
@@ -213,6 +257,14 @@ SCENES = {
     "radius": (put("discs/radius", 3, 1e-3), "not of discs with this discs/radius"),
     "gravity": (put("gravity", 1, -1.0), "gravity"),
     "wall": (texts("walls/name", 0, b"west"), "other walls"),
+    "a heat bath": (
+        scene_text(b"[run]", b"[thermostat]\ntemperature = 1\nrate = 1\n[run]"),
+        "a heat bath .got kinds of events without kicks",
+    ),
+    "no heat bath": (
+        lambda file: file.attrs.create("format_version", 2),
+        "no heat bath .got kinds of events with kicks",
+    ),
     "species": (texts("discs/species_name", 0, b"x"), "species"),
 }  # fmt: skip
 

@@ -20,7 +20,7 @@ species = [
 ]
 disc = [{ position = [7, 5], velocity = [1, 0], radius = 0.5, mass = 2 }]
 """
-FIELDS = ("gravity", "periodic", "segments", "rotation", "restitution", "thermal", "piston")
+FIELDS = ("gravity", "periodic", "segments", "rotation", "restitution", "thermal", "piston", "thermostat")
 """Of the engines' effects, in the order of EFFECTS."""
 
 
@@ -114,6 +114,19 @@ def test_thermal_walls():
     assert effects.thermal.seed.dtype == np.uint64
     assert effects.thermal.emissions.dtype == np.uint64
     assert values(effects.wall_energy).tolist() == [0.0] * 8
+
+
+def test_a_thermostat():
+    """First kicks are those of the seed, exponential: the mean of 51 within 4 of its standard errors, 1/(rate √51)."""
+    effects = effects_of("thermostat={ temperature = 1.5, rate = 0.25 }", "scene.seed=7")[1]
+    assert effects.thermostat[:3] == (1.5, 0.25, np.uint64(7))
+    first = effects.thermostat.time
+    assert (first > 0).all()
+    assert abs(first.mean() - 4) < 4 * 4 / math.sqrt(51)
+    assert (effects_of("thermostat={ temperature = 9, rate = 0.25 }", "scene.seed=7")[1].thermostat.time == first).all()
+    assert (effects.thermostat.number.dtype, effects.thermostat.number.any()) == (np.uint64, False)
+    assert values(effects.bath_energy).tolist() == [0.0]
+    assert effects.wall_energy is None
 
 
 def test_a_piston_of_given_velocity():

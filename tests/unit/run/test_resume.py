@@ -18,7 +18,17 @@ from idealgas.scene import SceneError
 
 SNAPSHOTS = "log.snapshot_every=0.37"
 EVENTS = 12_000
-SCENES = ("quickstart", "periodic", "piston", "cooling", "rough", "heat-bath", "atmosphere", "novak-bortz")
+SCENES = (
+    "quickstart",
+    "periodic",
+    "piston",
+    "cooling",
+    "rough",
+    "heat-bath",
+    "atmosphere",
+    "thermostat",
+    "novak-bortz",
+)
 
 
 def interrupted(slices):

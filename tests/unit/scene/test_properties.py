@@ -24,6 +24,7 @@ TABLES = {
     "restitution": ["restitution.normal=0.9"],
     "thermal walls": ["box.bottom={thermal=2}"],
     "piston": ["piston={side='top', position=9, velocity=0}"],
+    "thermostat": ["thermostat={temperature=3, rate=0.5}"],
 }
 """Each effect alone, in a form that goes with the others."""
 
@@ -57,17 +58,17 @@ LACKING = {
     "elastic": {"restitution"},
     "lossless": {"restitution"},
     "fixed_walls": {"piston"},
-    "isolated": {"thermal walls"},
+    "isolated": {"thermal walls", "thermostat"},
     "conserves_energy": {"gravity", "restitution", "piston"},
-    "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston"},
-    "without_places": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston"},
-    "in_steps": {"wall segments", "piston"},
+    "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston", "thermostat"},
+    "without_places": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston", "thermostat"},
+    "in_steps": {"wall segments", "piston", "thermostat"},
     "local": {"piston"},
     "scales": {"wall segments", "piston"},
     "empty": {"wall segments"},
 }
 BRINGING = {
-    "sets_in_motion": {"gravity", "piston"},
+    "sets_in_motion": {"gravity", "piston", "thermostat"},
     "grip": {"thermal walls"},
     "spins": {"rotation"},
     "driven": set(),
@@ -123,6 +124,7 @@ def test_temperatures_by_the_numbers_of_walls():
     assert found.emits == (None, 2.0, None, None, None, 4.0)
     assert found.temperatures == {2.0, 4.0}
     assert Properties().emits == (None,) * FIRST_SEGMENT
+    assert properties("box.right={thermal=2}", *TABLES["thermostat"]).temperatures == {2.0, 3.0}
 
 
 def wall(gate):
@@ -159,6 +161,7 @@ X, Y = together("periodic sides"), ["box.top=periodic", "box.bottom=periodic"]
         ([*X, "rotation.wall_roughness=0.5"], (False, False)),
         ([*X, "rotation.roughness=0.5"], (True, False)),
         ([*X, *Y, "rotation.wall_roughness=0.5"], (True, True)),
+        ([*X, *Y, *TABLES["thermostat"]], (False, False)),
     ],
 )
 def test_along_which_axes_momentum_is_kept(overrides, kept):

@@ -23,7 +23,7 @@ EFFECTS = {
     "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }": "piston",
     "wall=[{ from = [4, 0], to = [4, 3] }]": "wall segments",
     "restitution.normal=0.95": "restitution",
-    "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "walls of several temperatures",
+    "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "several temperatures",
 }
 
 

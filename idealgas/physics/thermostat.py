@@ -1,0 +1,77 @@
+"""Andersen's thermostat: at random times a heat bath kicks a disc, which gets a velocity of a gas at its temperature.
+
+The kicks of a disc are a Poisson process that depends on nothing else, so that the gas becomes canonical at any rate:
+Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed, the disc's id and the
+number of the kick (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so neither the order of events nor a resumed run
+changes them.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.physics.random_numbers import disc_uniform
+
+
+class Thermostat(NamedTuple):
+    """Parameters of the heat bath, and each disc's next kick.
+
+    Attributes:
+        temperature: of the bath, mass length²/time² (k_B = 1).
+        rate: kicks of one disc per time, 1/time.
+        seed: seed of the scene.
+        time: (N,) f8 by id, local time of each disc's next kick.
+        number: (N,) u8 by id, number of each disc's next kick, from 0.
+    """
+
+    temperature: float
+    rate: float
+    seed: np.uint64
+    time: np.ndarray
+    number: np.ndarray
+
+
+@inline
+def uniform(thermostat, own, draw):
+    """Random number in (0, 1] for a disc's next kick; draw: 3 for its time, 4 and 5 for the velocity, 6 and 7."""
+    return disc_uniform(thermostat.seed, own, thermostat.number[np.uintp(own)], draw)
+
+
+@inline
+def interval(thermostat, own):
+    """Time between the kick of a disc before and its next one: exponential, with a mean of one over the rate."""
+    return -math.log(uniform(thermostat, own, 3)) / thermostat.rate
+
+
+@njit
+def draw_first_kicks(thermostat):
+    """Draw the time of every disc's first kick, after the local time 0."""
+    for own in range(thermostat.time.shape[0]):
+        thermostat.time[own] = interval(thermostat, own)
+
+
+@inline
+def kick(disc, own, thermostat, rotation):
+    """Give a disc, whose record is at the time of its kick, a random velocity and spin, and draw its next kick.
+
+    Each component is Gaussian with variance T/m, the spin with T/I.
+    """
+    if thermostat is not None:
+        u = np.uintp(own)
+        temperature = thermostat.temperature
+        speed = math.sqrt(-2.0 * temperature / disc.m * math.log(uniform(thermostat, own, 4)))
+        angle = 2.0 * math.pi * uniform(thermostat, own, 5)
+        disc.vx = speed * math.cos(angle)
+        disc.vy = speed * math.sin(angle)
+        if rotation is not None:
+            spin = math.sqrt(-2.0 * temperature / rotation.inertia[u] * math.log(uniform(thermostat, own, 6)))
+            rotation.omega[u] = spin * math.cos(2.0 * math.pi * uniform(thermostat, own, 7))
+        thermostat.number[u] += np.uint64(1)
+        thermostat.time[u] += interval(thermostat, own)
+
+
+def end_epoch(thermostat: Thermostat, length: float) -> None:
+    """Make the local times of the next kicks count from the end of an epoch of some length (time)."""
+    thermostat.time[:] -= length
