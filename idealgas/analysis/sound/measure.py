@@ -1,0 +1,194 @@
+"""Sound: the longest waves of density in a periodic box, followed in time and compared with hydrodynamics."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.sound.law import Decay, fit
+from idealgas.analysis.sound.theory import Expected, expected_sound
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+STEPS = 24
+"""Instants in a period of the sound that is expected."""
+
+DECAYS, PERIODS = 3.0, 6.0
+"""Longest time for which a wave is followed: so many of its expected decay times or, if that is less, periods."""
+
+SEGMENTS = 32
+"""Parts of the window; the spread over them gives the error bars."""
+
+FEWEST_DECAYS = 100
+"""Number of decay times of sound that an estimate takes."""
+
+MOST_FRAMES = 2**17
+
+HYDRODYNAMIC = 0.5
+"""Largest k times the mean free path, and k times the diameter, at which waves are those of a fluid."""
+
+
+@dataclass(frozen=True)
+class Wave:
+    """The longest waves of density along the axes of the box, or along one of them.
+
+    name: the axes. wavelength: length. lag: (L,), time. correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit). error: (L,), its
+    standard error. fitted: the law that is nearest to it. theory: the law by theory; None without one. speed: of sound,
+    length/time. damping: Γ, length²/time. spreading: thermal diffusivity D_T, length²/time. exponent: adiabatic
+    exponent γ (no unit).
+    """
+
+    name: str
+    wavelength: float
+    lag: np.ndarray
+    correlation: np.ndarray
+    error: np.ndarray
+    fitted: Decay
+    theory: Decay | None
+    speed: Estimate
+    damping: Estimate
+    spreading: Estimate
+    exponent: Estimate
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        series = {name: getattr(self, name).tolist() for name in ("lag", "correlation", "error")}
+        found = {name: getattr(self, name).as_dict() for name in ("speed", "damping", "spreading", "exponent")}
+        return {"axes": self.name, "wavelength": self.wavelength, **found, **series}
+
+
+@dataclass(frozen=True)
+class Sound(Result):
+    """Sound in the gas of one log.
+
+    window: the time that was used. frames: number of instants. waves: one entry, of both axes, in a square box.
+    """
+
+    window: Window
+    frames: int
+    waves: tuple[Wave, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        waves = [wave.as_dict() for wave in self.waves]
+        return super().as_dict() | {"window": self.window.as_dict(), "frames": self.frames, "waves": waves}
+
+
+def sound(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Sound:
+    """Measure the speed and the damping of sound between two times of a log.
+
+    The amplitude ρ(t) = Σ exp(-ikx) of the longest wave along each periodic axis is followed in time. Its correlation
+    is fitted by the law of hydrodynamics (`Decay`), which has sound and a part of the wave that spreads as heat does.
+    Error bars are by the jackknife over 32 parts of the window.
+
+    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
+    states are read. Raises UserError without events, for a gas of several kinds of discs, without a periodic axis, with
+    effects other than periodic sides, or if the window is too short to follow a wave.
+    """
+    if len(composition(log.discs).name) > 1:
+        raise UserError(f"{log.path}: sound takes a gas of one species")
+    if not any(log.periodic):
+        raise UserError(f"{log.path}: sound takes a box with periodic sides, in which waves run freely")
+    window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
+    groups = [(0, 1)] if all(log.periodic) and log.box[0] == log.box[1] else list(zip(np.flatnonzero(log.periodic)))
+    waves, frames = [], 0
+    for axes in groups:
+        expected = expected_sound(log, 2 * math.pi / log.box[axes[0]])
+        step, lags = _steps(log, window, expected)
+        times = np.minimum(window.start + step * np.arange(int(window.duration / step) + 1), window.end)
+        waves.append(_wave(log, axes, expected, step * np.arange(lags), _amplitudes(log, times, axes, progress)))
+        frames += len(times)
+    premises = [sentence for wave in waves for sentence in _premises(log, window, wave)]
+    return Sound(window, frames, tuple(waves), premises=tuple(premises))
+
+
+def _steps(log: Log, window: Window, expected: Expected) -> tuple[float, int]:
+    """Time between two instants, and number of them for which a wave is followed."""
+    guess = expected.guess
+    longest = min(DECAYS / guess.damping, PERIODS * 2 * math.pi / guess.frequency, window.duration / 8)
+    step = max(min(2 * math.pi / guess.frequency, 1 / guess.damping) / STEPS, window.duration / MOST_FRAMES)
+    lags = int(longest / step) + 1
+    if lags < STEPS:
+        raise UserError(f"{log.path}: the window is shorter than {8 * STEPS * step:.3g}, in which waves can be followed")
+    return step, lags
+
+
+def _amplitudes(
+    log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Callable[[int, int], None] | None
+) -> np.ndarray:
+    """Σ exp(-ikx) over all discs (A, G) at G times, complex, of the longest waves along the axes."""
+    drift, found = ensemble(log).drift, np.empty((len(axes), len(times)), complex)
+    for g, state in enumerate(log.frames(times)):
+        for a, axis in enumerate(axes):
+            phase = (state.position[:, axis] - drift[axis] * times[g]) * (2 * math.pi / log.box[axis])
+            found[a, g] = complex(np.cos(phase).sum(), -np.sin(phase).sum())
+        if progress is not None:
+            progress(g + 1, len(times))
+    return found
+
+
+def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray:
+    """⟨ρ(t + lag) ρ*(t)⟩ (segments, lags) of amplitudes (A, G), averaged over A and over the starts of each segment."""
+    starts = amplitudes.shape[1] - lags + 1
+    edges = np.linspace(0, starts, segments + 1).astype(int)[:-1]
+    counts = np.diff(np.append(edges, starts))
+    early = amplitudes[:, :starts].conj()
+    products = ((amplitudes[:, lag : lag + starts] * early).real.mean(axis=0) for lag in range(lags))
+    return np.stack([np.add.reduceat(product, edges) / counts for product in products], axis=1)
+
+
+def _wave(log: Log, axes: tuple[int, ...], expected: Expected, lag: np.ndarray, amplitudes: np.ndarray) -> Wave:
+    """What the amplitudes (A, G) of the waves along some axes say."""
+    parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
+    whole = parts.mean(axis=0)
+    fitted = fit(lag, whole, expected.guess._replace(size=whole[0]))
+    others = [] if fitted is None else [fit(lag, (whole * SEGMENTS - part) / (SEGMENTS - 1), fitted) for part in parts]
+    if fitted is None or None in others:
+        raise UserError(f"{log.path}: the waves of density are not those of a fluid, or too few for a fit")
+    k = 2 * math.pi / log.box[axes[0]]
+
+    def estimate(quantity: Callable[[Decay], float], theory: tuple[float, float] | None) -> Estimate:
+        without = np.array([quantity(other) for other in others if other is not None])
+        error = math.sqrt((SEGMENTS - 1) * without.var())
+        return Estimate(quantity(fitted), error, float(SEGMENTS), *(theory or (None, 0.0)))
+
+    return Wave(
+        " and ".join("xy"[axis] for axis in axes),
+        log.box[axes[0]],
+        lag,
+        whole,
+        parts.std(axis=0, ddof=1) / math.sqrt(SEGMENTS),
+        fitted,
+        expected.law,
+        estimate(lambda law: law.adiabatic_frequency / k, expected.speed),
+        estimate(lambda law: law.damping / k**2, expected.damping),
+        estimate(lambda law: law.spreading / k**2, expected.spreading),
+        estimate(lambda law: law.exponent, expected.exponent),
+    )
+
+
+def _premises(log: Log, window: Window, wave: Wave) -> Iterator[str]:
+    """Sentences on what does not hold for a wave."""
+    k, radius = 2 * math.pi / wave.wavelength, float(log.discs.radius[0])
+    if wave.fitted.damping > wave.fitted.frequency:
+        yield f"The waves along {wave.name} die out within a period: they hardly are sound."
+    free_path = float(expected_free_path(log))
+    if k * max(2 * radius, free_path) > HYDRODYNAMIC:
+        yield (
+            f"The waves along {wave.name} are {wave.wavelength * max(1 / free_path, 0):.3g} mean free paths long, too "
+            "short for the laws of a fluid."
+        )
+    if window.duration * wave.fitted.damping < FEWEST_DECAYS:
+        yield f"The window has {window.duration * wave.fitted.damping:.2g} decay times of sound; estimates take {FEWEST_DECAYS}."
