@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from idealgas.analysis.profile.measure import profile
     from idealgas.analysis.registry import analyse
     from idealgas.analysis.relaxation.measure import relaxation
+    from idealgas.analysis.sound.measure import sound
     from idealgas.analysis.temperature.measure import temperature
     from idealgas.analysis.transport.measure import transport
     from idealgas.errors import OutputError, UserError
@@ -89,6 +90,7 @@ __all__ = [
     "relaxation",
     "resume",
     "simulate",
+    "sound",
     "temperature",
     "transport",
 ]

@@ -18,6 +18,7 @@ NAMES: tuple[str, ...] = (
     "relaxation",
     "transport",
     "order",
+    "sound",
     "profile",
     "evolution",
     "heat_capacity",

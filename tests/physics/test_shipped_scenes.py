@@ -18,6 +18,7 @@ from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.evolution.theory import expected_course, push
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.profile.measure import profile
+from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature.measure import temperature
 from idealgas.analysis.theory import hard_discs
 from idealgas.log import open_log
@@ -315,3 +316,11 @@ def test_piston(run):
     t = np.array([(v**2).sum() / 2 / n for v in kinetic])
     agrees(mean(t, law.temperature[0]), 0.005)
     agrees(ratio(force * (place - diameter), n * t, a / n), 0.01)
+
+
+def test_sound_of_a_fluid(run):
+    found = sound(run("sound"))
+    (wave,) = found.waves
+    agrees(wave.speed, 0.05)
+    agrees(wave.damping, 0.3)
+    assert found.premises == ()

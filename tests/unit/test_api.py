@@ -32,6 +32,13 @@ TYPES = (
     "Summary",
 )
 
+WAVES = """
+box = {size = [8, 8], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic"}
+species = [{name = "gas", count = 30, radius = 0.5, temperature = 1}]
+run.collisions_per_disc = 1500
+"""
+"""A gas that is followed for long enough to measure its sound."""
+
 
 def python(code, *arguments, folder=None):
     """What a Python of its own prints."""
@@ -42,10 +49,11 @@ def python(code, *arguments, folder=None):
 
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of old logs of many kinds of gas, by name."""
+    """Paths of logs of many kinds of gas, by name: old ones, and one of waves."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
         (folder / packed.name.removesuffix(".xz")).write_bytes(lzma.decompress(packed.read_bytes()))
+    idealgas.simulate(idealgas.parse_scene(WAVES), folder / "waves.h5")
     return {path.stem: path for path in sorted(folder.glob("*.h5"))}
 
 

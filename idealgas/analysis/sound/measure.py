@@ -1,7 +1,7 @@
 """Sound: the longest waves of density in a periodic box, followed in time and compared with hydrodynamics."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,9 @@ from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.window import Window, measure
-from idealgas.analysis.sound.law import Decay, fit
+from idealgas.analysis.sound.law import Decay, Fluid, fit
 from idealgas.analysis.sound.theory import Expected, expected_sound
+from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -39,13 +40,13 @@ HYDRODYNAMIC = 0.5
 class Wave:
     """The longest waves of density along the axes of the box, or along one of them.
 
-    name: the axes. wavelength: length. lag: (L,), time. correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit). error: (L,), its
-    standard error. fitted: the law that is nearest to it. theory: the law by theory; None without one. speed: of sound,
-    length/time. damping: Γ, length²/time. spreading: thermal diffusivity D_T, length²/time. exponent: adiabatic
+    axes: their names. wavelength: length. lag: (L,), time. correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit). error: (L,),
+    its standard error. fitted: the law that is nearest to it. theory: the law by theory; None without one. speed: of
+    sound, length/time. damping: Γ, length²/time. spreading: thermal diffusivity χ, length²/time. exponent: adiabatic
     exponent γ (no unit).
     """
 
-    name: str
+    axes: str
     wavelength: float
     lag: np.ndarray
     correlation: np.ndarray
@@ -60,8 +61,8 @@ class Wave:
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         series = {name: getattr(self, name).tolist() for name in ("lag", "correlation", "error")}
-        found = {name: getattr(self, name).as_dict() for name in ("speed", "damping", "spreading", "exponent")}
-        return {"axes": self.name, "wavelength": self.wavelength, **found, **series}
+        found = {name: getattr(self, name).as_dict() for name in Fluid._fields}
+        return {"axes": self.axes, "wavelength": self.wavelength, **found, **series}
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,8 @@ def sound(
     if not any(log.periodic):
         raise UserError(f"{log.path}: sound takes a box with periodic sides, in which waves run freely")
     window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
-    groups = [(0, 1)] if all(log.periodic) and log.box[0] == log.box[1] else list(zip(np.flatnonzero(log.periodic)))
+    alone = [(axis,) for axis in (0, 1) if log.periodic[axis]]
+    groups: Sequence[tuple[int, ...]] = [(0, 1)] if len(alone) == 2 and log.box[0] == log.box[1] else alone
     waves, frames = [], 0
     for axes in groups:
         expected = expected_sound(log, 2 * math.pi / log.box[axes[0]])
@@ -116,12 +118,13 @@ def sound(
 
 def _steps(log: Log, window: Window, expected: Expected) -> tuple[float, int]:
     """Time between two instants, and number of them for which a wave is followed."""
-    guess = expected.guess
-    longest = min(DECAYS / guess.damping, PERIODS * 2 * math.pi / guess.frequency, window.duration / 8)
-    step = max(min(2 * math.pi / guess.frequency, 1 / guess.damping) / STEPS, window.duration / MOST_FRAMES)
+    k, fluid = expected.law.k, expected.law.fluid
+    decay_time, period = 1 / (fluid.damping * k**2), 2 * math.pi / (fluid.speed * k)
+    longest = min(DECAYS * decay_time, PERIODS * period, window.duration / 8)
+    step = max(min(period, decay_time) / STEPS, window.duration / MOST_FRAMES)
     lags = int(longest / step) + 1
     if lags < STEPS:
-        raise UserError(f"{log.path}: the window is shorter than {8 * STEPS * step:.3g}, in which waves can be followed")
+        raise UserError(f"{log.path}: a window of {8 * STEPS * step:.3g} is the least in which waves can be followed")
     return step, lags
 
 
@@ -153,42 +156,41 @@ def _wave(log: Log, axes: tuple[int, ...], expected: Expected, lag: np.ndarray, 
     """What the amplitudes (A, G) of the waves along some axes say."""
     parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
     whole = parts.mean(axis=0)
-    fitted = fit(lag, whole, expected.guess._replace(size=whole[0]))
+    fitted = fit(lag, whole, expected.law._replace(size=float(whole[0])))
     others = [] if fitted is None else [fit(lag, (whole * SEGMENTS - part) / (SEGMENTS - 1), fitted) for part in parts]
-    if fitted is None or None in others:
+    without = [other.fluid for other in others if other is not None]
+    if fitted is None or len(without) < SEGMENTS:
         raise UserError(f"{log.path}: the waves of density are not those of a fluid, or too few for a fit")
-    k = 2 * math.pi / log.box[axes[0]]
-
-    def estimate(quantity: Callable[[Decay], float], theory: tuple[float, float] | None) -> Estimate:
-        without = np.array([quantity(other) for other in others if other is not None])
-        error = math.sqrt((SEGMENTS - 1) * without.var())
-        return Estimate(quantity(fitted), error, float(SEGMENTS), *(theory or (None, 0.0)))
-
+    error = np.sqrt((SEGMENTS - 1) * np.var(without, axis=0))  # the jackknife
+    quantities = {
+        name: Estimate(value, float(error[j]), float(SEGMENTS), *expected.theory(name))
+        for j, (name, value) in enumerate(fitted.fluid._asdict().items())
+    }
     return Wave(
-        " and ".join("xy"[axis] for axis in axes),
-        log.box[axes[0]],
-        lag,
-        whole,
-        parts.std(axis=0, ddof=1) / math.sqrt(SEGMENTS),
-        fitted,
-        expected.law,
-        estimate(lambda law: law.adiabatic_frequency / k, expected.speed),
-        estimate(lambda law: law.damping / k**2, expected.damping),
-        estimate(lambda law: law.spreading / k**2, expected.spreading),
-        estimate(lambda law: law.exponent, expected.exponent),
+        axes=" and ".join("xy"[axis] for axis in axes),
+        wavelength=log.box[axes[0]],
+        lag=lag,
+        correlation=whole,
+        error=parts.std(axis=0, ddof=1) / math.sqrt(SEGMENTS),
+        fitted=fitted,
+        theory=expected.law if expected.error else None,
+        **quantities,
     )
 
 
 def _premises(log: Log, window: Window, wave: Wave) -> Iterator[str]:
     """Sentences on what does not hold for a wave."""
-    k, radius = 2 * math.pi / wave.wavelength, float(log.discs.radius[0])
-    if wave.fitted.damping > wave.fitted.frequency:
-        yield f"The waves along {wave.name} die out within a period: they hardly are sound."
-    free_path = float(expected_free_path(log))
-    if k * max(2 * radius, free_path) > HYDRODYNAMIC:
+    gas, k, fluid = log.discs, wave.fitted.k, wave.fitted.fluid
+    diameter = 2 * float(gas.radius[0])
+    short = max(diameter, hard_discs.mean_free_path(diameter, len(gas) / gas.area, gas.packing_fraction))
+    if k * short > HYDRODYNAMIC:
         yield (
-            f"The waves along {wave.name} are {wave.wavelength * max(1 / free_path, 0):.3g} mean free paths long, too "
-            "short for the laws of a fluid."
+            f"The waves along {wave.axes} are {wave.wavelength / short:.3g} mean free paths or diameters long; a fluid "
+            f"takes {2 * math.pi / HYDRODYNAMIC:.3g}."
         )
-    if window.duration * wave.fitted.damping < FEWEST_DECAYS:
-        yield f"The window has {window.duration * wave.fitted.damping:.2g} decay times of sound; estimates take {FEWEST_DECAYS}."
+    if fluid.damping * k > fluid.speed:
+        yield f"The waves along {wave.axes} die out within a period: they hardly are sound."
+    if (number := window.duration * fluid.damping * k**2) < FEWEST_DECAYS:
+        yield (
+            f"The window has {number:.2g} decay times of the waves along {wave.axes}; error bars take {FEWEST_DECAYS}."
+        )

@@ -4,28 +4,38 @@ import math
 from typing import NamedTuple
 
 from idealgas.analysis.core.equilibrium import ensemble
-from idealgas.analysis.sound.law import Decay, Fluid, decay
+from idealgas.analysis.sound.law import Decay, Fluid
 from idealgas.analysis.theory import hard_discs
 from idealgas.log import Log
 
-ERRORS = Fluid(speed=0.003, damping=0.08, spreading=0.1, exponent=0.05)
-"""Relative errors of theory. That of γ includes what the amplitudes of waves of finite length have beyond it."""
+ERRORS = Fluid(speed=0.001, damping=0.05, spreading=0.1, exponent=0.001)
+"""Relative errors of theory for long waves: those of the equation of state and of Enskog's coefficients."""
 
 
 class Expected(NamedTuple):
-    """What is expected of a wave: its law, which fits start from, and the fluid by theory, None outside its range."""
+    """What is expected of a wave.
+
+    law: from which fits start. error: relative errors of its fluid; None where it does not count as theory.
+    """
 
     law: Decay
-    fluid: Fluid | None
+    error: Fluid | None
+
+    def theory(self, name: str) -> tuple[float | None, float]:
+        """Value of a quantity of the fluid and its error; None and 0 without a theory."""
+        value = getattr(self.law.fluid, name)
+        return (None, 0.0) if self.error is None else (value, value * getattr(self.error, name))
 
 
 def expected_sound(log: Log, k: float) -> Expected:
     """What is expected of waves with the wave number k, 1/length, in the gas of a log."""
     gas, temperature = log.discs, ensemble(log).temperature
     phi, mass, diameter = gas.packing_fraction, float(gas.mass[0]), 2 * float(gas.radius[0])
-    fluid = sound_of_discs(phi, temperature, mass, diameter)
     size = 1 / float(hard_discs.inverse_compressibility(phi))
-    return Expected(decay(fluid, size, k), fluid if phi <= hard_discs.HIGHEST else None)
+    law = Decay(size, k, sound_of_discs(phi, temperature, mass, diameter))
+    short = (law.fluid.damping * k / law.fluid.speed) ** 2  # what linear hydrodynamics neglects is of this order
+    errors = Fluid(*(math.hypot(error, short) for error in ERRORS))
+    return Expected(law, errors if phi <= hard_discs.HIGHEST else None)
 
 
 def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float) -> Fluid:

@@ -21,6 +21,7 @@ HIGHEST = 0.62
 
 _SERIES = Polynomial([b * 2.0**k for k, b in enumerate(VIRIAL)])
 _RESUMMED = Polynomial((_SERIES * Polynomial([1.0, -2.0, 1.0])).coef[: len(VIRIAL)])
+_PRESSURE = Polynomial([0.0, 1.0]) * _RESUMMED  # φZ (1 - φ)²
 
 
 # equation of state
@@ -42,10 +43,15 @@ def compressibility(packing_fraction: ArrayLike, number: float = math.inf) -> np
     phi = np.asarray(packing_fraction, float)
     if math.isinf(number):
         return _RESUMMED(phi) / (1 - phi) ** 2
-    q = Polynomial([0.0, 1.0]) * _RESUMMED
-    slope = q.deriv()(phi) / (1 - phi) ** 2 + 2 * q(phi) / (1 - phi) ** 3
+    q = _PRESSURE
     curvature = q.deriv(2)(phi) / (1 - phi) ** 2 + 4 * q.deriv()(phi) / (1 - phi) ** 3 + 6 * q(phi) / (1 - phi) ** 4
-    return _RESUMMED(phi) / (1 - phi) ** 2 - phi * curvature / (2 * number * slope)
+    return _RESUMMED(phi) / (1 - phi) ** 2 - phi * curvature / (2 * number * inverse_compressibility(phi))
+
+
+def inverse_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
+    """d(φZ)/dφ = (∂P/∂n)/T of the hard-disc fluid by the resummed virial series (no unit); it is 1/S(k → 0)."""
+    phi = np.asarray(packing_fraction, float)
+    return _PRESSURE.deriv()(phi) / (1 - phi) ** 2 + 2 * _PRESSURE(phi) / (1 - phi) ** 3
 
 
 def henderson_compressibility(packing_fraction: ArrayLike) -> np.ndarray:

@@ -1,0 +1,94 @@
+"""Sound: the law of a wave against its limits, correlations against a slow sum, and which gases are refused."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.sound.law import Decay, Fluid, correlation, fit
+from idealgas.analysis.sound.measure import correlations, sound
+from idealgas.analysis.sound.theory import sound_of_discs
+from idealgas.errors import UserError
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+FLUID = Fluid(speed=2.8, damping=2.5, spreading=2.4, exponent=2.1)
+TIME = np.linspace(0.0, 40.0, 201)
+
+
+@pytest.mark.parametrize("k", [0.01, 0.2, 1.0, 5.0])
+def test_every_correlation_begins_at_one_and_level(k):
+    step = 1e-6 / k
+    first, second = correlation(np.array([0.0, step]), k, FLUID)
+    assert first == pytest.approx(1.0, abs=1e-12)
+    assert (first - second) / step < 1e-3 * FLUID.speed * k
+
+
+def test_long_waves_are_heat_and_sound():
+    """To lowest order: heat is (γ - 1)/γ of the wave, and sound goes on with the speed c."""
+    k = 1e-3
+    time = np.linspace(0.0, 3 / (FLUID.damping * k**2), 400)
+    heat, damping = np.exp(-FLUID.spreading * k**2 * time), np.exp(-FLUID.damping * k**2 * time)
+    known = (1 - 1 / FLUID.exponent) * heat + damping / FLUID.exponent * np.cos(FLUID.speed * k * time)
+    assert correlation(time, k, FLUID) == pytest.approx(known, abs=2e-3)
+
+
+def test_a_fit_finds_the_fluid():
+    guess = Decay(0.3, 0.2, Fluid(2.2, 3.5, 1.5, 1.7))
+    found = fit(TIME, Decay(0.25, 0.2, FLUID).at(TIME), guess)
+    assert (found.size, *found.fluid) == pytest.approx((0.25, *FLUID), rel=1e-6)
+
+
+def test_sound_of_an_ideal_gas_is_adiabatic():
+    fluid = sound_of_discs(1e-9, temperature=3.0, mass=2.0, diameter=1.0)
+    assert (fluid.exponent, fluid.speed) == pytest.approx((2.0, np.sqrt(2 * 3.0 / 2.0)), rel=1e-6)
+
+
+def test_correlations_are_averages_over_the_starts_of_each_part():
+    draw = np.random.default_rng(1)
+    waves = draw.normal(size=(2, 50)) + 1j * draw.normal(size=(2, 50))
+    found = correlations(waves, lags=8, segments=5)
+    edges = [0, 8, 17, 25, 34, 43]
+    for part, (first, last) in enumerate(pairwise(edges)):
+        for lag in range(8):
+            slow = [(waves[a, t + lag] * waves[a, t].conjugate()).real for a in range(2) for t in range(first, last)]
+            assert found[part, lag] == pytest.approx(np.mean(slow))
+
+
+GAS = """
+box = {{size = [10, 8], left = "{x}", right = "{x}", bottom = "{y}", top = "{y}"}}
+species = [{species}]
+run.collisions_per_disc = 40
+"""
+ONE = '{name = "a", count = 20, radius = 0.5, temperature = 1}'
+
+
+def log_of(folder, species=ONE, x="periodic", y="periodic"):
+    simulate(parse_scene(GAS.format(species=species, x=x, y=y)), folder / "run.h5")
+    return open_log(folder / "run.h5")
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"x": "reflecting", "y": "reflecting"}, "periodic sides"),
+        ({"species": ONE + ", " + ONE.replace('"a"', '"b"')}, "one species"),
+        ({}, "the least in which waves can be followed"),
+    ],
+    ids=["walls", "mixture", "short"],
+)
+def test_what_has_no_sound_is_refused(tmp_path, change, complaint):
+    with log_of(tmp_path, **change) as log, pytest.raises(UserError, match=complaint):
+        sound(log, start=0.0, end=2.0)
+
+
+def test_a_wave_in_a_small_box_is_said_to_be_no_wave_of_a_fluid(tmp_path):
+    scene = GAS.format(species=ONE, x="periodic", y="reflecting").replace("disc = 40", "disc = 1000")
+    simulate(parse_scene(scene), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = sound(log, start=0.0)
+    (wave,) = found.waves
+    assert (wave.axes, wave.wavelength) == ("x", 10.0)
+    assert any("mean free paths or diameters long" in sentence for sentence in found.premises)
+    assert found.as_dict()["waves"][0]["speed"]["value"] == wave.speed.value
