@@ -11,9 +11,9 @@ import click
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
-from ._options import force_option, json_option, plot_option
+from ._options import force_option, json_option, plot_option, quiet_option
 from ._tables import print_tables
-from ._terminal import echo, terminal
+from ._terminal import data, echo, terminal, written
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.declaration import Analysis, Option
@@ -51,7 +51,7 @@ def print_json(result: dict[str, Any]) -> None:
     """Print a result as JSON."""
     import json
 
-    echo(json.dumps(result, indent=2, allow_nan=False))
+    data(json.dumps(result, indent=2, allow_nan=False))
 
 
 # ── one command an analysis ──
@@ -66,7 +66,8 @@ def analysis_command(analysis: "Analysis") -> click.Command:
     decorators = [_logs(analysis), *map(_option, analysis.options), *_common_options(analysis)]
     for decorate in reversed(decorators):
         command = decorate(command)
-    return click.command(name=analysis.key, help=analysis.help)(command)
+    example = f"Example: idealgas {analysis.key} gas.h5 --plot {analysis.key}.png"
+    return click.command(name=analysis.key, help=analysis.help, epilog=example)(command)
 
 
 def _logs(analysis: "Analysis") -> Callable:
@@ -101,6 +102,7 @@ def _common_options(analysis: "Analysis") -> Iterator[Callable]:
     yield plot_option
     yield force_option
     yield json_option
+    yield quiet_option
     words = "Print the rows of the tables as CSV with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.checked:
@@ -147,11 +149,13 @@ def _analyse(
 
         for sentence in result.premises:
             echo(f"premise: {sentence}", err=True)
-        echo(tables.as_csv(analysis.tables(result)), nl=False)
+        data(tables.as_csv(analysis.tables(result)), nl=False)
     else:
         print_tables(analysis.tables(result))
         if verdict:
             echo(f"{verdict}")
+    if plot:
+        written(plot, err=as_json or as_csv)
     if verdict and verdict.agrees is False:
         raise SystemExit(1)
 

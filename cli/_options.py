@@ -6,6 +6,8 @@ import click
 
 from idealgas.errors import UserError
 
+from ._terminal import be_quiet
+
 PICTURES = (".png", ".pdf", ".svg")
 
 
@@ -19,6 +21,11 @@ def scene_argument(command: Callable) -> Callable:
 
 
 force_option = click.option("--force", is_flag=True, help="Replace what the same command has written there before.")
+
+quiet_option = click.option(
+    "-q", "--quiet", is_flag=True, expose_value=False, callback=be_quiet,
+    help="Print nothing but errors, and what --json and --csv ask for.",
+)  # fmt: skip
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables.")
 

@@ -4,7 +4,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from ._terminal import echo, terminal
+from ._tables import facts, print_tables
+from ._terminal import data, echo
 
 if TYPE_CHECKING:
     from idealgas.log.summary import Summary
@@ -28,10 +29,11 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
             command = shlex.join(["idealgas", *sys.argv[1:]])
             summary = simulate(command=command, on_progress=show, interrupted=interrupted)
         if as_json:
-            echo(json.dumps(summary.as_dict(), indent=2))
+            data(json.dumps(summary.as_dict(), indent=2))
         else:
             _print(summary, path, from_start)
         if interrupted():
+            echo(f"interrupted; `idealgas resume {shlex.quote(path)}` goes on where it stopped", err=True)
             raise SystemExit(EXIT_CODE)
 
 
@@ -39,32 +41,27 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
     import os
 
     from rich.filesize import decimal
-    from rich.table import Table
 
-    title = output if summary.completed else f"{output} (interrupted)"
-    table = Table(title=title, title_justify="left", show_header=False)
-    table.add_column()
-    table.add_column(justify="right")
-    table.add_row("events", f"{summary.events:,}")
-    table.add_row("  disc collisions", f"{summary.disc_collisions:,}")
-    table.add_row("  wall hits", f"{summary.wall_hits:,}")
+    rows = {
+        "events": f"{summary.events:,}",
+        "  disc collisions": f"{summary.disc_collisions:,}",
+        "  wall hits": f"{summary.wall_hits:,}",
+    }
     if summary.kicks:
-        table.add_row("  kicks by the heat bath", f"{summary.kicks:,}")
+        rows["  kicks by the heat bath"] = f"{summary.kicks:,}"
     if summary.trials:
-        share = summary.disc_collisions / summary.trials
-        table.add_row("trials", f"{summary.trials:,}")
-        table.add_row("  accepted", f"{share:.4f}")
-    table.add_row("simulated time", f"{summary.end_time:.6g}")
+        rows |= {"trials": f"{summary.trials:,}", "  accepted": f"{summary.disc_collisions / summary.trials:.4f}"}
+    rows["simulated time"] = f"{summary.end_time:.6g}"
     if summary.energy_drift is None:
-        table.add_row("energy change (not conserved)", f"{summary.energy_change:.6g}")
+        rows["energy change (not conserved)"] = f"{summary.energy_change:.6g}"
     else:
-        table.add_row("energy drift", f"{summary.energy_drift:.1e}")
-    table.add_row("deepest overlap", f"{summary.deepest_overlap:.1e} diameters")
-    table.add_row("wall time", f"{summary.seconds:.2f} s")
+        rows["energy drift"] = f"{summary.energy_drift:.1e}"
+    rows["deepest overlap"] = f"{summary.deepest_overlap:.1e} diameters"
+    rows["wall time"] = f"{summary.seconds:.2f} s"
     if summary.compile_seconds > 1:
-        table.add_row("compilation (once for these effects)", f"{summary.compile_seconds:.1f} s")
+        rows["compilation (once for these effects)"] = f"{summary.compile_seconds:.1f} s"
     if from_start:
-        table.add_row("events per second", f"{summary.events / summary.seconds:,.0f}")
+        rows["events per second"] = f"{summary.events / summary.seconds:,.0f}"
     with suppress(FileNotFoundError):  # moved while it was written
-        table.add_row("file size", decimal(os.path.getsize(output)))
-    terminal().print(table)
+        rows["file size"] = decimal(os.path.getsize(output))
+    print_tables([facts(output if summary.completed else f"{output} (interrupted)", rows)])

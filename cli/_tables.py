@@ -1,34 +1,126 @@
-"""Printing of result tables on the terminal."""
+"""Printing of tables on the terminal: whatever its width, no digit is cut off."""
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
-from ._terminal import echo, terminal
+from idealgas.plain import plain
+
+from ._terminal import UNBOUNDED, echo, terminal
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.tables import Table
+    from rich.table import Table as RichTable
+    from rich.text import Text
+
+    from idealgas.analysis.core.tables import Number, Table
 
 MANY_COLUMNS = 8
 """Largest number of columns of a table with lines between them; wider tables have none."""
 
+TEXT = 16
+"""Width to which a column of text is narrowed, if all its words are shorter, before a table is cut into parts."""
+
 
 def print_tables(tables: "Iterable[Table]") -> None:
     """Print tables one below another, each after its notes."""
-    from rich import box
-    from rich.table import Table
-
     console = terminal()
+    width, console.width = console.width, UNBOUNDED  # tables fit already, or the terminal is too narrow for any
     for found in tables:
         for note in found.notes:
             echo(note)
-        if not found.rows:
-            continue
-        table = Table(title=found.title, title_justify="left")
-        if len(found.heads) > MANY_COLUMNS:
-            table.box, table.padding = box.SIMPLE, (0, 1, 0, 0)
-        for k, head in enumerate(found.heads):
-            text = k == 0 and isinstance(found.rows[0][k], str)
-            table.add_column(head, justify="left" if text else "right")
-        for row in found.shown:
-            table.add_row(*row)
-        console.print(table)
+        for part in as_rich(found, width):
+            console.print(part)
+
+
+def shown(text: str) -> "Number":
+    """A number that is written already: it stands at the right of its column and is never broken."""
+    from idealgas.analysis.core.tables import Number
+
+    return Number(None, absent=text)
+
+
+def facts(title: str, values: Mapping[str, str]) -> "Table":
+    """Table of values, each in a row with its name."""
+    from idealgas.analysis.core.tables import Table
+
+    return Table(title, ("", ""), [(name, shown(value)) for name, value in values.items()])
+
+
+class _Column(NamedTuple):
+    """A column: its heading, its cells, whether they are texts, and its width, natural and least."""
+
+    head: str
+    cells: Sequence[str]
+    text: bool
+    natural: int
+    least: int
+
+
+def as_rich(table: "Table", width: int) -> "Iterator[Text | RichTable]":
+    """Yield the title and the table for a terminal of a width; if that is too narrow in parts, with the first column.
+
+    Text is broken between its words, and numbers never.
+    """
+    from rich.text import Text
+
+    if not table.shown:
+        return
+    first, *others = _columns(table)
+    dense = len(table.heads) > MANY_COLUMNS
+    between, around = (1, 2) if dense else (3, 1)  # characters between two columns, and at both ends together
+    if table.title:
+        yield Text(plain(table.title), style="italic")
+    while others:
+        fitting = _fitting(first, others, width - around, between)
+        taken, others = [first, *others[:fitting]], others[fitting:]
+        widths = _widths(taken, width - around - between * len(taken))
+        yield _rich(taken, widths, dense)
+
+
+def _columns(table: "Table") -> list[_Column]:
+    from rich.cells import cell_len
+
+    found = []
+    for k, head in enumerate(table.heads):
+        head, cells = plain(head), [plain(row[k]) for row in table.shown]
+        text = all(isinstance(row[k], str) for row in table.rows)
+        words = max((cell_len(word) for cell in (head, *(cells if text else ())) for word in cell.split()), default=0)
+        natural = max(cell_len(line) for cell in (head, *cells) for line in (cell.splitlines() or [""]))
+        least = max(words, min(natural, TEXT)) if text else max(words, *map(cell_len, cells))
+        found.append(_Column(head, cells, text, natural, min(least, natural)))
+    return found
+
+
+def _fitting(first: _Column, others: Sequence[_Column], width: int, between: int) -> int:
+    """Number of the columns after the first one that fit into a width with it, one at least."""
+    number, used = 0, first.least + between
+    for column in others:
+        used += column.least + between
+        if number and used > width:
+            break
+        number += 1
+    return number
+
+
+def _widths(columns: Sequence[_Column], width: int) -> list[int]:
+    """Widths of columns that are to fit into a width: the widest ones that can be narrower are narrowed."""
+    widths = [column.natural for column in columns]
+    while sum(widths) > width:
+        wide = [k for k, column in enumerate(columns) if widths[k] > column.least]
+        if not wide:
+            break
+        widths[max(wide, key=lambda k: widths[k])] -= 1
+    return widths
+
+
+def _rich(columns: Sequence[_Column], widths: Sequence[int], dense: bool) -> "RichTable":
+    from rich import box
+    from rich.table import Table as RichTable
+
+    table = RichTable(show_header=any(column.head for column in columns))
+    if dense:
+        table.box, table.padding = box.SIMPLE, (0, 1, 0, 0)
+    for column, width in zip(columns, widths, strict=True):
+        table.add_column(column.head, justify="left" if column.text else "right", width=width, overflow="fold")
+    for row in zip(*(column.cells for column in columns), strict=True):
+        table.add_row(*row)
+    return table

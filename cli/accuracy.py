@@ -7,19 +7,22 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ._analysis import print_json
-from ._options import force_option, json_option, scene_argument
-from ._terminal import echo, terminal
+from ._options import force_option, json_option, quiet_option, scene_argument
+from ._tables import print_tables, shown
+from ._terminal import echo, terminal, written
 
 if TYPE_CHECKING:
-    from idealgas.study.accuracy.orbit import OrbitStudy
+    from idealgas.analysis.core.tables import Cell, Number
+    from idealgas.study.accuracy.orbit import OrbitStudy, Survival
 
 
-@click.command()
+@click.command(epilog="Example: idealgas accuracy gas.toml -o accuracy")
 @scene_argument
 @click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and pictures (PNG).")
 @click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
 @force_option
 @json_option
+@quiet_option
 def accuracy(
     path: str, overrides: tuple[str, ...], output: str | None, repeats: int, force: bool, as_json: bool
 ) -> None:
@@ -58,12 +61,12 @@ def accuracy(
         accuracy_report.write_files(paths, result, rows, figures, force)
     if as_json:
         print_json(result)
-        return
-    show()
-    for sentence in result["sentences"]:
-        echo(f"- {sentence}")
-    if paths:
-        echo(", ".join(map(str, paths)))
+    else:
+        show()
+        for sentence in result["sentences"]:
+            echo(f"- {sentence}")
+    for made in paths:
+        written(made, err=as_json)
 
 
 @contextmanager
@@ -79,23 +82,20 @@ def _progress_bar() -> Iterator[Callable[[str, float], None]]:
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
-    from rich.table import Column, Table
+    from idealgas.analysis.core.tables import Table
 
-    averages = Table(Column("", no_wrap=True), title="Time and averages", title_justify="left")
-    for head in ("ms/time", "µs/coll.", "rate bias %", "Z bias %, pairs", "Z bias %, walls", "KS (chance)"):
-        averages.add_column(head, justify="right")
-    motion = Table(Column("", no_wrap=True), title="The motion", title_justify="left")
-    for head in ("missed %", "overlap", "energy drift", "path error", "lost after", "way back"):
-        motion.add_column(head, justify="right")
-    for row in rows:
-        averages.add_row(
+    averages = [
+        (
             row["case"],
-            f"{1e3 * row['cpu_s_per_time']:.3g}",
+            shown(f"{1e3 * row['cpu_s_per_time']:.3g}"),
             _number(row["cpu_s_per_collision"], "{:.3g}", 1e6),
             *(_percent(row, name) for name in ("rate_bias", "z_pairs_bias", "z_walls_bias")),
-            _number(row["ks_distance"], "{:.3f}") + _number(row["ks_chance"], " ({:.3f})"),
+            shown(f"{_number(row['ks_distance'], '{:.3f}')}{_number(row['ks_chance'], ' ({:.3f})')}"),
         )
-        motion.add_row(
+        for row in rows
+    ]
+    motion = [
+        (
             row["case"],
             _number(row["missed_share"], "{:.3g}", 100),
             _number(row["deepest_overlap"], "{:.1e}"),
@@ -104,9 +104,11 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
             _number(row["trajectory_lost_after"], "{:.2g}"),
             _number(row["way_back_error"], "{:.1e}"),
         )
-    console = terminal()
-    console.print(averages)
-    console.print(motion)
+        for row in rows
+    ]
+    heads = ("", "ms/time", "µs/coll.", "rate bias %", "Z bias %, pairs", "Z bias %, walls", "KS (chance)")
+    of_motion = ("", "missed %", "overlap", "energy drift", "path error", "lost after", "way back")
+    print_tables([Table("Time and averages", heads, averages), Table("The motion", of_motion, motion)])
     echo(
         "path error: distance from the double-double motion after 1 collision per disc; lost after: collisions per disc"
     )
@@ -114,26 +116,24 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
     echo("per disc. All distances are rms, in diameters.")
 
 
-def _number(value: float | None, form: str, factor: float = 1.0) -> str:
-    return "" if value is None else form.format(factor * value)
+def _number(value: float | None, form: str, factor: float = 1.0) -> "Number":
+    return shown("" if value is None else form.format(factor * value))
 
 
-def _percent(row: dict[str, Any], name: str) -> str:
+def _percent(row: dict[str, Any], name: str) -> "Number":
     error = row[f"{name}_error"]
-    return "" if row[name] is None or error is None else f"{100 * row[name]:+.2f} ± {100 * error:.2f}"
+    return shown("" if row[name] is None or error is None else f"{100 * row[name]:+.2f} ± {100 * error:.2f}")
 
 
 def _print_orbit(orbit: "OrbitStudy") -> None:
-    from rich.table import Table
+    from idealgas.analysis.core.tables import Number, Table
+
+    def cells(found: "Survival") -> tuple["Cell", ...]:
+        least, most = (Number(f(found.times) if found.times else None, ".4g") for f in (min, max))
+        own = Number(found.scene, ".4g", "unbroken")
+        median, unbroken = Number(found.median, ".4g"), Number(found.unbroken, "d")
+        return found.precision, Number(found.digits, ".1f"), own, median, least, most, unbroken
 
     title = f"Unstable periodic orbit, period {orbit.period:.6g}, {orbit.placements} boxes and radii"
-    table = Table("", title=title, title_justify="left")
-    for head in ("digits", "this box", "median", "least", "most", "unbroken"):
-        table.add_column(head, justify="right")
-    for found in orbit.survivals:
-        own = "unbroken" if found.scene is None else f"{found.scene:.4g}"
-        least, most = (f"{f(found.times):.4g}" if found.times else "" for f in (min, max))
-        table.add_row(
-            found.precision, f"{found.digits:.1f}", own, f"{found.median:.4g}", least, most, f"{found.unbroken}"
-        )
-    terminal().print(table)
+    heads = ("", "digits", "this box", "median", "least", "most", "unbroken")
+    print_tables([Table(title, heads, [cells(found) for found in orbit.survivals])])

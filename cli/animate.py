@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from ._analysis import log_argument, open_log, reading
-from ._options import force_option
+from ._options import force_option, quiet_option
 from ._terminal import echo
 
 
@@ -17,7 +17,7 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     return int(match[1]), int(match[2])
 
 
-@click.command()
+@click.command(epilog="Example: idealgas animate gas.h5 -o gas.mp4 --to 10")
 @log_argument
 @click.option("-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif.")
 @click.option(
@@ -41,6 +41,7 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     help="Quantity shown by the colour of a disc.",
 )  # fmt: skip
 @force_option
+@quiet_option
 def animate(
     path: str,
     output: str,

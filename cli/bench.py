@@ -8,7 +8,8 @@ import click
 from idealgas.files import check_output
 
 from ._options import force_option, json_option, plot_option
-from ._terminal import echo, terminal
+from ._tables import print_tables, shown
+from ._terminal import data, echo, terminal, written
 
 if TYPE_CHECKING:
     from idealgas.study.bench.bench import Bench
@@ -21,7 +22,7 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
         raise click.BadParameter(f"numbers with commas between them (got {text!r})") from None
 
 
-@click.command()
+@click.command(epilog="Example: idealgas bench --number 1000 --phi 0.1,0.5")
 @click.option(
     "--number", "numbers", default="1e3,1e4,1e5", show_default=True, callback=_numbers, help="Numbers of discs N."
 )
@@ -68,6 +69,8 @@ def bench(
 
         save(bench_figure(found), plot, force)
     _show(found, as_json)
+    if plot:
+        written(plot, err=as_json)
 
 
 def _measure(numbers: list[int], fractions: list[float], threads: list[int], collisions: int, repeats: int) -> "Bench":
@@ -88,37 +91,49 @@ def _measure(numbers: list[int], fractions: list[float], threads: list[int], col
 def _show(found: "Bench", as_json: bool) -> None:
     import json
 
-    from rich.table import Table
+    from idealgas.analysis.core.tables import Number, Table
 
     if as_json:
         rows = [row._asdict() for row in found.rows]
-        echo(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
+        data(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
         return
-    table = Table("N", "φ", "threads", "log", "M collisions/s", "slowest – fastest", "log / no log")
-    for row in found.rows:
-        share = "" if row.ratio is None else f"{row.ratio:.2f}"
-        spread = f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"
-        rate = f"{row.collisions_per_s / 1e6:.3f}"
-        table.add_row(f"{row.N:,}", f"{row.phi:g}", str(row.threads), "on" if row.log else "off", rate, spread, share)
-    terminal().print(table)
+    cells = [
+        (
+            Number(row.N, ",d"),
+            Number(row.phi, "g"),
+            Number(row.threads, "d"),
+            "on" if row.log else "off",
+            Number(row.collisions_per_s / 1e6, ".3f"),
+            shown(f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"),
+            Number(row.ratio, ".2f"),
+        )
+        for row in found.rows
+    ]
+    heads = ("N", "φ", "threads", "log", "M collisions/s", "slowest – fastest", "log / no log")
+    print_tables([Table("", heads, cells)])
     echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")
 
 
 def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
     import json
 
-    from rich.table import Table
-
+    from idealgas.analysis.core.tables import Number, Table
     from idealgas.study.bench.effects import bench_effects
 
     console = terminal(err=True)
     with console.status("compiling") as status:
         rows = bench_effects(events, repeats, lambda row: status.update(f"{row.effect}: {row.ratio:.2f}"))
     if as_json:
-        echo(json.dumps({"rows": [row._asdict() for row in rows]}, indent=2))
+        data(json.dumps({"rows": [row._asdict() for row in rows]}, indent=2))
         return
-    table = Table("effect", "time per event / plain box", "smallest – largest", "compiling or loading, s")
-    for row in rows:
-        spread = f"{row.smallest:.2f} – {row.largest:.2f}"
-        table.add_row(row.effect, f"{row.ratio:.2f}", spread, f"{row.compile_seconds:.1f}")
-    terminal().print(table)
+    cells = [
+        (
+            found.effect,
+            Number(found.ratio, ".2f"),
+            shown(f"{found.smallest:.2f} – {found.largest:.2f}"),
+            Number(found.compile_seconds, ".1f"),
+        )
+        for found in rows
+    ]
+    heads = ("effect", "time per event / plain box", "smallest – largest", "compiling or loading, s")
+    print_tables([Table("", heads, cells)])

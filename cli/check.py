@@ -1,16 +1,16 @@
 """Command `idealgas check`: errors of a scene, and cost estimate of its run."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import click
 
 from ._options import json_option, scene_argument
-from ._terminal import echo, terminal
+from ._tables import print_tables, shown
+from ._terminal import data, echo
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
+    from idealgas.analysis.core.tables import Number, Table
     from idealgas.analysis.theory.forecast import Forecast
     from idealgas.scene import Rest, Scene
 
@@ -18,7 +18,7 @@ MANY_HITS = 100.0
 """Hits of a disc at rest in a mean free time of the gas, above which `check` warns of them."""
 
 
-@click.command()
+@click.command(epilog="Example: idealgas check gas.toml --set species.count=500")
 @scene_argument
 @json_option
 def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
@@ -40,11 +40,10 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         sharing = {"threads": threads.number, "threads_because": threads.because}
-        echo(json.dumps({"scene": tables, **effects, **sharing, **asdict(expected)}, indent=2))
+        data(json.dumps({"scene": tables, **effects, **sharing, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
-    console = terminal()
-    console.print(_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until))
+    print_tables([_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until)])
     if expected.rough:
         echo(f"about: {expected.rough}")
     for sentence in expected.premises:
@@ -62,7 +61,7 @@ def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:
     """What discs do that have come to rest, and a warning if that is to take most of the run."""
     least, most = rest.hits
     if most is None or rest.per_free_time is None:
-        yield "warning: with a coefficient of restitution of 0, a disc that comes to rest collides without end there"
+        yield "warning: With a coefficient of restitution of 0, a disc that comes to rest collides without end there."
         return
     yield (
         f"at rest: a disc goes on bouncing, {least:.4g} to {most:.4g} times per time, up to a height of "
@@ -70,8 +69,8 @@ def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:
     )
     if rest.per_free_time > MANY_HITS:
         yield (
-            f"warning: a disc at rest makes up to {rest.per_free_time:.3g} times the events of a disc of the gas at "
-            f"first, all {number} together {number * most:.3g} per time: a longer contact duration bounds them"
+            f"warning: A disc at rest makes up to {rest.per_free_time:.3g} times the events of a disc of the gas at "
+            f"first, all {number} together {number * most:.3g} per time; a longer contact duration bounds them."
         )
 
 
@@ -81,52 +80,55 @@ def _absent(scene: "Scene") -> tuple[str, ...]:
     return tuple(name for name in EFFECTS if name not in scene.effects)
 
 
-def _number(value: float | None, digits: str = ".5g", rough: str = "") -> str:
-    return "not known" if value is None else f"{'about ' * bool(rough)}{value:{digits}}"
+def _number(value: float | None, digits: str = ".5g", rough: str = "") -> "Number":
+    return shown("not known" if value is None else f"{'about ' * bool(rough)}{value:{digits}}")
 
 
 def _species_table(expected: "Forecast") -> "Table":
-    from rich.table import Table
+    from idealgas.analysis.core.tables import Cell, Number, Table
 
-    table = Table("species", title="Discs at the start", title_justify="left")
-    for head in ("N", "radius", "mass", "φ", "temperature", "collisions per disc and time"):
-        table.add_column(head, justify="right")
-    for s in expected.species:
-        values = (s.radius, s.mass, s.packing_fraction, s.temperature)
-        rate = _number(s.collision_rate, rough=expected.rough)
-        table.add_row(s.name, str(s.number), *map(_number, values), rate)
-    return table
+    rows: list[Sequence[Cell]] = [
+        [
+            s.name,
+            Number(s.number, "d"),
+            *map(_number, (s.radius, s.mass, s.packing_fraction, s.temperature)),
+            _number(s.collision_rate, rough=expected.rough),
+        ]
+        for s in expected.species
+    ]
+    heads = ("species", "N", "radius", "mass", "φ", "temperature", "collisions per disc and time")
+    return Table("Discs at the start", heads, rows)
 
 
 def _walls_table(scene: "Scene") -> "Table":
-    from rich.table import Table
-
+    from idealgas.analysis.core.tables import Cell, Table
     from idealgas.scene.walls import number_walls
 
-    table = Table("wall", "name", "from", "to", "what it does", title="Walls", title_justify="left")
-    for k, wall in enumerate(number_walls(scene)):
-        table.add_row(str(k), wall.name, *(f"({x:.6g}, {y:.6g})" for x, y in (wall.start, wall.end)), wall.action)
-    return table
+    rows: list[Sequence[Cell]] = [
+        (str(k), wall.name, *(shown(f"({x:.6g}, {y:.6g})") for x, y in (wall.start, wall.end)), wall.action)
+        for k, wall in enumerate(number_walls(scene))
+    ]
+    return Table("Walls", ("wall", "name", "from", "to", "what it does"), rows)
 
 
 def _gas_table(expected: "Forecast", until: float | None) -> "Table":
     from rich.filesize import decimal
-    from rich.table import Table
 
-    table = Table("the gas", title="Expected in equilibrium", title_justify="left", show_header=False)
-    table.add_column(justify="right")
-    table.add_row("discs N", f"{expected.number}")
-    table.add_row("packing fraction φ", f"{expected.packing_fraction:.5g}")
-    table.add_row("temperature T", _number(expected.temperature))
+    from idealgas.analysis.core.tables import Number, Table
+
     rough, ends = expected.rough, "" if expected.duration == until else expected.rough
-    table.add_row("collisions per disc and time Γ", _number(expected.collision_rate, rough=rough))
-    table.add_row("pair collisions per time", _number(expected.pair_collision_rate, rough=rough))
-    table.add_row("wall hits per time", _number(expected.wall_hit_rate, rough=rough))
-    if expected.kick_rate:
-        table.add_row("kicks by the heat bath per time", _number(expected.kick_rate))
-    table.add_row("end of the run, time", _number(expected.duration, rough=ends))
-    table.add_row("events", _number(expected.events, ",.0f", rough))
-    table.add_row("rows in the log", _number(expected.rows, ",.0f", rough))
     size = "not known" if expected.bytes is None else f"{'about ' * bool(rough)}{decimal(int(expected.bytes))}"
-    table.add_row("size of the log", size)
-    return table
+    rows = [
+        ("discs N", Number(expected.number, "d")),
+        ("packing fraction φ", _number(expected.packing_fraction)),
+        ("temperature T", _number(expected.temperature)),
+        ("collisions per disc and time Γ", _number(expected.collision_rate, rough=rough)),
+        ("pair collisions per time", _number(expected.pair_collision_rate, rough=rough)),
+        ("wall hits per time", _number(expected.wall_hit_rate, rough=rough)),
+        *([("kicks by the heat bath per time", _number(expected.kick_rate))] if expected.kick_rate else []),
+        ("end of the run, time", _number(expected.duration, rough=ends)),
+        ("events", _number(expected.events, ",.0f", rough)),
+        ("rows in the log", _number(expected.rows, ",.0f", rough)),
+        ("size of the log", shown(size)),
+    ]
+    return Table("Expected in equilibrium", ("", ""), rows)

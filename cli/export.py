@@ -3,13 +3,13 @@
 import click
 
 from ._analysis import log_argument, open_log
-from ._options import force_option
+from ._options import force_option, quiet_option
 from ._terminal import echo
 
 KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
 
-@click.command()
+@click.command(epilog="Example: idealgas export gas.h5 --format extxyz --frames 100 -o gas.extxyz")
 @log_argument
 @click.option("--format", "kind", type=click.Choice(KINDS), required=True, help="Format of the file.")
 @click.option("--events", is_flag=True, help="Write all events (csv, parquet).")
@@ -20,6 +20,7 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 )
 @click.option("-o", "--output", metavar="OUT", help="The file to write.  [default: RUN with the format's ending]")
 @force_option
+@quiet_option
 def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:
     """Write the events of a log, or frames of all discs, into a file that other programs read.
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ._analysis import log_argument
+from ._tables import as_rich, facts
 from ._terminal import terminal
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ SECONDS = 1.0  # between two updates
 WIDTH = 50
 
 
-@click.command()
+@click.command(epilog="Example: idealgas follow gas.h5")
 @log_argument
 @click.option("--once", is_flag=True, help="Show the status once and end.")
 def follow(path: str, once: bool) -> None:
@@ -45,32 +46,31 @@ def follow(path: str, once: bool) -> None:
             if once:
                 break
             if console.is_terminal:
-                screen.update(_view(log, seen, rate), refresh=True)
+                screen.update(_view(log, seen, rate, console.width), refresh=True)
     with open_log(path) as log:  # opened again, as it may have been closed
         if log.complete:
             rate = log.summary["events"] / log.summary["seconds"]
-        shown = _view(log, status(log), rate)
+        shown = _view(log, status(log), rate, console.width)
     console.print(shown)
 
 
-def _view(log: "Log", seen: "Status", rate: float | None) -> "Group":
+def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group":
     from rich.console import Group
-    from rich.table import Table
 
     state = (
         "complete" if log.complete else "running" if log.live else "its writer died" if log.unclosed else "interrupted"
     )
-    table = Table(title=f"{log.path}: {state}", title_justify="left", show_header=False)
-    table.add_column()
-    table.add_column(justify="right")
-    table.add_row("time", f"{seen.time:.6g}")
-    table.add_row("events", f"{seen.events:,}")
-    table.add_row("events per second", "-" if rate is None else f"{rate:,.0f}")
-    table.add_row("temperature", f"{seen.temperature:.6g}")
+    rows = {
+        "time": f"{seen.time:.6g}",
+        "events": f"{seen.events:,}",
+        "events per second": "-" if rate is None else f"{rate:,.0f}",
+        "temperature": f"{seen.temperature:.6g}",
+    }
     for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility)):
-        table.add_row(name, "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}")
-    table.add_row("KS distance of speeds", "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}")
-    return Group(*(f"premise: {sentence}" for sentence in seen.premises), table, _histogram(seen))
+        rows[name] = "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}"
+    rows["KS distance of speeds"] = "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}"
+    table = as_rich(facts(f"{log.path}: {state}", rows), width)
+    return Group(*(f"premise: {sentence}" for sentence in seen.premises), *table, _histogram(seen))
 
 
 def _histogram(seen: "Status") -> str:

@@ -6,13 +6,14 @@ import click
 
 from ._analysis import log_argument, open_log, print_json
 from ._options import json_option
-from ._terminal import terminal
+from ._tables import print_tables
+from ._terminal import echo
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from idealgas.analysis.core.tables import Table
 
 
-@click.command()
+@click.command(epilog="Example: idealgas info gas.h5")
 @log_argument
 @json_option
 def info(path: str, as_json: bool) -> None:
@@ -24,20 +25,18 @@ def info(path: str, as_json: bool) -> None:
     if as_json:
         print_json(found)
         return
-    console = terminal()
-    for name, values in found.items():
-        console.print(_table(name, {key: value for key, value in values.items() if key != "species"}))
+    print_tables(
+        _table(name, {key: value for key, value in values.items() if key != "species"})
+        for name, values in found.items()
+    )
     for species in found["gas"]["species"]:
-        console.print("species: " + ", ".join(f"{key} {_text(value)}" for key, value in species.items()))
+        echo("species: " + ", ".join(f"{key} {_text(value)}" for key, value in species.items()))
 
 
 def _table(title: str, values: dict[str, Any]) -> "Table":
-    from rich.table import Table
+    from idealgas.analysis.core.tables import Table
 
-    table = Table(title=title, title_justify="left", show_header=False, min_width=60)
-    for key, value in values.items():
-        table.add_row(key.replace("_", " "), _text(value))
-    return table
+    return Table(title, ("", ""), [(key.replace("_", " "), _text(value)) for key, value in values.items()])
 
 
 def _text(value: Any) -> str:

@@ -10,29 +10,44 @@ import logging
 import os
 import sys
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import Any
 
 import click
 
 from idealgas import __version__
 from idealgas.analysis import registry
+from idealgas.analysis.core.declaration import unknown
 from idealgas.errors import UserError
 
-from . import __path__ as folder
 from ._analysis import analysis_command
 from ._interrupt import EXIT_CODE
-from ._terminal import echo
+from ._terminal import echo, readers_may_go
+
+GROUPS = {
+    "Run": ("check", "run", "resume", "recover"),
+    "Look": ("info", "follow", "animate"),
+    "Analyse": registry.commands(),
+    "Share": ("report", "export"),
+    "Study": ("sweep", "accuracy", "bench"),
+}
+"""All commands in the groups, and in the order, in which `--help` shows them."""
+
+EXAMPLES = {
+    "Run": "idealgas run gas.toml -o gas.h5",
+    "Look": "idealgas info gas.h5",
+    "Analyse": "idealgas pressure gas.h5 --plot pressure.png",
+    "Share": "idealgas report gas.h5 -o gas.html",
+    "Study": "idealgas sweep phi.toml -o phi",
+}
+"""A command of each group."""
 
 
 class Commands(click.Group):
     """Group of all commands: modules of this folder and analyses. It prints errors of the user as plain lines."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all commands in alphabetical order."""
-        names = (module.name for module in iter_modules(folder))
-        modules = (name.replace("_", "-") for name in names if name != "main" and not name.startswith("_"))
-        return sorted([*modules, *registry.commands()])
+        """Names of all commands, group by group."""
+        return [name for names in GROUPS.values() for name in names]
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Command of a name; None if there is none."""
@@ -43,6 +58,25 @@ class Commands(click.Group):
         module = name.replace("-", "_")
         return getattr(import_module(f".{module}", __package__), module)
 
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of the commands: each group with an example, each command with its first sentence."""
+        widest = max(map(len, self.list_commands(ctx)))
+        for group, names in GROUPS.items():
+            commands = [(name, self.get_command(ctx, name)) for name in names]
+            rows = [(name.ljust(widest), first_sentence(command)) for name, command in commands if command]
+            with formatter.section(f"{group}, as in `{EXAMPLES[group]}`"):
+                formatter.write_dl(rows)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Options and the rest of a command line; `help NAME` is `NAME --help`."""
+        return super().parse_args(ctx, [*args[1:], "--help"] if args[:1] == ["help"] else args)
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[Any, ...]:
+        """Name and command of a command line, and its arguments; UserError, with the most similar name, for others."""
+        if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
+            raise unknown("command", args[0], self.list_commands(ctx))
+        return super().resolve_command(ctx, args)
+
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the program; characters that the terminal does not have are written out."""
         for stream in (sys.stdout, sys.stderr):
@@ -51,11 +85,17 @@ class Commands(click.Group):
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
         return super().main(*args, **options)
 
+    def make_context(self, *args: Any, **options: Any) -> click.Context:
+        """Parse the command line, and print help if that is asked for."""
+        with readers_may_go():
+            return super().make_context(*args, **options)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; print a UserError as one line and exit with its code."""
         try:
             _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
-            return super().invoke(ctx)
+            with readers_may_go():
+                return super().invoke(ctx)
         except UserError as error:
             echo(str(error), err=True)
             ctx.exit(error.exit_code)
@@ -67,13 +107,22 @@ class Commands(click.Group):
             ctx.exit(1)
 
 
+def first_sentence(command: click.Command) -> str:
+    """First sentence of the help of a command, on one line."""
+    return command.get_short_help_str(limit=1000)
+
+
 def _check_threads(number: str) -> None:
     """UserError for a value at which numba cannot be imported."""
     if not (number.isascii() and number.isdigit() and int(number)):
         raise UserError(f"NUMBA_NUM_THREADS: no number of threads (got {number}; allowed a whole number >= 1)")
 
 
-@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="idealgas")
+@click.command(
+    cls=Commands,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="`idealgas COMMAND --help` explains a command and its options.",
+)
+@click.version_option(__version__, "-V", "--version", prog_name="idealgas")
 def main() -> None:
     """Exact simulation of a two-dimensional gas of hard discs, with every event on record."""

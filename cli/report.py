@@ -3,11 +3,11 @@
 import click
 
 from ._analysis import log_argument, open_log, reading
-from ._options import force_option
-from ._terminal import echo
+from ._options import force_option, quiet_option
+from ._terminal import written
 
 
-@click.command()
+@click.command(epilog="Example: idealgas report gas.h5 -o gas.html")
 @log_argument
 @click.option("-o", "--output", required=True, metavar="REPORT.html", help="The page to write.")
 @click.option(
@@ -18,6 +18,7 @@ from ._terminal import echo
     help="First time in the player, in simulated time.  [default: the log's start]",
 )
 @force_option
+@quiet_option
 def report(path: str, output: str, start: float | None, force: bool) -> None:
     """Write one page with every analysis that applies, and a player that moves the discs.
 
@@ -27,4 +28,4 @@ def report(path: str, output: str, start: float | None, force: bool) -> None:
 
     with open_log(path) as log, reading("analyses") as progress:
         write_report(log, output, start=start, force=force, on_step=progress)
-    echo(output)
+    written(output)

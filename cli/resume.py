@@ -5,10 +5,10 @@ from typing import Any
 import click
 
 from ._analysis import log_argument
-from ._options import json_option
+from ._options import json_option, quiet_option
 
 
-@click.command()
+@click.command(epilog="Example: idealgas resume gas.h5 --until 200")
 @log_argument
 @click.option("--until", type=float, metavar="T", help="End at this simulated time.")
 @click.option("--events", type=int, metavar="N", help="End after this number of events since time 0.")
@@ -17,6 +17,7 @@ from ._options import json_option
 )
 @click.option("--trials", type=int, metavar="N", help="With monte_carlo: end after this number of trials since time 0.")
 @json_option
+@quiet_option
 def resume(path: str, as_json: bool, **ends: Any) -> None:
     """Continue a run from its last checkpoint, if it was interrupted or killed, or if it is to end later.
 

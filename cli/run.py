@@ -2,14 +2,15 @@
 
 import click
 
-from ._options import force_option, json_option, scene_argument
+from ._options import force_option, json_option, quiet_option, scene_argument
 
 
-@click.command()
+@click.command(epilog="Example: idealgas run gas.toml -o gas.h5")
 @scene_argument
 @click.option("-o", "--output", required=True, metavar="RUN.h5", help="The log to write.")
 @force_option
 @json_option
+@quiet_option
 def run(path: str, overrides: tuple[str, ...], output: str, force: bool, as_json: bool) -> None:
     """Run a scene and write every event into an HDF5 log. After Ctrl-C, `resume` continues the run from its log."""
     from idealgas.scene import load_scene

@@ -8,6 +8,8 @@ import click
 
 from idealgas.errors import UserError
 
+from ._options import quiet_option
+from ._tables import print_tables, shown
 from ._terminal import echo, terminal
 
 if TYPE_CHECKING:
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
     from idealgas.study.sweep.run import Progress
 
 
-@click.command()
+@click.command(epilog="Example: idealgas sweep phi.toml -o phi --workers 2")
 @click.argument("path", metavar="SWEEP.toml")
 @click.option("-o", "--output", metavar="DIR", help="Folder for logs and results; an existing one is continued.")
 @click.option(
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 )
 @click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
 @click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
+@quiet_option
 def sweep(path: str, output: str | None, workers: int | None, scheduler: str | None, dry_run: bool) -> None:
     """Run a scene at many points and collect the results of its analyses in DIR/results.csv.
 
@@ -101,18 +104,25 @@ def _print_plan(plan: "Sweep", workers: int | None) -> None:
     import os
 
     from rich.filesize import decimal
-    from rich.table import Table
 
+    from idealgas.analysis.core.tables import Cell, Number, Table
     from idealgas.study.sweep.cost import estimate_cost
 
     workers = workers or os.cpu_count() or 1
     costs = estimate_cost(plan)
-    table = Table("point", "replicate", *plan.axes, "N", "φ", "events", "log")
-    for point, cost in zip(plan.points, costs, strict=True):
-        values = (f"{value:.6g}" if isinstance(value, float) else str(value) for value in point.values.values())
-        sizes = (f"{cost.number}", f"{cost.packing_fraction:.4g}", f"{cost.events:,.0f}", decimal(int(cost.bytes)))
-        table.add_row(str(point.index), str(point.replicate), *values, *sizes)
-    terminal().print(table)
+    rows: list[tuple[Cell, ...]] = [
+        (
+            str(point.index),
+            Number(point.replicate, "d"),
+            *(shown(f"{value:.6g}" if isinstance(value, float) else str(value)) for value in point.values.values()),
+            Number(cost.number, "d"),
+            Number(cost.packing_fraction, ".4g"),
+            Number(cost.events, ",.0f"),
+            shown(decimal(int(cost.bytes))),
+        )
+        for point, cost in zip(plan.points, costs, strict=True)
+    ]
+    print_tables([Table("", ("point", "replicate", *plan.axes, "N", "φ", "events", "log"), rows)])
     size = sum(cost.bytes for cost in costs)
     kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
     seconds = sum(cost.seconds for cost in costs) / workers

@@ -127,12 +127,12 @@ species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1 }]
         (
             "restitution.contact_duration=1e-6",
             "1e+06 to 1.111e+06 times per time",
-            "warning: a disc at rest makes up to",
+            "warning: A disc at rest makes up to",
         ),
         (
             "restitution.wall=0",
             "",
-            "warning: with a coefficient of restitution of 0, a disc that comes to rest collides",
+            "warning: With a coefficient of restitution of 0, a disc that comes to rest collides",
         ),
         ("gravity=", "", ""),
     ],

@@ -1,13 +1,80 @@
+import os
+import re
+import shlex
 import subprocess
 import sys
 
 import click
 import pytest
 from click.testing import CliRunner
-from idealgas_cli.main import Commands, main
+from idealgas_cli.main import EXAMPLES, Commands, first_sentence, main
+from support import IDEALGAS, ROOT, called, idealgas
 
 from idealgas import __version__
+from idealgas.analysis import registry
 from idealgas.errors import UserError
+
+SCENE = """
+box.size = [20, 20]
+species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
+run.collisions_per_disc = 100
+"""
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """A log that `run` has written without a word."""
+    folder = tmp_path_factory.mktemp("commands")
+    (folder / "scene.toml").write_text(SCENE)
+    ran = called("run", "scene.toml", "-o", "run.h5", "--quiet", folder=folder)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
+    return folder / "run.h5"
+
+
+def numbers(text):
+    """The numbers of a text in order, and whether something of it is cut off."""
+    assert "…" not in text
+    return sorted(re.findall(r"[-+]?\d+\.?\d*(?:e[-+]\d+)?", text))
+
+
+@pytest.mark.parametrize("columns", [20, 40, 79, 100])
+def test_a_narrow_terminal_shows_every_digit(log, columns):
+    """The same numbers as at full width; the names of the rows are repeated in each part of a table."""
+    for command in ("pressure", "transport", "temperature"):
+        shown = idealgas(command, log, COLUMNS=str(columns))
+        whole = idealgas(command, log)
+        assert set(numbers(whole.stdout)) == set(numbers(shown.stdout))
+        tables = [line for line in shown.stdout.splitlines() if line[:1] in "│┃"]
+        assert tables
+        if columns >= 40:
+            assert max(map(len, tables)) <= columns
+
+
+def test_a_pipe_has_the_full_width(log):
+    assert max(map(len, idealgas("info", log).stdout.splitlines())) > 100
+
+
+def test_what_is_written_is_named(log, tmp_path):
+    picture = tmp_path / "t.png"
+    for options, stream in (((), "stdout"), (("--json",), "stderr"), (("--csv",), "stderr")):
+        done = called("temperature", log, "--plot", picture, "--force", *options)
+        assert f"{picture}: written\n" in getattr(done, stream)
+        assert done.stdout.count(": written") == (not options)
+    done = called("temperature", log, "--plot", picture, "--force", "--quiet")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_quiet_command_still_prints_what_is_asked_for_and_errors(log):
+    assert called("temperature", log, "-q", "--json").stdout.startswith("{")
+    assert called("temperature", log, "-q", "--csv").stdout.startswith("table,")
+    missing = called("temperature", "missing.h5", "-q")
+    assert (missing.returncode, missing.stderr.count("\n")) == (2, 1)
+
+
+def test_every_analysis_has_json_csv_and_a_picture():
+    for name in registry.commands():
+        options = {option for param in main.get_command(None, name).params for option in param.opts}
+        assert {"--json", "--csv", "--plot", "--quiet"} <= options
 
 
 def test_help_lists_the_commands():
@@ -38,15 +105,62 @@ def test_every_command_has_help():
         assert CliRunner().invoke(main, [name, "--help"]).exit_code == 0
 
 
-def test_version():
-    result = CliRunner().invoke(main, ["--version"])
-    assert result.output == f"idealgas, version {__version__}\n"
+@pytest.mark.parametrize("flag", ["--version", "-V"])
+def test_version(flag):
+    assert called(flag).stdout == f"idealgas, version {__version__}\n"
 
 
 def test_an_unknown_command():
-    result = CliRunner().invoke(main, ["chek"])
-    assert result.exit_code == 2
-    assert "No such command" in result.output
+    done = called("presure", "run.h5")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith('unknown command, did you mean "pressure"? (got presure; allowed ')
+    assert done.stderr.count("\n") == 1
+
+
+def test_every_module_is_a_command_of_one_group():
+    listed = main.list_commands(click.Context(main))
+    modules = {path.stem for path in (ROOT / "cli").glob("[!_]*.py")} - {"main"}
+    assert sorted(listed) == sorted([*(name.replace("_", "-") for name in modules), *registry.commands()])
+
+
+def test_help_shows_every_group_with_an_example_and_no_summary_cut_off():
+    said = called("--help").stdout
+    lines = " ".join(said.split())
+    for group, example in EXAMPLES.items():
+        assert f"{group}, as in `{example}`:" in said
+    for name in main.list_commands(click.Context(main)):
+        assert first_sentence(main.get_command(None, name)).replace("- ", "-") in lines.replace("- ", "-")
+    assert not re.search(r"\w\.\.\.", said)
+    assert called("-h").stdout == called("help").stdout == said
+
+
+def test_help_of_a_command():
+    assert called("help", "run").stdout == called("run", "--help").stdout
+    assert "did you mean" in called("help", "rum").stderr
+
+
+def examples():
+    """All examples that the program gives, as words."""
+    of_commands = (main.get_command(None, name).epilog for name in main.list_commands(click.Context(main)))
+    texts = [*EXAMPLES.values(), *(text.removeprefix("Example: ") for text in of_commands)]
+    return [shlex.split(text) for text in texts]
+
+
+@pytest.mark.parametrize("words", examples(), ids=" ".join)
+def test_examples_are_command_lines(words):
+    program, name, *arguments = words
+    assert program == "idealgas"
+    assert main.get_command(None, name).make_context(name, arguments, parent=click.Context(main)).args == []
+
+
+@pytest.mark.parametrize("arguments", [("--help",), ("help", "run"), ("pressure", "run.h5"), ("info", "run.h5")])
+def test_a_reader_that_goes_ends_the_program_quietly(arguments, log):
+    """141 is 128 + SIGPIPE, what a shell says of a program that the signal has ended."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run([IDEALGAS, *arguments], stdout=writer, stderr=subprocess.PIPE, cwd=log.parent, text=True)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, "")
 
 
 class DiskFull(UserError):

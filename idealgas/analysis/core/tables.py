@@ -5,11 +5,12 @@ import io
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from idealgas.analysis.core.collisions import CollisionRate, FreePath
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.window import Window
+if TYPE_CHECKING:
+    from idealgas.analysis.core.collisions import CollisionRate, FreePath
+    from idealgas.analysis.core.statistics import Estimate
+    from idealgas.analysis.core.window import Window
 
 
 class Number(NamedTuple):
@@ -72,12 +73,12 @@ CSV_HEADS = {
 """Column names in CSV that differ from the shown headings; they are those of the results of a sweep."""
 
 
-def estimates(title: str, rows: Iterable[tuple[str, Estimate]], notes: Sequence[str] = ()) -> Table:
+def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequence[str] = ()) -> Table:
     """Table of named estimates with value, standard error, independent samples, theory, its error and deviation."""
     rows = list(rows)
     rough = any(found.theory_error > 0 for _, found in rows)
 
-    def cells(name: str, found: Estimate) -> tuple[Cell, ...]:
+    def cells(name: str, found: "Estimate") -> tuple[Cell, ...]:
         by_law = math.isinf(found.independent_samples)
         samples = Number(found.independent_samples, ".0f", instead="" if by_law else None)
         spread = Number(found.standard_error, ".2g", instead="exact" if by_law and found.standard_error == 0 else None)
@@ -89,7 +90,7 @@ def estimates(title: str, rows: Iterable[tuple[str, Estimate]], notes: Sequence[
     return Table(title, heads, [cells(*row) for row in rows], notes)
 
 
-def collision_tables(rates: Iterable[CollisionRate], paths: Iterable[FreePath]) -> list[Table]:
+def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath]") -> list[Table]:
     """Tables of collision rates (1/time), mean free paths (length) and mean free times (time) of each species."""
     between = [
         (f"{entry.species}: {name}", value)
@@ -106,7 +107,7 @@ def collision_tables(rates: Iterable[CollisionRate], paths: Iterable[FreePath]) 
     ]
 
 
-def describe(window: Window) -> str:
+def describe(window: "Window") -> str:
     """One line that describes the window of time an analysis used."""
     how = "from detected equilibrium" if window.detected else "as asked"
     return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"

@@ -95,7 +95,7 @@ class Point:
     """One point of a sweep: one run.
 
     index: number of the point. combination: number of its combination of values. replicate: number of its replicate.
-    values: value of each axis, by its key. scene: the scene to run.
+    values: value of each axis, by its key, in the order of the axes. scene: the scene to run.
     """
 
     index: int
@@ -221,7 +221,7 @@ def _points(tables: Tables, bases: dict[Value | None, Base], origin: Origin) -> 
             for replicate in range(settings.replicates):
                 document.setdefault("scene", {})["seed"] = seed_of(settings.seed, combination, replicate)
                 scene = make_scene(document, _placed(base_origin, places))
-                named = {tables.axis[i].key: value for i, value in pairs}
+                named = {tables.axis[i].key: value for i, value in sorted(pairs, key=lambda pair: pair[0])}
                 points.append(Point(len(points), combination, replicate, named, scene))
         except SceneError as error:
             errors |= dict.fromkeys(error.errors)
