@@ -144,12 +144,10 @@ def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window,
 
 def _compressibility(log: Log) -> float | None:
     """Limit of S(k) at small k, 1/(d(φZ)/dφ), of a fluid of equal discs in a periodic box; None for other gases."""
-    gas, step = log.discs, 1e-5
-    phi = gas.packing_fraction
+    gas, phi = log.discs, log.discs.packing_fraction
     if not all(log.periodic) or np.ptp(gas.radius) > 0 or phi > hard_discs.HIGHEST:
         return None
-    near = phi * (1 + step * np.array((-1.0, 1.0)))
-    return float(np.diff(near)[0] / np.diff(near * hard_discs.compressibility(near))[0])
+    return 1 / float(hard_discs.inverse_compressibility(phi))
 
 
 class _Distances:
