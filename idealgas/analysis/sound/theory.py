@@ -11,6 +11,11 @@ from idealgas.log import Log
 ERRORS = Fluid(speed=0.001, damping=0.05, spreading=0.1, exponent=0.001)
 """Relative errors of theory for long waves: those of the equation of state and of Enskog's coefficients."""
 
+FASTER = 0.15
+"""Sound of waves of finite length is faster than theory by up to this part of Γk/c: measured at φ = 0.3 with 300, 600 and
+2400 discs, 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions currents have long tails, so that what linear
+hydrodynamics neglects is not small as k²."""
+
 
 class Expected(NamedTuple):
     """What is expected of a wave.
@@ -33,7 +38,7 @@ def expected_sound(log: Log, k: float) -> Expected:
     phi, mass, diameter = gas.packing_fraction, float(gas.mass[0]), 2 * float(gas.radius[0])
     size = 1 / float(hard_discs.inverse_compressibility(phi))
     law = Decay(size, k, sound_of_discs(phi, temperature, mass, diameter))
-    short = (law.fluid.damping * k / law.fluid.speed) ** 2  # what linear hydrodynamics neglects is of this order
+    short = FASTER * law.fluid.damping * k / law.fluid.speed
     errors = Fluid(*(math.hypot(error, short) for error in ERRORS))
     return Expected(law, errors if phi <= hard_discs.HIGHEST else None)
 
