@@ -12,9 +12,9 @@ ERRORS = Fluid(speed=0.001, damping=0.05, spreading=0.1, exponent=0.001)
 """Relative errors of theory for long waves: those of the equation of state and of Enskog's coefficients."""
 
 FASTER = 0.15
-"""Sound of waves of finite length is faster than theory by up to this part of Γk/c: measured at φ = 0.3 with 300, 600 and
-2400 discs, 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions currents have long tails, so that what linear
-hydrodynamics neglects is not small as k²."""
+"""Sound of waves of finite length is faster than theory by up to this part of Γk/c: measured at φ = 0.3 with 300, 600
+and 2400 discs, 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions currents have long tails, so that what is
+neglected here is not small as k²."""
 
 
 class Expected(NamedTuple):
