@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from idealgas.analysis.core.tables import Number, Table
     from idealgas.analysis.theory.forecast import Forecast
     from idealgas.scene import Rest, Scene
+    from idealgas.scene.lattice import TriangularLattice
+
+LEAST_STRAIN = 1e-9
+"""Strain of a lattice below which it is the rounding of the numbers in a scene."""
 
 MANY_HITS = 100.0
 """Hits of a disc at rest in a mean free time of the gas, above which `check` warns of them."""
@@ -35,15 +39,18 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     from idealgas.run.simulate import threads_of
 
     gas = make_gas(scene)
-    expected, threads = forecast(scene, gas), threads_of(scene, gas)
+    expected, threads, lattice = forecast(scene, gas), threads_of(scene, gas), scene.lattice
     if as_json:
         tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         sharing = {"threads": threads.number, "threads_because": threads.because}
-        data(json.dumps({"scene": tables, **effects, **sharing, **asdict(expected)}, indent=2))
+        shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
+        data(json.dumps({"scene": tables, **effects, **sharing, "lattice": shape, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
     print_tables([_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until)])
+    if lattice is not None:
+        echo(_lattice_line(lattice))
     if expected.rough:
         echo(f"about: {expected.rough}")
     for sentence in expected.premises:
@@ -55,6 +62,14 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     echo(f"threads: {threads.number} ({threads.because})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
     echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
+
+
+def _lattice_line(lattice: "TriangularLattice") -> str:
+    """How many rows the lattice has at the start, its strain, and the box in which it has none."""
+    shape = f"lattice: {lattice.rows} rows along {'xy'[lattice.axis]} of {lattice.columns} discs"
+    if abs(lattice.strain) < LEAST_STRAIN:
+        return f"{shape}, without strain"
+    return f"{shape}, strain {lattice.strain:+.3g} across them; box.size = {list(lattice.unstrained)} has none"
 
 
 def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:

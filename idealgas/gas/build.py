@@ -1,5 +1,7 @@
 """The discs of a scene as arrays: the one place for their dtypes and shapes."""
 
+import math
+
 import numpy as np
 
 from idealgas.document.error import Issue
@@ -82,6 +84,22 @@ def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
 
 
 def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
+    """Positions (N, 2), length; those of discs that are compressed from where smaller discs are placed at random."""
+    if not any(s.placement == "compressed" for s in scene.species):
+        return _placed(scene, radius)
+    from idealgas.gas.compression import compress, loose_scale
+
+    scale = loose_scale(radius, scene.box.size)
+    position = _placed(scene, radius * scale)
+    reached = compress(position, radius, scene.box.size, scale, stream(scene.scene.seed, "compression"))
+    if reached < 1:
+        dense = math.pi * float(radius @ radius) * reached**2 / (scene.box.size[0] * scene.box.size[1])
+        got = f"jammed at a packing fraction of {dense:.4g}"
+        raise _no_room(scene, 0, "by compression", got, 'fewer or smaller discs, or placement = "triangular"')
+    return position
+
+
+def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """Positions (N, 2), length: explicit discs first, then lattices, one for each region, then discs at random."""
     from idealgas.gas import placement  # compiled code, which a reader of logs does not need
 
@@ -96,12 +114,15 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
         position[ids[0]] = [disc.position for disc in scene.disc]
         placement.insert(grid, position, radius, ids[0])
     lattices: dict[tuple[float, ...], list[int]] = {}
+    triangular: list[int] = []
     at_random: list[int] = []
     for k, s in enumerate(scene.species):
         x0, y0, x1, y1 = region = s.region or space
         bounds[ids[k + 1]] = x0 + s.radius, y0 + s.radius, x1 - s.radius, y1 - s.radius
         if s.placement == "lattice":
             lattices.setdefault(region, []).append(k)
+        elif s.placement == "triangular":
+            triangular.append(k)
         else:
             at_random.append(k)
             for axis in (a for a in range(2) if periodic[a] and s.region is None):
@@ -114,6 +135,15 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
         if not placement.insert_on_lattice(grid, position, radius, largest, chosen):
             raise _no_room(
                 scene, members[0], "on a lattice", f"{len(chosen)} discs", "fewer or smaller discs, or more room"
+            )
+    if lattice := scene.lattice:
+        chosen = np.concatenate([ids[k + 1] for k in triangular])
+        if len(triangular) > 1:
+            random.shuffle(chosen)
+        position[chosen] = placement.lattice_sites(lattice)
+        if placement.insert(grid, position, radius, chosen) < len(chosen):
+            raise _no_room(
+                scene, triangular[0], "on a triangular lattice", f"{len(chosen)} discs", "no others in its way"
             )
     if at_random:
         chosen = np.concatenate([ids[k + 1] for k in sorted(at_random, key=lambda k: -scene.species[k].radius)])

@@ -12,6 +12,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.physics.periodic import nearest_image
+from idealgas.scene.lattice import TriangularLattice
 
 PATIENCE = 3_000
 """Mean number of refused positions per disc after which random placement gives up."""
@@ -258,3 +259,10 @@ def _triangular(low: np.ndarray, high: np.ndarray, columns: int, rows: int) -> n
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
     step = (high - low) / (columns - 0.5, max(rows - 1, 1))
     return np.minimum(low + np.column_stack((column + row % 2 / 2, row)) * step, high)
+
+
+def lattice_sites(lattice: TriangularLattice) -> np.ndarray:
+    """Sites (M, 2) of a triangular lattice in a periodic box, half a step from its lower left corner."""
+    column, row = (axis.ravel() for axis in np.meshgrid(np.arange(lattice.columns), np.arange(lattice.rows)))
+    along, across = (column + row % 2 / 2 + 0.25) * lattice.spacing, (row + 0.5) * lattice.height
+    return np.column_stack((along, across) if lattice.axis == 0 else (across, along))

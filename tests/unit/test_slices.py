@@ -31,6 +31,7 @@ NAMED = {
     "scene/walls.py": ({"piston", "wall", "periodic"}, "lists the walls: sides, segments, and what stands for a side"),
     "scene/geometry.py": ({"periodic", "wall"}, "images of a disc in a box while other tables may not be valid"),
     "scene/checks/discs.py": ({"periodic", "piston"}, "discs in a box while other tables may not be valid"),
+    "scene/checks/placement.py": ({"periodic", "wall"}, "a lattice goes on through periodic sides, and among no walls"),
     "gas/contacts.py": ({"gravity", "piston"}, "what discs may rest on, which shows once they are placed"),
     "log/schema.py": ({"gravity"}, "names in the file"),
     "log/header.py": ({"gravity"}, "names in the file"),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from idealgas.document.error import Issue
 from idealgas.scene.checks import gravity, periodic, piston, restitution, rotation, thermostat, wall
 from idealgas.scene.checks.discs import overlap_issues, room_issues, species_issues
+from idealgas.scene.checks.placement import placement_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.scene.checks.valid import valid
 
@@ -34,6 +35,7 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from effect.issues(scene, invalid)
     if box is not None:
         yield from room_issues(box, scene.room, kinds, discs, invalid)
+        yield from placement_issues(scene, kinds)
     if not {"run", "species", "disc", "gravity", "piston"} & invalid:
         yield from endless_issues(scene)
         if box is not None and (scene.species or scene.disc):

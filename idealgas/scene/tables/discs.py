@@ -25,7 +25,7 @@ class Species(Table):
     spin_temperature: NotNegative | None = Field(
         default=None, description="energy; with [rotation]: Gaussian spins, rotational energy count * T/2"
     )
-    placement: Literal["random", "lattice"] = Field(
+    placement: Literal["random", "lattice", "triangular", "compressed"] = Field(
         default="random", description="how the discs are put into the region"
     )
     region: Annotated[tuple[Number, Number, Number, Number], Field(strict=False)] | None = Field(

@@ -12,6 +12,7 @@ from pydantic import Field
 
 from idealgas.document.table import Rectangle, Table, Vector
 from idealgas.scene.defaults import mean_free_time, number_of_discs, trial_time
+from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.properties import Effect, Properties, combine, lacking
 from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, thermostat, wall
 from idealgas.scene.tables.box import Box
@@ -64,6 +65,12 @@ class Document(Table):
     def room(self) -> Rectangle:
         """What the gas has at the start."""
         return self.piston.room(self.box.size) if self.piston else (0.0, 0.0, *self.box.size)
+
+    @property
+    def lattice(self) -> TriangularLattice | None:
+        """Triangular lattice on which discs start; None if none do, or if their number is odd."""
+        number = sum(s.count for s in self.species if s.placement == "triangular")
+        return triangular_lattice(number, self.box.size) if number else None
 
     @property
     def press(self) -> Vector:
