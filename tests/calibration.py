@@ -30,6 +30,7 @@ from idealgas.analysis.order.measure import order
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.relaxation.measure import relaxation
+from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature.measure import temperature
 from idealgas.analysis.transport.measure import transport
 
@@ -125,6 +126,13 @@ def rough(log: Log) -> Named:
     yield "temperature by kinetic energy", found.temperature
 
 
+def waves(log: Log) -> Named:
+    """Sound in a periodic box."""
+    (wave,) = sound(log).waves
+    yield from (("speed of sound", wave.speed), ("damping of sound", wave.damping))
+    yield from (("thermal diffusivity", wave.spreading), ("adiabatic exponent", wave.exponent))
+
+
 def mixture(log: Log) -> Named:
     """Two species that start at two temperatures."""
     for entry in temperature(log).species[:2]:
@@ -168,6 +176,11 @@ CASES = {
     "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, bath, SELDOM),
     "rough discs": Case(
         GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN
+    ),
+    "waves": Case(
+        f"[box]\nsize = [16, 16]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 100\nradius = 0.5\ntemperature = 1\n",
+        ("until = 400", "until = 1600"),
+        waves,
     ),
     "mixture": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'light'\ncount = 30\nradius = 0.03\ntemperature = 1.3\n"
