@@ -40,7 +40,8 @@ opens_at = 2.0
 """
 EFFECTS = {
     "plain": "",
-    "periodic": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = "periodic"\nbox.top = "periodic"\n',
+    "periodic": "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+    + "log.heat_flow = true\n",
     "gravity": "gravity.acceleration = [0.0, -0.05]\n",
     "rotation": "rotation.roughness = 0.7\n",
     "restitution": "restitution.normal = 0.95\n",

@@ -9,6 +9,7 @@ VECTORS: dict[str, Sequence[str]] = {
     **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},
     "momentum": ("momentum_x", "momentum_y"),
     "kinetic_flow": tuple(f"kinetic_flow_{part}" for part in ("xx", "xy", "yy")),
+    **{name: (f"{name}_x", f"{name}_y") for name in ("kinetic_heat_flow", "collision_heat_flow")},
     "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
 }
 """Those that all logs have in common."""

@@ -1,8 +1,12 @@
-"""Momentum that a gas carries, passes on in collisions and gives to walls: exact sums from which its pressure follows.
+"""Momentum and heat that a gas carries and passes on, and momentum for walls: exact sums of which its pressure follows.
 
 Pressure tensor times area and time: P_ab A τ = ∫ Σ m v_a v_b dt + Σ Δp_a r_b. The integral is the kinetic flow. The
 second sum, over collisions of two discs, is the collision flow: Δp is what one disc receives, r its position relative
 to the other. Every term is the same to the last bit if the two discs are exchanged. Both are energies times time.
+
+Heat flows likewise: ∫ Σ (m v²/2) v_a dt + Σ ΔE r_a, with the energy ΔE that one disc receives, and all velocities
+relative to the gas as a whole; energies times length. It is recorded where nothing but collisions of smooth elastic
+discs changes velocities.
 
 A face is what a disc can hit: sides 0 to 3, then both sides of each wall segment, that to the left of the way from its
 start to its end first.
@@ -42,6 +46,11 @@ class MomentumFlow(NamedTuple):
         species: (N,) u2, of each disc by id; None for one species.
         x: coordinate of the middle of the box, length.
         y: coordinate of the middle of the box, length.
+        heat: (4,) SUM: heat carried along x and y, then passed on along x and y, energy times length; None where it is
+            not recorded.
+        heat_terms: TERMS by collision of each of these; None where it is not recorded.
+        vx: velocity of the whole gas, length/time; 0 where no heat is recorded.
+        vy: the same along y.
     """
 
     tensor: np.recarray
@@ -55,6 +64,10 @@ class MomentumFlow(NamedTuple):
     species: np.ndarray | None
     x: float
     y: float
+    heat: np.recarray | None = None
+    heat_terms: np.recarray | None = None
+    vx: float = 0.0
+    vy: float = 0.0
 
 
 @inline
@@ -96,6 +109,41 @@ def record_flights(flow, a, b, time, gravity):
         flow.terms[U(0)].column[k] = a_xx + b_xx
         flow.terms[U(1)].column[k] = a_xy + b_xy
         flow.terms[U(2)].column[k] = a_yy + b_yy
+        record_heat_carried(flow.heat_terms, k, a, b, time, flow.vx, flow.vy)
+
+
+@inline
+def heat_carried(disc, time, vx, vy):
+    """Flow of heat (x, y), energy times length, of a disc in free flight from its record to a local time."""
+    x = disc.vx - vx
+    y = disc.vy - vy
+    energy = 0.5 * disc.m * (x * x + y * y) * (time - disc.t)
+    return energy * x, energy * y
+
+
+@inline
+def record_heat_carried(terms, k, a, b, time, vx, vy):
+    """Note the heat that two discs carried to the collision that waits as number k, where it is recorded."""
+    if terms is not None:
+        a_x, a_y = heat_carried(a, time, vx, vy)
+        b_x, b_y = heat_carried(b, time, vx, vy)
+        terms[U(0)].column[k] = a_x + b_x
+        terms[U(1)].column[k] = a_y + b_y
+
+
+@inline
+def record_heat_passed_on(terms, k, a, b, before, x, y, vx, vy):
+    """Note the heat that a disc received in the collision that waits as number k, where it is recorded.
+
+    before: velocities (a_vx, a_vy, b_vx, b_vy) before it, length/time. x, y: position relative to the other disc.
+    """
+    if terms is not None:
+        a_vx, a_vy, b_vx, b_vy = before
+        a_gain = a.m * ((a.vx - a_vx) * (a.vx + a_vx - 2.0 * vx) + (a.vy - a_vy) * (a.vy + a_vy - 2.0 * vy))
+        b_gain = b.m * ((b.vx - b_vx) * (b.vx + b_vx - 2.0 * vx) + (b.vy - b_vy) * (b.vy + b_vy - 2.0 * vy))
+        gain = 0.25 * (a_gain - b_gain)
+        terms[U(2)].column[k] = gain * x
+        terms[U(3)].column[k] = gain * y
 
 
 @inline
@@ -116,6 +164,7 @@ def record_collision_flow(flow, a, b, a_id, b_id, before, periodic, images, rota
         flow.terms[U(5)].column[k] = py * y
         if rotation is not None:
             flow.terms[U(6)].column[k] = py * x
+        record_heat_passed_on(flow.heat_terms, k, a, b, before, x, y, flow.vx, flow.vy)
         flow.waiting[0] += 1
         if flow.waiting[0] == TOGETHER:
             settle(flow)
@@ -127,7 +176,16 @@ def settle(flow):
     """Add the terms of the collisions that were noted."""
     for k in range(flow.tensor.shape[0]):
         add_all(flow.tensor[U(k)], flow.terms[U(k)].column[: flow.waiting[0]])
+    add_heat(flow.heat, flow.heat_terms, 4, flow.waiting[0])
     flow.waiting[0] = 0
+
+
+@inline
+def add_heat(heat, terms, parts, number):
+    """Add a number of terms of each of the first sums of the heat, where it is recorded."""
+    if heat is not None:
+        for k in range(parts):
+            add_all(heat[U(k)], terms[U(k)].column[:number])
 
 
 @inline
@@ -166,11 +224,23 @@ def complete_flights(record, time, gravity, flow):
             flow.terms[U(2)].column[U(k)] = yy
         for k in range(3):
             add_all(flow.tensor[U(k)], flow.terms[U(k)].column[:number])
+        note_heat_carried(flow.heat_terms, record, first, number, time, flow.vx, flow.vy)
+        add_heat(flow.heat, flow.heat_terms, 2, number)
+
+
+@inline
+def note_heat_carried(terms, record, first, number, time, vx, vy):
+    """Note the heat that a number of discs carried from their records to a local time, where it is recorded."""
+    if terms is not None:
+        for k in range(number):
+            x, y = heat_carried(record[U(first + k)], time, vx, vy)
+            terms[U(0)].column[U(k)] = x
+            terms[U(1)].column[U(k)] = y
 
 
 def sums_of(flow: MomentumFlow) -> list[np.ndarray]:
     """All arrays of SUM."""
-    return [flow.tensor, flow.walls, flow.push, flow.drag]
+    return [flow.tensor, flow.walls, flow.push, flow.drag, *([] if flow.heat is None else [flow.heat])]
 
 
 def counts_of(flow: MomentumFlow) -> list[np.ndarray]:

@@ -17,7 +17,7 @@ from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
 
-ENERGY, ACTION, MOMENTUM = "energy", "energy time", "mass length/time"
+ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")
 LEAST_SHARE = 2.0**-40
 """Smallest energy taken as typical, over the largest that effects bring: that stays far below 2^100 units."""
@@ -47,6 +47,8 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
     flight = len(gas) / encounters if encounters > 0 else max(gas.box)
     apart = 2.0 * float(gas.radius.mean())
     tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)
+    heat = [momentum * speed * flight] * 2 + [momentum * speed * apart] * 2 if scene.log.heat_flow else []
+    frame = gas.mass @ gas.velocity / gas.mass.sum() if heat else np.zeros(2)
     faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
     push, drag = (make_sums([momentum] * faces) for _ in range(2))
     return MomentumFlow(
@@ -61,6 +63,10 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
         species=gas.species.copy() if species > 1 else None,
         x=gas.box[0] / 2,
         y=gas.box[1] / 2,
+        heat=make_sums(heat) if heat else None,
+        heat_terms=aligned(len(heat), TERMS) if heat else None,
+        vx=float(frame[0]),
+        vy=float(frame[1]),
     )
 
 
@@ -87,6 +93,10 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
         yield Column("wall_virial", "f8", (), ACTION), flow.walls
         yield Column("face_push", "f8", (len(flow.push),), MOMENTUM), flow.push
         yield Column("face_drag", "f8", (len(flow.drag),), MOMENTUM), flow.drag
+        if flow.heat is not None:
+            heat = np.asarray(flow.heat)
+            yield Column("kinetic_heat_flow", "f8", (2,), HEAT), heat[:2]
+            yield Column("collision_heat_flow", "f8", (2,), HEAT), heat[2:]
 
 
 def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:

@@ -28,10 +28,10 @@ class SampledImpacts:
         Where these are not times of samples, the sums grow evenly from one sample to the next.
         """
         self.edges = edges
-        found = {name: _in_blocks(*log.observables[name], edges) for name in SUMS if name in log.observables}
+        found = {name: in_blocks(*log.observables[name], edges) for name in SUMS if name in log.observables}
         species = len(log.discs.species_names)
         if "pair_collisions" not in found:  # those of a single species are all there are
-            found["pair_collisions"] = _in_blocks(*log.observables["disc_collisions"], edges)
+            found["pair_collisions"] = in_blocks(*log.observables["disc_collisions"], edges)
         self.kinetic_flow, self.collision_flow = found["kinetic_flow"], found["collision_flow"]
         self.pair_virial = self.collision_flow[:, 0] + self.collision_flow[:, 2]
         self.inner_virial = self.collision_flow[:, :3:2][:, [not wrapped for wrapped in log.periodic]].sum(axis=1)
@@ -104,7 +104,7 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     return Window(edges, first_steady(log, series), detected=True), impacts
 
 
-def _in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndarray:
+def in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Growth (B, …) in blocks of time of a sum (P, …) that was sampled at times (P,)."""
     columns = total.reshape(len(time), -1).T
     grown = np.array([np.diff(np.interp(edges, time, column)) for column in columns])

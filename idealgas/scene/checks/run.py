@@ -49,6 +49,8 @@ def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
         yield from _precision_issues(scene)
     if "log" not in invalid and scene.log.pressure:
         yield from _pressure_issues(scene)
+    if "log" not in invalid and scene.log.heat_flow:
+        yield from _heat_flow_issues(scene)
 
 
 def _step_issues(scene: Document) -> Iterator[Issue]:
@@ -73,6 +75,20 @@ def _pressure_issues(scene: Document) -> Iterator[Issue]:
     if run.method in (MONTE_CARLO, TIME_DRIVEN) or run.precision not in (None, PLAIN):
         keys = ("log", "pressure"), ("run", "precision" if run.precision else "method")
         yield Issue(keys, "not recorded by this method", got, f'event_driven, {BRUTE_FORCE} with "{PLAIN}"')
+
+
+def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
+    """Sums that there are only beside those of the momentum, and gases in which heat comes from elsewhere."""
+    key: Key = ("log", "heat_flow")
+    if not scene.log.pressure:
+        wrong = "recorded with the flow of momentum only"
+        yield Issue((key, ("log", "pressure")), wrong, "pressure = false", "pressure = true")
+    if not all(scene.properties.periodic):
+        yield Issue((key, ("box",)), "walls take heat and momentum", "sides that reflect", "four periodic sides")
+    for effect in scene.called:
+        if not (effect.properties.uniform and effect.properties.conserves_motion):
+            for place in effect.keys:
+                yield Issue((place, key), "changes velocities between collisions", effect.name, "heat_flow = false")
 
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:

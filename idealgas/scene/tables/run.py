@@ -60,6 +60,9 @@ class Log(Table):
     pressure: bool = Field(
         default=False, description="momentum that flows and that walls take, in every sample: pressure without events"
     )
+    heat_flow: bool = Field(
+        default=False, description="with pressure: heat that flows, in every sample: its conductivity without events"
+    )
     checkpoint_every: int = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
     snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")
     fsync: bool = Field(default=False, description="whether what is flushed also survives a loss of power")
