@@ -97,6 +97,11 @@ def periodic(log: Log) -> Named:
     yield "contact value", found.contacts[0].value
     yield "diffusion coefficient", found.diffusion[0].coefficient
     yield "velocity correlation time", found.diffusion[0].velocity_correlation_time
+
+
+def currents(log: Log) -> Named:
+    """Coefficients and pressure by the currents of a periodic box."""
+    found = transport(log)
     assert found.collective is not None
     for name, one in found.collective.coefficients.items():
         yield name.replace("_", " "), one.value
@@ -165,6 +170,9 @@ OFTEN, SELDOM = "snapshot_every = 0.2\n", "snapshot_every = 1\n"
 SLOW = ("collisions_per_disc = 3000", "collisions_per_disc = 6000")
 """Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 60 times it."""
 
+CURRENTS = ("collisions_per_disc = 4000", "collisions_per_disc = 12000")
+"""Runs for the spread of currents: the shorter ones have 200 times the longest lag."""
+
 SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 12000")
 """Runs for the energy of a gas that only its walls change."""
 
@@ -173,6 +181,7 @@ CASES = {
     "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
     "periodic box": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, periodic),
     "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, ordered),
+    "periodic box, currents": Case(GAS.format(sides=PERIODIC), CURRENTS, currents),
     "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, bath, SELDOM),
     "rough discs": Case(
         GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN

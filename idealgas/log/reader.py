@@ -161,8 +161,8 @@ class Log(LogHeader):
         piston_velocity, wall_energy (given to the discs since the start, one column a wall), dissipated_energy (lost
         since the start in collisions of discs, then at each wall), kicks and bath_energy (of a heat bath, since the
         start). With `log.pressure` the sums since the start that idealgas/log/README.md describes: kinetic_flow,
-        collision_flow, wall_virial, face_push, face_drag, face_hits and, in mixtures, pair_collisions; with `log.heat_flow`
-        kinetic_heat_flow and collision_heat_flow.
+        collision_flow, wall_virial, face_push, face_drag, face_hits and, in mixtures, pair_collisions; with
+        `log.heat_flow` kinetic_heat_flow and collision_heat_flow.
         """
         names = [name.partition("/")[0] for name in self._source.names("observables") if name.endswith("/value")]
         times = next((name for name in self._source.names("observables") if name.endswith("/time")), "")

@@ -44,7 +44,7 @@ def over_theory(found: list[Estimate]) -> Estimate:
 @pytest.mark.parametrize(
     ("phi", "number", "runs", "within"),
     [
-        (0.01, 500, 12, 0.02),
+        (0.01, 1000, 12, 0.02),
         *((phi, 250, 8, 0.05) for phi in (0.05, 0.1, 0.2)),
         (0.3, 250, 8, 0.08),
         (0.4, 250, 8, 0.08),

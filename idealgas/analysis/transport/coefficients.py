@@ -1,13 +1,14 @@
 """Viscosities, heat conductivity and pressure tensor of a periodic gas, from the currents of momentum and energy."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble
+from idealgas.analysis.core.equilibrium import Ensemble, drift
+from idealgas.analysis.core.samples import in_blocks
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.window import Window
@@ -59,8 +60,8 @@ class Collective:
     """What the currents of a whole gas tell.
 
     plateau: first and last time over which coefficients are averaged. coefficients: by name; no heat conductivity for
-    several species, where energy also comes along with discs that diffuse. pressure: xx, yy and xy component of the
-    pressure tensor, energy/length².
+    several species, where energy also comes along with discs that diffuse, and from samples without sums of the heat.
+    pressure: xx, yy and xy component of the pressure tensor, energy/length².
     """
 
     plateau: tuple[float, float]
@@ -76,29 +77,73 @@ class Collective:
         }
 
 
+def flow_in_events(
+    log: Log, window: Window, longest: float, progress: Callable[[int, int], None] | None = None
+) -> tuple[np.ndarray, float]:
+    """Integrals (B, 2, 5) of the currents over blocks of a window, from the events of a log, and the width of a block.
+
+    longest: lag up to which currents are followed, time. progress(done, in all) is called as events are read.
+    """
+    currents = Currents()
+    blocks = min(round(STEPS * window.duration / longest), MOST_BLOCKS)
+    stream(log, np.linspace(window.start, window.end, blocks + 1), [currents], progress)
+    return currents.flow, window.duration / blocks
+
+
+def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarray, float]:
+    """The same from the sums in the samples of a log, by blocks no shorter than the time between two samples.
+
+    With snapshots blocks begin and end with them, so that the integrals are exact; without, sums grow evenly from one
+    sample to the next. Without sums of the heat its current is not a number.
+    """
+    observed, still = log.observables, drift(log)
+    edges = _sample_edges(log, window, longest)
+    flow = np.full((len(edges) - 1, 2, 5), np.nan)
+    for part, (momentum, heat) in enumerate(
+        (("kinetic_flow", "kinetic_heat_flow"), ("collision_flow", "collision_heat_flow"))
+    ):
+        flow[:, part, : YY + 1] = in_blocks(*observed[momentum], edges)[:, : YY + 1]
+        if heat in observed:
+            flow[:, part, HEAT_X:] = in_blocks(*observed[heat], edges)
+    whole = log.discs.mass.sum() * still[[0, 0, 1]] * still[[0, 1, 1]]  # samples have the motion of the gas as a whole
+    flow[:, CARRIED, : YY + 1] -= np.diff(edges)[:, None] * whole
+    return flow, float(edges[1] - edges[0])
+
+
+def _sample_edges(log: Log, window: Window, longest: float) -> np.ndarray:
+    """Times (B + 1,) between blocks of equal width in a window, at snapshots if there are any, else near samples."""
+    time = log.observables["kinetic_flow"][0]
+    inside = (time >= window.start) & (time <= window.end)
+    every = log.scene.log.snapshot_every
+    if every is None or every > longest:
+        every, first = window.duration / (inside.sum() - 1), window.start
+    else:
+        first = math.ceil(window.start / every) * every
+    least = max(longest / STEPS, (window.end - first) / MOST_BLOCKS)
+    width = every * max(round(least / every), 1)
+    return first + width * np.arange(int((window.end - first) / width * (1 + 1e-12)) + 1)
+
+
 def collective(
+    flow: np.ndarray,
+    width: float,
     log: Log,
-    discs: Composition,
-    window: Window,
     equilibrium: Ensemble,
     longest: float,
     theory: tuple[Enskog | None, Theory | None],
-    progress: Callable[[int, int], None] | None = None,
 ) -> Collective:
-    """Coefficients of the gas of a log in a periodic box, from its events in a window of time.
+    """Coefficients of the gas of a log in a periodic box, from integrals (B, 2, 5) of its currents over blocks.
 
-    longest: lag up to which currents are followed, time. theory: Enskog's coefficients, and Z = PA/NT of this gas.
+    width: of a block, time. longest: lag up to which currents are followed, time. theory: Enskog's coefficients, and
+    Z = PA/NT of this gas.
     """
-    blocks = min(round(STEPS * window.duration / longest), MOST_BLOCKS)
-    edges = np.linspace(window.start, window.end, blocks + 1)
-    currents = Currents()
-    stream(log, edges, [currents], progress)
-    width = window.duration / blocks
     lags = lags_of(width, longest, PLATEAU_FROM)
+    single = len(log.discs.species_names) == 1
+    conducts = single and not np.isnan(flow[0, CARRIED, HEAT_X])
     return Collective(
         lags.plateau,
-        _coefficients(currents.flow, lags, log.discs.area, equilibrium.temperature, len(discs.name) == 1, theory[0]),
-        _pressure(currents.flow / width, log, equilibrium, theory[1]),
+        _coefficients(flow, lags, log.discs.area, equilibrium.temperature, conducts, theory[0]),
+        _pressure(flow / width, log, equilibrium, theory[1]),
     )
 
 

@@ -28,8 +28,8 @@ class Enskog:
 def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
     """Enskog's coefficients of the gas of a log; None for several species and above φ = 0.62.
 
-    They are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: Σ m v_x v_y has
-    the mean square N T²(1 - 1/N)². So the errors have a part 2/N.
+    They are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: in a dilute gas
+    the mean square of Σ m v_x v_y by a part 2/N, that of Σ m v² v by 6/N. The errors have such a part.
     """
     gas = log.discs
     if len(discs.name) > 1 or gas.packing_fraction > hard_discs.HIGHEST:
@@ -39,13 +39,13 @@ def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None
     state = (2 * discs.radius[0], density, equilibrium.temperature, mass, chi)
     viscosity = hard_discs.enskog_viscosity(*state)
 
-    def theory(quantity: str, value: float) -> Theory:
-        return Theory(value, (enskog_error(quantity, gas.packing_fraction) + 2 / len(gas)) * value, "Enskog")
+    def theory(quantity: str, value: float, part: float = 6.0) -> Theory:
+        return Theory(value, (enskog_error(quantity, gas.packing_fraction) + part / len(gas)) * value, "Enskog")
 
     return Enskog(
         density,
-        theory("diffusion", hard_discs.enskog_diffusion(*state)),
-        theory("viscosity", viscosity),
+        theory("diffusion", hard_discs.enskog_diffusion(*state), 0.0),
+        theory("viscosity", viscosity, 2.0),
         theory("conductivity", hard_discs.enskog_conductivity(*state)),
         theory("bulk viscosity", hard_discs.enskog_bulk_viscosity(*state)),
         viscosity / (density * mass),

@@ -10,8 +10,24 @@ from idealgas.analysis.transport.measure import FITTED_FROM, Transport
 
 
 def transport_figure(result: Transport) -> Figure:
-    """Picture of velocity correlation, mean square displacement, pair distribution and coefficients against time."""
-    figure, (correlation, displacement, pairs, coefficients) = panels(2, 2)
+    """Picture of velocity correlation, mean square displacement, pair distribution and coefficients against time.
+
+    Of a log without events there are the coefficients only.
+    """
+    if not result.diffusion:
+        figure, (coefficients,) = panels(1)
+    else:
+        figure, (correlation, displacement, pairs, coefficients) = panels(2, 2)
+        _draw_diffusion(correlation, displacement, result)
+        _draw_pairs(pairs, result)
+    _draw_coefficients(coefficients, result)
+    for ax in figure.axes:
+        ax.legend()
+    return figure
+
+
+def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) -> None:
+    """Draw velocity correlation and mean square displacement of each species."""
     for entry, colour in zip(result.diffusion, COLOURS * len(result.diffusion), strict=False):
         correlation.errorbar(entry.lag, entry.correlation, entry.correlation_error, color=colour, label=entry.species)
         if entry.coefficient.theory is not None and entry.tail is not None:
@@ -25,48 +41,42 @@ def transport_figure(result: Transport) -> Figure:
         d = entry.coefficient.value
         displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
     correlation.set_yscale("symlog", linthresh=1e-3)
+    correlation.set(xlabel="t (time)", ylabel="⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)")
+    displacement.set(xlabel="t (time)", ylabel="mean square displacement (length²)")
+
+
+def _draw_pairs(ax: Axes, result: Transport) -> None:
+    """Draw the pair distribution of every two species, with its value at contact."""
     for found, colour in zip(result.pair_distributions, COLOURS * len(result.pair_distributions), strict=False):
         middle = (found.edges[1:] + found.edges[:-1]) / 2
         label = f"{found.species} and {found.other}"
-        pairs.errorbar(middle, found.value, found.error, fmt=".", ms=3, color=colour, label=label)
+        ax.errorbar(middle, found.value, found.error, fmt=".", ms=3, color=colour, label=label)
         for contact in result.contacts:
             if (contact.species, contact.other) == (found.species, found.other):
-                pairs.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
-    pairs.axhline(1.0, color=GREY, linewidth=0.8)
-    unit = _draw_coefficients(coefficients, result)
-    for ax, x, y in (
-        (correlation, "t (time)", "⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)"),
-        (displacement, "t (time)", "mean square displacement (length²)"),
-        (pairs, "r (length)", "g(r) (no unit)"),
-        (coefficients, "t (time)", f"coefficient at time t over {unit}"),
-    ):
-        ax.set_xlabel(x)
-        ax.set_ylabel(y)
-        ax.legend()
-    return figure
+                ax.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
+    ax.axhline(1.0, color=GREY, linewidth=0.8)
+    ax.set(xlabel="r (length)", ylabel="g(r) (no unit)")
 
 
-def _draw_coefficients(ax: Axes, result: Transport) -> str:
-    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or, where there is none, over their own values.
-
-    Returns what they are drawn over.
-    """
+def _draw_coefficients(ax: Axes, result: Transport) -> None:
+    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or, where there is none, over their own values."""
+    whole = result.collective.coefficients if result.collective else {}
     curves = [
         (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient)
         for entry in result.diffusion
-    ]
-    if result.collective:
-        curves += [
-            (SYMBOLS[name], one.times, one.running, one.running_error, one.value)
-            for name, one in result.collective.coefficients.items()
-        ]
+    ] + [(SYMBOLS[name], one.times, one.running, one.running_error, one.value) for name, one in whole.items()]
     by_theory = all(value.theory for *_, value in curves)
     for (name, times, running, error, value), colour in zip(curves, COLOURS * len(curves), strict=False):
         one = (by_theory and value.theory) or value.value
         ax.plot(times, running / one, color=colour, label=name)
         ax.fill_between(times, (running - error) / one, (running + error) / one, color=colour, alpha=0.2, linewidth=0)
-    last = float(result.diffusion[0].lag[-1])
-    ax.axvspan(FITTED_FROM * last, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
+    if result.collective:
+        first, last = result.collective.plateau
+    else:
+        last = float(result.diffusion[0].lag[-1])
+        first = FITTED_FROM * last
+    ax.axvspan(first, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
     ax.axhline(1.0, color=GREY, linewidth=0.8)
     ax.set_ylim(0.0, 1.6)
-    return "Enskog's" if by_theory else "its mean in the plateau"
+    over = "Enskog's" if by_theory else "its mean in the plateau"
+    ax.set(xlabel="t (time)", ylabel=f"coefficient at time t over {over}")

@@ -24,14 +24,15 @@ from idealgas.analysis.core.equilibrium import Ensemble, drift, ensemble
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.transport.coefficients import Collective, collective
+from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
 from idealgas.analysis.transport.enskog import Enskog, enskog
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 
 LAGS = 200  # number of steps of the correlation functions
@@ -136,17 +137,21 @@ def transport(
 
     Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
     displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity, heat
-    conductivity and pressure tensor in a periodic box; pair distribution functions.
+    conductivity and pressure tensor in a periodic box; pair distribution functions. Without events the sums of
+    `log.pressure = true` and `log.heat_flow = true` give the collision rates and what the currents of a periodic gas
+    tell.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. lag: longest time for which discs and currents are followed, in mean free times.
 
-    Raises UserError if no disc moves, if there are no events in the window, or for a gas with effects other than
-    periodic sides.
+    Raises UserError if no disc moves, if there are no events or too few samples in the window, or for a gas with
+    effects other than periodic sides.
     """
     equilibrium = ensemble(log)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
+    if not log.has_events:
+        return _from_samples(log, equilibrium, start, end, lag)
     moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
     window = measure(log, [moments, impacts], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
@@ -158,12 +163,13 @@ def transport(
     diffusion = _diffusion(log, discs, window, longest, enskogs)
     whole = None
     if all(log.periodic):
-        whole = collective(log, discs, window, equilibrium, longest, (enskogs, box.pairs), progress)
+        currents = flow_in_events(log, window, longest, progress)
+        whole = collective(*currents, log, equilibrium, longest, (enskogs, box.pairs))
     return Transport(
         window=window,
         packing_fraction=gas.packing_fraction,
         number=len(gas),
-        free_times=longest / free_time,
+        free_times=(whole.plateau[1] if whole else longest) / free_time,
         walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
@@ -172,6 +178,32 @@ def transport(
         collective=whole,
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
         premises=(*_short_lags(rates, diffusion), *_reflected(log, diffusion)),
+    )
+
+
+def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: float | None, lag: float) -> Transport:
+    """Transport in a gas without events: what sums in its samples tell."""
+    if not all(log.periodic):
+        raise NotApplicableError(f"{log.path}: has no events, and samples tell of transport with periodic sides only")
+    window, impacts = sampled(log, start, end, ("uniform", "conserves_motion"))
+    gas, discs, box = log.discs, composition(log.discs), theory_of(log, composition(log.discs))
+    rates = collision_rates(discs, expected_rates(discs, gas.box, equilibrium, box), window, impacts)
+    free_time = _free_time(discs, rates)
+    longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
+    currents, theories = flow_in_samples(log, window, longest), (enskog(log, discs, equilibrium), box.pairs)
+    whole = collective(*currents, log, equilibrium, longest, theories)
+    return Transport(
+        window=window,
+        packing_fraction=gas.packing_fraction,
+        number=len(gas),
+        free_times=whole.plateau[1] / free_time,
+        walled=False,
+        collision_rates=rates,
+        free_paths=(),
+        contacts=_contacts(discs, gas.area, equilibrium, rates),
+        diffusion=(),
+        collective=whole,
+        pair_distributions=(),
     )
 
 

@@ -22,13 +22,11 @@ def transport_tables(result: Transport) -> list[Table]:
             (f"{entry.species}: velocity correlation time, time", entry.velocity_correlation_time),
         )
     ]
-    return [
-        replace(rates, notes=(describe(result.window),)),
-        paths,
-        estimates("g(r) at contact (no unit)", contacts),
-        estimates("Diffusion, theory Enskog's", diffusion, () if result.collective else (WALLS,)),
-        *(_of_currents(result.collective, result.free_times) if result.collective else ()),
-    ]
+    tables = [replace(rates, notes=(describe(result.window),)), paths, estimates("g(r) at contact (no unit)", contacts)]
+    tables.append(estimates("Diffusion, theory Enskog's", diffusion, () if result.collective else (WALLS,)))
+    if result.collective:
+        tables += _of_currents(result.collective, result.free_times)
+    return [table for table in tables if table.rows]
 
 
 def _of_currents(found: Collective, free_times: float) -> list[Table]:

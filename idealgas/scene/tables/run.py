@@ -60,8 +60,8 @@ class Log(Table):
     pressure: bool = Field(
         default=False, description="momentum that flows and that walls take, in every sample: pressure without events"
     )
-    heat_flow: bool = Field(
-        default=False, description="with pressure: heat that flows, in every sample: its conductivity without events"
+    heat_flow: bool | None = Field(
+        default=None, description="with pressure: heat that flows, in every sample, for its conductivity without events"
     )
     checkpoint_every: int = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
     snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")

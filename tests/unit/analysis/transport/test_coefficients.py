@@ -9,10 +9,12 @@ import pytest
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
+from idealgas.analysis.transport.coefficients import flow_in_samples
 from idealgas.analysis.transport.currents import CARRIED, PASSED_ON, XX, YY, Currents
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.tables import WALLS, transport_tables
+from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
@@ -174,3 +176,45 @@ def test_a_longer_lag_is_a_later_plateau(tmp_path):
     assert long.collective.plateau == pytest.approx(tuple(2 * t for t in short.collective.plateau), rel=0.02)
     assert long.diffusion[0].lag[-1] == pytest.approx(2 * short.diffusion[0].lag[-1])
     assert (short.free_times, long.free_times) == pytest.approx((2.0, 4.0))
+
+
+SAMPLED = """
+scene.seed = 3
+box = {size = [16, 12], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic"}
+species = [{name = "gas", count = 60, radius = 0.4, temperature = 1.0}]
+disc = [{position = [8, 6], velocity = [9, -7], radius = 0.4}]
+run.events = 12_000
+log = {pressure = true, heat_flow = true, snapshot_every = 0.5}
+"""
+
+
+@pytest.mark.slow
+def test_the_same_coefficients_without_events(tmp_path):
+    """At the instants of snapshots the integrals of both are the same but for rounding; a fast disc moves the gas."""
+    flows = {}
+    for name, override in (("events", "log.events=true"), ("samples", "log.events=false")):
+        simulate(parse_scene(SAMPLED, overrides=[override]), tmp_path / f"{name}.h5")
+        with open_log(tmp_path / f"{name}.h5") as log:
+            last = 0.5 * int(log.end_time / 0.5)
+            found = transport(log, start=1.5, end=last, lag=10.0)
+            flows[name], width = flow_in_samples(log, found.window, found.collective.plateau[1])
+            if log.has_events:
+                edges = 1.5 + width * np.arange(len(flows[name]) + 1)
+                currents = Currents()
+                stream(log, edges, [currents])
+                assert flows[name] == pytest.approx(currents.flow, rel=1e-9, abs=1e-9)
+            else:
+                assert (found.diffusion, found.pair_distributions, found.free_paths) == ((), (), ())
+                assert list(found.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
+                assert len(transport_tables(found)) == 4
+                assert json.dumps(found.as_dict(), allow_nan=False)
+    assert np.array_equal(flows["events"], flows["samples"])
+
+
+@pytest.mark.slow
+def test_samples_tell_nothing_with_walls(tmp_path):
+    scene = SAMPLED.replace("heat_flow = true, ", "").replace('top = "periodic"', 'top = "reflecting"')
+    scene = scene.replace('bottom = "periodic"', 'bottom = "reflecting"')
+    simulate(parse_scene(scene, overrides=["log.events=false", "run.events=300"]), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="with periodic sides only"):
+        transport(log)
