@@ -94,9 +94,9 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
         yield Column("face_push", "f8", (len(flow.push),), MOMENTUM), flow.push
         yield Column("face_drag", "f8", (len(flow.drag),), MOMENTUM), flow.drag
         if flow.heat is not None:
-            heat = np.asarray(flow.heat)
-            yield Column("kinetic_heat_flow", "f8", (2,), HEAT), heat[:2]
-            yield Column("collision_heat_flow", "f8", (2,), HEAT), heat[2:]
+            flowing = np.asarray(flow.heat)
+            yield Column("kinetic_heat_flow", "f8", (2,), HEAT), flowing[:2]
+            yield Column("collision_heat_flow", "f8", (2,), HEAT), flowing[2:]
 
 
 def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
