@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 NAMES: tuple[str, ...] = (
     "pressure",
     "temperature",
+    "evolution",
+    "profile",
     "histogram",
     "relaxation",
     "transport",
     "order",
     "sound",
-    "profile",
-    "evolution",
     "heat_capacity",
     "effusion",
 )

@@ -7,6 +7,7 @@ The folder `idealgas/analysis/NAME` of an analysis declares it as `ANALYSIS` and
     figure.py    NAME_figure(result): the picture of the result
     combine.py   with `several`: combine_NAME(results): one result of several logs, for tables and figure;
                  with `folders` too: restore_NAME(found, label): the result that a sweep stored as plain values
+    words.py     with `worded`: NAME_words(result): what it found, in sentences for people who see a report first
 
 Results are dataclasses that inherit `Result` and extend its `as_dict()`: plain values, ready for JSON. What must hold
 for the numbers and does not, a result says in its `premises`: plain sentences, which `Analysis` brings into tables,
@@ -99,8 +100,9 @@ class Analysis:
     the list of commands. sections: sections of the report. options: options beside the start and end of the window.
     several: whether the analysis combines several logs. averages: whether it then takes averages over them, so that
     their runs must be independent. folders: whether it also takes folders of sweeps. checked: whether results have a
-    method `check()` that compares measurement and theory. start, end: description of the default start and end of the
-    window. reads: what the progress bar counts, such as events or frames.
+    method `check()` that compares measurement and theory. worded: whether it says in words what it found.
+    start, end: description of the default start and end of the window. reads: what the progress bar counts, such as
+    events or frames.
     """
 
     package: str
@@ -111,6 +113,7 @@ class Analysis:
     averages: bool = False
     folders: bool = False
     checked: bool = False
+    worded: bool = False
     start: str = "detected equilibrium"
     end: str = "the log's end"
     reads: str = "events"
@@ -194,6 +197,10 @@ class Analysis:
         first, *others = self._code("tables", f"{self.name}_tables")(combined)
         notes = (*(f"premise: {sentence}" for sentence in combined.premises), *first.notes)
         return [replace(first, notes=notes), *others]
+
+    def words(self, combined: Any) -> list[str]:
+        """Sentences on what a combined result found; none if the analysis has no words."""
+        return self._code("words", f"{self.name}_words")(combined) if self.worded else []
 
     def figure(self, combined: Any, titled: bool = True) -> "Figure":
         """Picture of a combined result; titled: whether it names the run and the analysis above it."""

@@ -14,16 +14,16 @@ def escape(text: str) -> str:
 
 def html_table(table: Table) -> str:
     """The rows of a table that are shown, with its title as caption; its notes are not part of it."""
-
-    def row(cells: Iterable[str], tag: str) -> Iterator[str]:
-        yield "<tr>"
-        for cell in cells:
-            yield f"<{tag}>{escape(cell)}</{tag}>"
-        yield "</tr>"
-
-    head = "".join(row(table.heads, "th")) if any(table.heads) else ""
-    body = "".join("".join(row(cells, "td")) for cells in table.shown)
+    heads = [escape(head) for head in table.heads]
+    head = f"<tr>{''.join(f'<th>{head}</th>' for head in heads)}</tr>" if any(heads) else ""
+    body = "".join(f"<tr>{''.join(_cells(heads, cells))}</tr>" for cells in table.shown)
     return f"<table><caption>{escape(table.title)}</caption>{head}{body}</table>"
+
+
+def _cells(heads: Iterable[str], cells: Iterable[str]) -> Iterator[str]:
+    """Cells of a row; each knows the heading of its column, for pages that are too narrow for rows."""
+    for head, cell in zip(heads, cells, strict=True):
+        yield f'<td data-head="{head}">{escape(cell)}</td>' if head else f"<td>{escape(cell)}</td>"
 
 
 def html_tables(tables: Iterable[Table]) -> str:

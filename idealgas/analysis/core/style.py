@@ -32,7 +32,7 @@ BELOW = 30
 LONG_LABEL = 30
 """Number of characters from which on labels of a legend stand in one column."""
 
-LABEL_CHARACTERS = 52
+LABEL_CHARACTERS = 48
 """Number of characters after which the text of a label goes on in the next line."""
 
 DPI = 200
@@ -78,7 +78,7 @@ class Panel(Axes):
         below = self.transAxes + ScaledTranslation(0, -BELOW / 72, self.figure.dpi_scale_trans)
         columns = 1 if max(map(len, labels), default=0) > LONG_LABEL else 2
         place = {"loc": "upper left", "bbox_to_anchor": (-0.02, 0), "bbox_transform": below, "ncols": columns}
-        legend = super().legend(*args, **(options | place | {"frameon": False, "fontsize": "small"}))
+        legend = super().legend(*args, **(options | place | {"frameon": False, "fontsize": 9}))
         for text in legend.get_texts():
             text.set_text(fill(text.get_text(), LABEL_CHARACTERS))
         return legend

@@ -10,6 +10,7 @@ ANALYSIS = Analysis(
     equilibrium for isolated gases, gases under gravity and heat baths. The pressure is the mechanical one on the walls.
     With a piston the picture has the pressure against the area, with the isotherm and the adiabat through the start.
     """,
+    worded=True,
     sections=(
         Section(
             "Evolution",

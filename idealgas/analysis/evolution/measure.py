@@ -8,6 +8,8 @@ import numpy as np
 
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.steadiness import steady_from
 from idealgas.analysis.core.window import span
 from idealgas.analysis.evolution.course import PressureCourse, pressure_course
 from idealgas.analysis.evolution.theory import Law, expected_course
@@ -31,7 +33,8 @@ class Evolution(Result):
     balance: (P,), change since the start of the energy of discs and piston minus the energy from outside, relative to
     the largest part of the energy. Only inelastic collisions change the balance, in logs of before, which have no
     account of them. dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
-    pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
+    pressure: mechanical pressure on walls in bins of time; None without events or hits of walls. rest: mean place of a
+    piston with a mass once it is steady, length; None without one, or if it is not steady by the end.
     """
 
     time: np.ndarray
@@ -46,6 +49,7 @@ class Evolution(Result):
     balance: np.ndarray
     dissipated: dict[str, np.ndarray]
     pressure: PressureCourse | None = None
+    rest: Estimate | None = None
 
     @property
     def track(self) -> tuple[np.ndarray, np.ndarray] | None:
@@ -63,7 +67,9 @@ class Evolution(Result):
             at_rest = {"spin": self.law.spin, "piston": self.law.piston}
             law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
         pressure = self.pressure.as_dict() if self.pressure else None
-        return super().as_dict() | lists | tables | {"law": law, "end": self._end(), "pressure": pressure}
+        rest = self.rest.as_dict() if self.rest else None
+        others = {"law": law, "end": self._end(), "pressure": pressure, "rest": rest}
+        return super().as_dict() | lists | tables | others
 
     def _end(self) -> dict[str, float]:
         """Last value of each series, by name."""
@@ -99,6 +105,7 @@ def evolution(
     time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
     parts, given, dissipated, balance = _account(log, observed)
     law = expected_course(log, time)
+    pressure = pressure_course(log, first, last)
     return Evolution(
         time,
         temperature,
@@ -111,7 +118,8 @@ def evolution(
         observed["piston_position"][inside] if "piston_position" in observed else None,
         balance[inside],
         {name: values[inside] for name, values in dissipated.items()},
-        pressure_course(log, first, last),
+        pressure,
+        _rest(log, pressure, law),
         premises=law.premises if law else (),
     )
 
@@ -156,6 +164,15 @@ def _gate(log: Log) -> tuple[int, float] | None:
             if wall.is_gate and wall.start[axis] == wall.end[axis]:
                 return axis, wall.start[axis]
     return None
+
+
+def _rest(log: Log, course: PressureCourse | None, law: Law | None) -> Estimate | None:
+    """Mean place of a piston with a mass from when on it is steady, beside that of theory."""
+    if not log.scene.piston or not log.scene.piston.mass or course is None or course.track is None:
+        return None
+    places = course.track[1]
+    start = steady_from([places])
+    return None if start is None else mean(places[start:], law.piston if law else None)
 
 
 Series = dict[str, np.ndarray]

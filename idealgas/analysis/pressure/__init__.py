@@ -11,6 +11,7 @@ ANALYSIS = Analysis(
     Under gravity, with a piston or walls inside, losses or walls of several temperatures there is no such Z: it is then
     the mechanical pressure of every wall, the momentum that discs give to it per time and length.
     """,
+    worded=True,
     sections=(
         Section(
             "Pressure", "Z by every route with standard errors, theory as lines; without one the pressure of walls"

@@ -20,6 +20,7 @@ ANALYSIS = Analysis(
         ),
         Option("bins", int, "Number of strips.", default=BINS, least=1, most=1000),
     ),
+    worded=True,
     sections=(Section("Profile", "Density and temperature in strips along an axis, theory dashed"),),
     reads="frames",
 )

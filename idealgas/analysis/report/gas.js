@@ -16,6 +16,7 @@ class Gas {
     this.head = head;
     this.radius = unpack("radius", Float32Array);
     this.mass = unpack("mass", Float32Array);
+    this.species = unpack("species", Uint16Array);
     this.start = { position: unpack("position", Float32Array), velocity: unpack("velocity", Float32Array) };
     this.tick = unpack("event_tick", Uint32Array);
     this.disc = unpack("event_disc", Uint32Array);
@@ -71,6 +72,28 @@ class Gas {
       if (periodicX) this.x[i] -= Math.floor(this.x[i] / width) * width;
       if (periodicY) this.y[i] -= Math.floor(this.y[i] / height) * height;
     }
+  }
+
+  // The flight of a disc since its last event in the player: when it began, and places at `steps` + 1 times till now.
+  flight(i, steps) {
+    const event = this.last[i], from = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
+    const since = event < 0 ? this.head.start : this.timeOf(this.tick[event]), [gx, gy] = this.head.gravity;
+    const places = Array.from({ length: steps + 1 }, (_, step) => {
+      const dt = (this.time - since) * step / steps;
+      return [
+        from.position[k] + from.velocity[k] * dt + gx * dt * dt / 2,
+        from.position[k + 1] + from.velocity[k + 1] * dt + gy * dt * dt / 2,
+      ];
+    });
+    return { since, places };
+  }
+
+  // The disc nearest to a place.
+  nearest(x, y) {
+    let best = 0;
+    const away = i => Math.hypot(this.x[i] - x, this.y[i] - y);
+    for (let i = 1; i < this.number; i++) if (away(i) < away(best)) best = i;
+    return best;
   }
 
   // Speed relative to a conserved motion of the whole gas.

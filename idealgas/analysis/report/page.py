@@ -1,7 +1,5 @@
 """Report of a log as one HTML page without other files: the run, all analyses that apply to it, and a player."""
 
-import base64
-import io
 import json
 import os
 from collections.abc import Callable, Sequence
@@ -9,45 +7,25 @@ from importlib import resources
 from pathlib import Path
 from string import Template
 
-from matplotlib import rc_context
-from matplotlib.figure import Figure
-
 from idealgas.analysis.core.html import escape, html_table
-from idealgas.analysis.core.style import show_names
 from idealgas.analysis.core.tables import Number, Table
 from idealgas.analysis.info import info
+from idealgas.analysis.report.picture import html_pictures
 from idealgas.analysis.report.player import MOST_DISCS, Player, player
 from idealgas.analysis.report.sections import Section, make_sections
 from idealgas.errors import UserError
 from idealgas.files import check_output, written
 from idealgas.log import Log
 
-SCRIPTS = ("gas.js", "views.js", "player.js")
+SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
 """The program of the page, in order."""
 
-PLAYER = """
-<section id="s0">
-<h2>$heading</h2>
-<div id="player" tabindex="0" role="group" aria-label="Player">
-<canvas id="discs" role="img" aria-label="The discs in their box, coloured by speed"$hidden></canvas>
-<div id="controls">
-<button id="play" type="button">Play</button>
-<input id="scrub" type="range" min="0" max="10000" step="1" value="0" aria-label="Time">
-<output id="clock"></output>
-<label>playback <select id="rate">
-<option value="0.125">⅛ ×</option><option value="0.25">¼ ×</option><option value="0.5">½ ×</option>
-<option value="1" selected>1 ×</option><option value="2">2 ×</option><option value="4">4 ×</option>
-<option value="8">8 ×</option>
-</select></label>
-</div>
-<canvas id="speeds" role="img" aria-label="Histogram of the speeds with Maxwell and Boltzmann's law"></canvas>
-</div>
-<p class="note">$shown</p>
-<p class="note keys">Keys, after a click into the player: space plays and pauses; ← → step by a frame, with shift by a
-second; ↑ ↓ change the playback; Home and End go to the start and the end.</p>
-</section>
-"""
 
+def _text(name: str) -> str:
+    return resources.files("idealgas.analysis.report").joinpath(name).read_text(encoding="utf-8")
+
+
+PLAYER = Template(_text("player.html"))
 
 SUMMARY = {
     "end_time": "end (time)",
@@ -103,37 +81,42 @@ def write_report(
 
 def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     found = info(log)
-    gas, run, file = found["gas"], found["run"], found["file"]
-    applicable = [(section.title, _section(section)) for section in sections if section.left_out is None]
-    parts = [("The run", _run(log, found)), *applicable]
+    file = found["file"]
+    applicable = [
+        (section.title, _section(section, f"p{k}")) for k, section in enumerate(sections) if section.left_out is None
+    ]
+    parts = [*applicable, ("The run", _run(log, found))]
     if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
         rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
         parts.append(("What does not apply", f"<ul>{rows}</ul>"))
     title = log.scene.scene.title or Path(log.path).name
-    phi = gas["packing_fraction"]
-    subtitle = (
-        f"{gas['number']:,} discs, packing fraction {phi:.4g}, {log.scene.run.method.replace('_', '-')}, "
-        f"{run['end_time']:.6g} units of time, {run['event_rows'] or 0:,} event rows"
-    )
-    names = ["The discs" if log.has_positions else "The speeds", *(name for name, _ in parts)]
+    names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
+    said = [_summary(log, found), *(sentence for section in sections for sentence in section.words)]
     return Template(_text("report.html")).substitute(
         title=escape(title),
-        subtitle=escape(subtitle),
         style=_text("report.css"),
         script="\n".join(map(_text, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
+        words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
         sections="\n".join(
-            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 1)
+            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)
         ),
         data="" if played is None else _data(played),
         footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
     )
 
 
-def _text(name: str) -> str:
-    return resources.files("idealgas.analysis.report").joinpath(name).read_text(encoding="utf-8")
+def _summary(log: Log, found: dict) -> str:
+    """Sentence on the gas and its run; the packing fraction is that of the area that the gas has at the start."""
+    gas, run, effects = found["gas"], found["run"], ", ".join(log.scene.effects)
+    kind = f" with {effects}" if effects else ""
+    return (
+        f"{gas['number']:,} discs{kind}, packing fraction {gas['packing_fraction']:.3g}, followed for "
+        f"{run['end_time'] - run['start_time']:.6g} units of time ({log.scene.run.method.replace('_', '-')}, "
+        f"{run['event_rows'] or 0:,} event rows)."
+    )
 
 
 def _player(log: Log, played: Player | None, heading: str) -> str:
@@ -144,8 +127,8 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
     if log.has_positions:
         width, height = log.box
         shown = (
-            f"A box of {width:g} × {height:g} (length); the strip below the speeds tells the colours of the discs. "
-            "Positions are exact at any time: every event is in the page. Very small discs are drawn larger."
+            f"A box of {width:g} × {height:g} (length); the strip below the speeds tells the colours of the discs, "
+            "which are exact at any time; very small ones are drawn larger."
         )
     else:
         shown = f"No discs to show: {log.scene.run.method} does not know where they are. Their speeds are exact."
@@ -155,7 +138,7 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
     else:
         shown += "the whole run."
     shown += f" At 1 × a second is {played.head['speed']:.3g} units of time."
-    return Template(PLAYER).substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
+    return PLAYER.substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
 
 
 def _data(played: Player) -> str:
@@ -186,22 +169,10 @@ def _shown(value: object) -> str:
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
-def _section(section: Section) -> str:
+def _section(section: Section, key: str) -> str:
     notes = "".join(f'<p class="note">{escape(note)}</p>' for table in section.tables for note in table.notes)
-    picture = "" if section.picture is None else _picture(section.picture, section.caption)
-    return f'{notes}<div class="beside">{picture}{_tables([table for table in section.tables if table.rows])}</div>'
-
-
-def _picture(figure: Figure, caption: str) -> str:
-    file = io.BytesIO()
-    show_names(figure)
-    with rc_context({"svg.hashsalt": "idealgas"}):  # the same page of the same log
-        figure.savefig(file, format="svg", metadata={"Date": None})
-    source = base64.b64encode(file.getvalue()).decode()
-    text = escape(caption)
-    return (
-        f'<figure><img alt="{text}" src="data:image/svg+xml;base64,{source}"><figcaption>{text}</figcaption></figure>'
-    )
+    picture = "" if section.picture is None else html_pictures(section.picture, section.caption, key)
+    return f"{picture}{notes}{_tables([table for table in section.tables if table.rows])}"
 
 
 def _tables(tables: Sequence[Table]) -> str:

@@ -10,14 +10,31 @@ class Player {
     this.clock = document.getElementById("clock");
     this.rates = document.getElementById("rate");
     this.views = [new SpeedView(document.getElementById("speeds"), gas)];
-    if (gas.head.positions) this.views.push(new DiscView(document.getElementById("discs"), gas));
+    if (gas.head.positions) this.showDiscs(document.getElementById("discs"));
+    this.curves = makeCurves(time => { this.pause(); this.seek(time); });
     this.button.addEventListener("click", () => this.toggle());
     this.scrub.addEventListener("input", () => { this.pause(); this.seek(this.at(this.scrub.value / this.scrub.max)); });
     this.rates.addEventListener("change", () => { this.rate = +this.rates.value; });
     document.getElementById("player").addEventListener("keydown", event => this.key(event));
     new ResizeObserver(() => this.draw()).observe(document.getElementById("speeds"));
+    new ResizeObserver(wrapTables).observe(document.getElementById("sections"));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     this.draw();
+  }
+
+  // Show the discs, and on wish the flight of one.
+  showDiscs(canvas) {
+    const view = new DiscView(canvas, this.gas), field = document.getElementById("chosen");
+    this.views.push(view);
+    this.discs = view;
+    field.max = this.gas.number - 1;
+    const choose = text => {
+      const number = text === "" ? NaN : +text;
+      view.chosen = Number.isInteger(number) && number >= 0 && number < this.gas.number ? number : null;
+      this.draw();
+    };
+    field.addEventListener("input", () => choose(field.value));
+    canvas.addEventListener("click", event => choose(field.value = String(view.discAt(event))));
   }
 
   get time() { return this.gas.time; }
@@ -33,10 +50,17 @@ class Player {
 
   draw() {
     const { head, time } = this.gas;
-    this.views.forEach(view => view.draw());
+    [...this.views, ...this.curves].forEach(view => view.draw(this.gas));
     this.scrub.value = this.scrub.max * (time - head.start) / (head.end - head.start);
     this.scrub.setAttribute("aria-valuetext", "t = " + time.toPrecision(5));
     this.clock.textContent = "t = " + time.toPrecision(6);
+    document.getElementById("flight").textContent = this.inWords(this.discs?.chosen ?? null);
+  }
+
+  inWords(i) {
+    if (i === null) return "";
+    const { since } = this.gas.flight(i, 1), speed = Math.hypot(this.gas.vx[i], this.gas.vy[i]);
+    return `disc ${i}: speed ${speed.toPrecision(4)}, in free flight since t = ${since.toPrecision(6)}`;
   }
 
   toggle() { if (this.playing) this.pause(); else this.play(); }
@@ -62,7 +86,7 @@ class Player {
   }
 
   key(event) {
-    if (event.target === this.rates || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target === this.rates || event.target.id === "chosen" || event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.target === this.button && event.key === " ") return; // it is a click already
     const second = this.rate * this.gas.head.speed, small = event.shiftKey ? second : second / 25;
     const act = {
@@ -88,6 +112,7 @@ class Player {
 }
 
 let printing = false;
+wrapTables();
 const head = document.getElementById("data-head");
 if (head) {
   window.player = new Player(new Gas(JSON.parse(head.textContent)));

@@ -83,12 +83,12 @@ def player(log: Log, start: float | None = None) -> Player | None:
             for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
         ],
         "walls": [
-            {"from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
+            {"name": w.name, "from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
             for w in walls_inside(log.scene)
         ],
         "piston": _piston(log, first, last),
     }
-    arrays = {"radius": gas.radius, "mass": gas.mass, "velocity": state.velocity}
+    arrays = {"radius": gas.radius, "mass": gas.mass, "species": gas.species.astype("<u2"), "velocity": state.velocity}
     if log.has_positions:
         arrays["position"] = state.position
     return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, rows), first, last)

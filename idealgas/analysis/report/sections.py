@@ -16,13 +16,15 @@ class Section:
     """A section of the report page.
 
     title: heading. picture: figure of the analysis. caption: text below the picture, also read aloud to blind readers.
-    tables: tables of the analysis. left_out: reason why the analysis does not apply; None if it does.
+    tables: tables of the analysis. words: what it found, in sentences. left_out: reason why the analysis does not
+    apply; None if it does.
     """
 
     title: str
     picture: Figure | None = None
     caption: str = ""
     tables: tuple[Table, ...] = ()
+    words: tuple[str, ...] = ()
     left_out: str | None = None
 
 
@@ -34,7 +36,8 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
         try:
             result = analysis.combine([analysis.measure(log, **section.options)])
             tables = tuple(analysis.tables(result))
-            found.append(Section(section.title, analysis.figure(result), section.caption, tables))
+            figure, words = analysis.figure(result, titled=False), tuple(analysis.words(result))
+            found.append(Section(section.title, figure, section.caption, tables, words))
         except DamageError:
             raise
         except UserError as error:

@@ -5,7 +5,7 @@ function themed() {
   const dark = !printing && matchMedia("(prefers-color-scheme: dark)").matches;
   const onPaper = { "--ink": "#1a1a1a", "--panel": "#ffffff" };
   const colour = name => printing ? onPaper[name] : style.getPropertyValue(name).trim();
-  return { dark, ink: colour("--ink"), panel: colour("--panel") };
+  return { dark, ink: colour("--ink"), panel: colour("--panel"), soft: printing ? "#5f5f5f" : colour("--soft") };
 }
 
 // A canvas as wide as the page and `ratio` as high, within limits; inset: what is left free on both sides.
@@ -32,13 +32,22 @@ class DiscView {
     this.canvas = canvas;
     this.gas = gas;
     this.shade = new Uint8Array(gas.number);
+    this.chosen = null; // number of the disc whose flight is shown
+  }
+
+  // The disc below a pointer.
+  discAt(event) {
+    const box = this.canvas.getBoundingClientRect();
+    return this.gas.nearest((event.clientX - box.left - this.inset) / this.scale,
+      (box.height - event.clientY + box.top) / this.scale);
   }
 
   draw() {
     const { gas } = this, { head } = gas, [boxX, boxY] = head.box;
-    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 0, 640);
+    const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 0, Math.max(240, Math.min(640, innerHeight / 2)));
     const theme = themed(), shades = theme.dark ? head.dark : head.light;
     const scale = (width - 2 * inset) / boxX;
+    [this.inset, this.scale] = [inset, scale];
     for (let i = 0; i < gas.number; i++) {
       const speed = gas.speed(i) / head.brightest;
       this.shade[i] = Math.min(Math.floor(speed * shades.length), shades.length - 1);
@@ -57,21 +66,73 @@ class DiscView {
       pen.fillStyle = shades[s];
       pen.fill();
     }
+    if (this.chosen !== null) this.drawFlight(pen, theme, inset, height, scale);
     pen.restore();
     pen.strokeStyle = theme.ink;
     pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
     pen.lineWidth = 2;
     for (const wall of head.walls) {
       const [opens, closes] = wall.absent;
-      if (opens !== null && gas.time >= opens && (closes === null || gas.time < closes)) continue;
+      const open = opens !== null && gas.time >= opens && (closes === null || gas.time < closes);
+      pen.strokeStyle = open ? theme.soft : theme.ink;
+      pen.lineWidth = open ? 1 : 2;
+      pen.setLineDash(open ? [1, 5] : []);
       this.line(pen, wall.from.map(x => x * scale), wall.to.map(x => x * scale), inset, height);
+      pen.setLineDash([]);
+      const [x, y] = wall.from[1] > wall.to[1] ? wall.from : wall.to; // the upper end
+      this.label(pen, theme, open ? `${wall.name}, open` : wall.name, inset + x * scale, height - y * scale);
     }
     if (head.piston) {
       pen.lineWidth = 3;
       pen.strokeStyle = head.pistonColour;
       const place = gas.pistonPlace() * scale, along = head.piston.axis === 0;
       this.line(pen, along ? [place, 0] : [0, place], along ? [place, height] : [boxX * scale, place], inset, height);
+      this.label(pen, theme, "piston", inset + (along ? place : 0), along ? 0 : height - place);
     }
+    pen.lineWidth = 1;
+    if (head.gravity.some(g => g !== 0)) this.arrow(pen, theme, head.gravity, width - inset - 28, 28);
+  }
+
+  // A word beside a place, inside the picture, legible on discs.
+  label(pen, theme, text, x, y) {
+    pen.font = "12px system-ui, sans-serif";
+    const wide = pen.measureText(text).width, right = this.canvas.clientWidth - this.inset;
+    pen.textAlign = "left";
+    const [left, base] = [x + 6 + wide > right - 4 ? x - 6 - wide : x + 6, Math.max(y, 0) + 16];
+    [pen.lineWidth, pen.strokeStyle, pen.fillStyle] = [4, theme.panel, theme.ink];
+    pen.strokeText(text, left, base);
+    pen.fillText(text, left, base);
+  }
+
+  arrow(pen, theme, [gx, gy], x, y) {
+    const g = Math.hypot(gx, gy), [dx, dy] = [gx / g, -gy / g], [toX, toY] = [x + 14 * dx, y + 14 * dy];
+    for (const [width, colour] of [[5, theme.panel], [1.5, theme.ink]]) {
+      [pen.lineWidth, pen.strokeStyle] = [width, colour];
+      pen.beginPath();
+      pen.moveTo(x - 14 * dx, y - 14 * dy);
+      pen.lineTo(toX, toY);
+      pen.moveTo(toX - 6 * dx - 4 * dy, toY - 6 * dy + 4 * dx);
+      pen.lineTo(toX, toY);
+      pen.lineTo(toX - 6 * dx + 4 * dy, toY - 6 * dy - 4 * dx);
+      pen.stroke();
+    }
+    this.label(pen, theme, "g", x + 2, y - 12);
+    pen.lineWidth = 1;
+  }
+
+  // The flight of the chosen disc since its last event, across periodic sides as in an unfolded box.
+  drawFlight(pen, theme, inset, height, scale) {
+    const { gas } = this, i = this.chosen, { places } = gas.flight(i, 32), [x, y] = places[32];
+    [pen.lineWidth, pen.strokeStyle] = [1.5, theme.ink];
+    pen.beginPath();
+    places.forEach(([px, py]) => {
+      pen.lineTo(inset + (px + gas.x[i] - x) * scale, height - (py + gas.y[i] - y) * scale);
+    });
+    pen.stroke();
+    pen.beginPath();
+    pen.lineWidth = 2.5;
+    this.disc(pen, inset + gas.x[i] * scale, height - gas.y[i] * scale, Math.max(gas.radius[i] * scale, 1.5) + 3);
+    pen.stroke();
     pen.lineWidth = 1;
   }
 
@@ -132,7 +193,7 @@ class SpeedView {
 
   draw() {
     const { gas, counts } = this, { head } = gas;
-    const { pen, width, height } = prepare(this.canvas, 0.32, 180, 260);
+    const { pen, width, height } = prepare(this.canvas, 0.32, 180, 220);
     const theme = themed(), left = 52, bottom = 48, right = 12, above = 24, strip = 8;
     const shades = theme.dark ? head.dark : head.light;
     const w = width - left - right, h = height - bottom - above;

@@ -19,8 +19,8 @@ def sound_figure(result: Sound) -> Figure:
         if wave.theory is not None:
             ax.plot(fine, wave.theory.at(fine), "--", color=GREY, label="hydrodynamics by theory")
         ax.axhline(0, color="#bbbbbb", linewidth=0.8, zorder=1)
-        ax.set_title(f"Waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}", fontsize=10)
         ax.set_xlabel("t (time)")
-        ax.set_ylabel("⟨ρ(t) ρ*(0)⟩/N (no unit)")
-        ax.legend(frameon=False, fontsize="small")
+        wave_in_words = f"waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}"
+        ax.set_ylabel(f"⟨ρ(t) ρ*(0)⟩/N (no unit), {wave_in_words}")
+        ax.legend()
     return figure
