@@ -58,16 +58,23 @@ def correlation(time: np.ndarray, k: float, fluid: Fluid) -> np.ndarray:
     return ((above / below) @ np.exp(np.outer(poles, time))).real
 
 
-def fit(time: np.ndarray, found: np.ndarray, guess: Decay) -> Decay | None:
-    """The law that is nearest to a correlation (L,) at times (L,), by least squares; None if there is none."""
+def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> Decay | None:
+    """The law that is nearest to a correlation (L,) at times (L,), by least squares; None if there is none.
 
-    def law(time: np.ndarray, size: float, *fluid: float) -> np.ndarray:
-        return size * correlation(time, guess.k, Fluid(*fluid))
+    thermal: T/m, length²/time². The size of a long wave is nT times the isothermal compressibility, γT/(mc²), so that γ
+    is not free.
+    """
 
-    start = (guess.size, *guess.fluid)
-    bounds = [1e-3 * abs(value) for value in start[:-1]] + [1.0], [np.inf] * len(start)
+    def fluid(size: float, speed: float, damping: float, spreading: float) -> Fluid:
+        return Fluid(speed, damping, spreading, max(size * speed**2 / thermal, 1 + 1e-9))
+
+    def law(time: np.ndarray, size: float, *rest: float) -> np.ndarray:
+        return size * correlation(time, guess.k, fluid(size, *rest))
+
+    start = (guess.size, *guess.fluid[:3])
+    bounds = [1e-3 * abs(value) for value in start], np.inf
     try:
         best, _ = curve_fit(law, time, found, start, bounds=bounds, max_nfev=MOST_CALLS, x_scale=start)
     except RuntimeError:
         return None
-    return Decay(float(best[0]), guess.k, Fluid(*map(float, best[1:])))
+    return Decay(float(best[0]), guess.k, fluid(*map(float, best)))

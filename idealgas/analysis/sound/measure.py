@@ -156,8 +156,10 @@ def _wave(log: Log, axes: tuple[int, ...], expected: Expected, lag: np.ndarray, 
     """What the amplitudes (A, G) of the waves along some axes say."""
     parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
     whole = parts.mean(axis=0)
-    fitted = fit(lag, whole, expected.law._replace(size=float(whole[0])))
-    others = [] if fitted is None else [fit(lag, (whole * SEGMENTS - part) / (SEGMENTS - 1), fitted) for part in parts]
+    thermal = ensemble(log).temperature / float(log.discs.mass[0])
+    fitted = fit(lag, whole, expected.law._replace(size=float(whole[0])), thermal)
+    rest = (whole * SEGMENTS - parts) / (SEGMENTS - 1)
+    others = [] if fitted is None else [fit(lag, one, fitted, thermal) for one in rest]
     without = [other.fluid for other in others if other is not None]
     if fitted is None or len(without) < SEGMENTS:
         raise UserError(f"{log.path}: the waves of density are not those of a fluid, or too few for a fit")

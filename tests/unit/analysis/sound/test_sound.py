@@ -36,7 +36,8 @@ def test_long_waves_are_heat_and_sound():
 
 def test_a_fit_finds_the_fluid():
     guess = Decay(0.3, 0.2, Fluid(2.2, 3.5, 1.5, 1.7))
-    found = fit(TIME, Decay(0.25, 0.2, FLUID).at(TIME), guess)
+    thermal = 0.25 * FLUID.speed**2 / FLUID.exponent
+    found = fit(TIME, Decay(0.25, 0.2, FLUID).at(TIME), guess, thermal)
     assert (found.size, *found.fluid) == pytest.approx((0.25, *FLUID), rel=1e-6)
 
 
