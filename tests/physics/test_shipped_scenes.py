@@ -218,6 +218,34 @@ def test_heat_bath(run):
     assert stats.kstest(thinned, stats.gamma(n).cdf).pvalue > LEAST_P
 
 
+@pytest.mark.parametrize("rate", [0.1, 0.6, 4.0])
+def test_thermostat(run, rate):
+    """Andersen, J. Chem. Phys. 72, 2384 (1980): canonical at any rate, here a tenth to four times that of collisions.
+
+    E/T has a Gamma law of N = D/2; discs are independent of each other, with Maxwell's speeds and T for each direction;
+    they remember nothing for long after a few times 1/rate. Kicks come as a Poisson process. Var(E) within 3 standard
+    errors.
+    """
+    times = f"log.snapshot_every={1.5 / rate}", f"run.until={3000 / rate}"
+    log = run("thermostat", *times, f"thermostat.rate={rate}", f"scene.seed={30 + int(rate)}", "log.events=false")
+    n = len(log.discs)
+    energy = kinetic_at_even_times(log)[6:]
+    agrees(mean(energy, n), 0.005)
+    fluctuations = estimate(lambda e, square: square - e**2, energy - n, (energy - n) ** 2, theory=n)
+    agrees(fluctuations, 0.05)
+    assert abs(fluctuations.deviation) < 3
+    assert stats.kstest(energy[::3], stats.gamma(n).cdf).pvalue > LEAST_P
+    with h5py.File(log.path) as file:
+        velocity = file["particles/discs/velocity/value"][6::4].reshape(-1, 2)
+    for component in velocity.T:
+        agrees(mean(component**2, 1.0), 0.01)
+    assert stats.kstest(np.hypot(*velocity.T), stats.rayleigh().cdf).pvalue > LEAST_P
+    expected = rate * n * log.end_time
+    assert abs(log.summary["kicks"] - expected) < STANDARD_ERRORS * math.sqrt(expected)
+    assert log.summary["events"] == log.summary["disc_collisions"] + log.summary["kicks"]
+    assert abs(log.summary["energy_drift"]) < 1e-12
+
+
 def conductivity_factor(phi):
     """Enskog's conductivity over that of the dilute gas: 1/χ + 3y/2 + 0.8718 χy², y = 2φ: Gass, see below."""
     chi, y = hard_discs.contact_value(phi), 2 * phi

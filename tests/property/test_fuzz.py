@@ -79,7 +79,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
         thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
         piston=beyond,
-        thermostat=Thermostat(1.0, 1.0, np.uint64(0), np.full(n, math.inf), np.zeros(n, np.uint64)),
+        thermostat=Thermostat(0.0, 0.0, np.uint64(0), np.full(n, math.inf), np.zeros(n, np.uint64)),
     )
     neutral = with_sums(neutral, scene, gas, gives_energy=True, loses_energy=True)
     neutral = neutral._replace(bath_energy=make_sums([1.0]))

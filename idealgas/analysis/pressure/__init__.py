@@ -8,7 +8,7 @@ ANALYSIS = Analysis(
 
     Collision rates and mean free paths come from the same events. Several logs, or the folder of a sweep with the
     analysis "pressure", give the equation of state: Z against the packing fraction, and the virial coefficients in it.
-    Under gravity, with a piston or walls inside, losses or walls of several temperatures there is no such Z: it is then
+    Under gravity, with a piston or walls inside, losses or heat of several temperatures there is no such Z: it is then
     the mechanical pressure of every wall, the momentum that discs give to it per time and length.
     """,
     worded=True,

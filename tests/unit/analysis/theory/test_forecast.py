@@ -30,6 +30,21 @@ def test_rates_of_one_species():
     assert expected.species[0].collision_rate == pytest.approx(rate, rel=1e-12)
 
 
+def test_a_gas_in_a_heat_bath_has_its_temperature_and_kicks():
+    free, hot = forecast_of(), forecast_of("thermostat={ temperature = 4, rate = 0.3 }")
+    assert (hot.temperature, hot.kick_rate, free.kick_rate, hot.beyond) == (4, 300, 0, ())
+    for quantity in ("collision_rate", "pair_collision_rate", "wall_hit_rate"):
+        assert getattr(hot, quantity) == pytest.approx(2 * getattr(free, quantity), rel=1e-12)
+    assert hot.events == pytest.approx(3 * (hot.pair_collision_rate + hot.wall_hit_rate + 300))
+    assert hot.rows == pytest.approx(hot.events + 3 * hot.pair_collision_rate)
+    walls = forecast_of("thermostat={ temperature = 4, rate = 0.3 }", "box.left={ thermal = 4 }")
+    assert (walls.temperature, walls.beyond) == (4, ())
+    assert forecast_of("thermostat={ temperature = 4, rate = 0.3 }", "box.left={ thermal = 1 }").beyond == (
+        "thermal walls",
+        "thermostat",
+    )
+
+
 def test_a_species_cut_in_two_alike_changes_nothing():
     half = '{ name = "%s", count = 500, radius = 0.1, speed = 2, mass = 0.5 }'
     cut = forecast_of(text=GAS[: GAS.index("species")] + f"species = [{half % 'a'}, {half % 'b'}]")

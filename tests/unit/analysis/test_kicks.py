@@ -1,0 +1,79 @@
+"""Analyses of a gas that a heat bath kicks: a kick is no hit of a wall, and its energy is on the account."""
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.stream import stream
+from idealgas.analysis.core.wall_impulses import WallImpulses
+from idealgas.analysis.evolution.figure import evolution_figure
+from idealgas.analysis.evolution.measure import evolution
+from idealgas.analysis.evolution.tables import evolution_tables
+from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.transport.measure import transport
+from idealgas.errors import NotApplicableError
+from idealgas.events import BATH, Kind
+
+GAS = """
+scene.seed = 3
+box.size = [8, 6]
+log.pressure = true
+run.until = 60
+species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
+thermostat = { temperature = 2, rate = 0.5 }
+"""
+
+
+def test_kicks_hit_no_wall(make):
+    """Sums over the rows of walls alone, and over the samples of a run that counts as it goes."""
+    log = make()
+    edges = np.array([0.0, log.end_time])
+    moments, impacts, walls = Moments(), Impacts(), WallImpulses(log)
+    stream(log, edges, [moments, impacts, walls])
+    (rows,) = log.chunks()
+    kicks = rows.kind == Kind.KICK
+    assert kicks.sum() == log.summary["kicks"] == log.observables["kicks"][1][-1] > 800
+    assert (kicks == (rows.partner == BATH)).all()
+    hits = np.bincount(-1 - rows.partner[(rows.partner < 0) & ~kicks], minlength=4)
+    assert log.summary["wall_hits"] == hits.sum() == moments.events[0, 1]
+    for tally in (impacts, walls):
+        assert tally.hits[0].tolist() == hits.tolist()
+    assert impacts.wall_virial[0] == pytest.approx(log.observables["wall_virial"][1][-1], rel=1e-9)
+    assert impacts.pair_virial[0] == pytest.approx(log.observables["collision_flow"][1][-1][[0, 2]].sum(), rel=1e-9)
+    push = log.observables["face_push"][1][-1]
+    assert walls.faces[0, :, :, 0].sum(axis=1) == pytest.approx(push, rel=1e-9)
+
+
+def test_the_pressure_is_that_of_the_bath(make):
+    found = pressure(make())
+    assert found.temperature == 2
+    assert found.check().agrees
+
+
+def test_the_energy_that_kicks_give_is_on_the_account(make):
+    log = make()
+    found = evolution(log)
+    assert np.abs(found.balance).max() < 1e-12
+    assert found.given.keys() == {"the heat bath"}
+    mass, before, given = log.discs.mass, log.discs.velocity.copy(), 0.0
+    for rows in log.chunks():
+        for disc, kind, velocity in zip(rows.disc, rows.kind, rows.velocity, strict=True):
+            if kind == Kind.KICK:
+                given += mass[disc] / 2 * (velocity @ velocity - before[disc] @ before[disc])
+            before[disc] = velocity
+    assert found.given["the heat bath"][-1] == pytest.approx(given, rel=1e-10)
+    assert found.law.temperature[0] == 2
+    assert any("given by the heat bath" in table.heads for table in evolution_tables(found))
+    assert evolution_figure(found).axes
+
+
+def test_what_has_no_law(make):
+    log = make()
+    assert histogram(log).no_law == ""
+    assert histogram(log, "free-path").no_law == "a heat bath changes velocities in flight"
+    with pytest.raises(NotApplicableError, match="thermostat"):
+        transport(log)
+    two = make("box.left={ thermal = 1 }")
+    assert histogram(two).no_law == "walls and heat bath have 2 temperatures"
