@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any
 from idealgas._version import __version__
 
 if TYPE_CHECKING:
+    from idealgas.analysis.cooling.measure import cooling
     from idealgas.analysis.core.statistics import Estimate
     from idealgas.analysis.effusion.measure import effusion
     from idealgas.analysis.evolution.measure import evolution
@@ -77,6 +78,7 @@ __all__ = [
     "UserError",
     "__version__",
     "analyse",
+    "cooling",
     "effusion",
     "evolution",
     "heat_capacity",

@@ -15,6 +15,7 @@ NAMES: tuple[str, ...] = (
     "pressure",
     "temperature",
     "evolution",
+    "cooling",
     "profile",
     "histogram",
     "relaxation",

@@ -47,13 +47,22 @@ def python(code, *arguments, folder=None):
     return done.stdout
 
 
+GRAINS = """
+box.size = [8, 8]
+species = [{ name = "grains", count = 30, radius = 0.2, speed = 1.0 }]
+restitution.normal = 0.95
+run.collisions_per_disc = 40
+"""
+
+
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of logs of many kinds of gas, by name: old ones, and one of waves."""
+    """Paths of logs of many kinds of gas, by name: old ones, one of waves, and one that cools."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
         (folder / packed.name.removesuffix(".xz")).write_bytes(lzma.decompress(packed.read_bytes()))
     idealgas.simulate(idealgas.parse_scene(WAVES), folder / "waves.h5")
+    idealgas.simulate(idealgas.parse_scene(GRAINS), folder / "grains.h5")
     return {path.stem: path for path in sorted(folder.glob("*.h5"))}
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_momentum, known_ensemble
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory import granular, hard_discs
 from idealgas.log import Log
 
 SLOW = 0.05
@@ -76,9 +76,9 @@ def expected_course(log: Log, time: np.ndarray) -> Law | None:
 def haff_time(log: Log) -> float:
     """Haff's cooling time τ = 4/((1 - e²) Γ (1 + 3a₂/16)) of the law T = T₀/(1 + t/τ)², time.
 
-    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant of
-    the velocities in two dimensions by van Noije & Ernst, Granular Matter 1, 57 (1998). The velocity of the centre of
-    mass, where it is conserved, is not part of the temperature. Source: Haff, J. Fluid Mech. 134, 401 (1983).
+    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant
+    (`granular.cooling_time`). The velocity of the centre of mass, where it is conserved, is not part of the
+    temperature.
     """
     gas, table = log.discs, log.scene.restitution
     e = 1.0 if table is None else table.normal
@@ -86,8 +86,7 @@ def haff_time(log: Log) -> float:
     t = _kinetic(log) / (n * share)
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(t, gas.mass[0])
-    a2 = 16 * (1 - e) * (1 - 2 * e**2) / (57 - 25 * e + 30 * e**2 * (1 - e))
-    return 4 * share / ((1 - e**2) * rate * (1 + 3 * a2 / 16))
+    return share * granular.cooling_time(granular.Grains(e), rate)
 
 
 def _haff(log: Log, time: np.ndarray) -> Law | None:

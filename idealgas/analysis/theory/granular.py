@@ -1,0 +1,122 @@
+"""Kinetic theory of equal discs that lose energy in their collisions, as plain formulas (two dimensions, k_B = 1).
+
+Symbols: e coefficient of restitution of the motion along the line of centres; β that of the surfaces, -1 (smooth) to 1
+(perfectly rough); κ = I/mR²; T temperature of the motion, mean m v²/2; S that of the spin, mean I ω²; x = S/T; Γ
+collision rate of a disc. Rates are per collision of a disc.
+
+With Maxwellian velocities and spins the means over the collisions of one time are elementary. With q = κ/(1 + κ) and
+b = 1 + β
+
+    d ln T = -½ [(1 - e²) + b q - ½ b² q² (1 + x/κ)],    dS/T = -(b q/κ) x + ½ (b² q²/κ) (1 + x/κ).
+
+These are the equations of Luding, Huthmann, McNamara & Zippelius, Phys. Rev. E 58, 3416 (1998) in two dimensions.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+
+class Grains(NamedTuple):
+    """Coefficients of the collisions of discs: e, β and κ as above; β is -1 and κ is None for discs without spin."""
+
+    normal: float
+    roughness: float = -1.0
+    inertia: float | None = None
+
+    @property
+    def rough(self) -> bool:
+        """Whether collisions exchange energy of motion and spin."""
+        return self.inertia is not None and self.roughness > -1
+
+
+def fourth_cumulant(e: float) -> float:
+    """Fourth cumulant a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1 of the velocities of smooth discs that cool homogeneously.
+
+    First order in a₂, two dimensions: van Noije & Ernst, Granular Matter 1, 57 (1998).
+    """
+    return 16 * (1 - e) * (1 - 2 * e**2) / (57 - 25 * e + 30 * e**2 * (1 - e))
+
+
+def loss_of_motion(grains: Grains, x: float) -> float:
+    """Part of T that a disc loses per collision, -d ln T, with Maxwellian velocities at the ratio x = S/T."""
+    smooth = (1 - grains.normal**2) / 2
+    if not grains.rough or grains.inertia is None:
+        return smooth
+    b, q = 1 + grains.roughness, grains.inertia / (1 + grains.inertia)
+    return smooth + b * q / 2 - b**2 * q**2 / 4 * (1 + x / grains.inertia)
+
+
+def loss_of_spin(grains: Grains, x: float) -> float:
+    """Loss of S per collision in units of T, -dS/T, with Maxwellian velocities at the ratio x = S/T."""
+    if not grains.rough or grains.inertia is None:
+        return 0.0
+    b, q = 1 + grains.roughness, grains.inertia / (1 + grains.inertia)
+    return b * q / grains.inertia * x - b**2 * q**2 / (2 * grains.inertia) * (1 + x / grains.inertia)
+
+
+def temperature_ratio(grains: Grains) -> float | None:
+    """Ratio x = S/T to which rough discs that cool homogeneously come; None for smooth ones, which keep their spin."""
+    if not grains.rough:
+        return None
+    return float(brentq(lambda x: loss_of_spin(grains, x) - x * loss_of_motion(grains, x), 0.0, 1e6, xtol=1e-14))
+
+
+def relaxation(grains: Grains) -> float:
+    """Collisions of a disc in which the ratio x comes nearer to `temperature_ratio` by e; 0 for smooth discs."""
+    if (ratio := temperature_ratio(grains)) is None:
+        return 0.0
+    low, high = (loss_of_spin(grains, x) - x * loss_of_motion(grains, x) for x in (ratio * 0.999, ratio * 1.001))
+    return 0.002 * ratio / (high - low)
+
+
+def cooling_per_collision(grains: Grains) -> float:
+    """Part of T that a disc loses per collision once the gas cools homogeneously.
+
+    Smooth discs: with the first Sonine polynomial, (1 - e²)/2 · (1 + 3a₂/16)/(1 - a₂/16); a₂ raises the energy lost per
+    time by 3a₂/16 and changes the collision rate by -a₂/16. Rough ones: Maxwellian.
+    """
+    if (ratio := temperature_ratio(grains)) is not None:
+        return loss_of_motion(grains, ratio)
+    a2 = fourth_cumulant(grains.normal)
+    return loss_of_motion(grains, 0.0) * (1 + 3 * a2 / 16) / (1 - a2 / 16)
+
+
+def cooling_time(grains: Grains, rate: float) -> float:
+    """Haff's time τ of T = T₀/(1 + t/τ)², time: dT/dt = -(2/τ) T √(T/T₀); Haff, J. Fluid Mech. 134, 401 (1983).
+
+    rate: Γ at T₀ with Maxwellian velocities, 1/time. Smooth discs: with the first Sonine polynomial.
+    """
+    ratio = temperature_ratio(grains)
+    if ratio is not None:
+        return 2 / (rate * loss_of_motion(grains, ratio))
+    return 2 / (rate * loss_of_motion(grains, 0.0) * (1 + 3 * fourth_cumulant(grains.normal) / 16))
+
+
+def homogeneous_cooling(
+    grains: Grains, rate: float, temperature: float, spin: float, time: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Temperatures T and S (F,) of a gas that stays uniform, at times (F,).
+
+    rate: Γ at the start with Maxwellian velocities, 1/time. temperature, spin: T and S at the start, energy. Smooth
+    discs follow Haff's law with `cooling_time`.
+    """
+    if not grains.rough:
+        return temperature / (1 + time / cooling_time(grains, rate)) ** 2, np.full(len(time), spin)
+
+    def slopes(_: float, state: np.ndarray) -> list[float]:
+        """Of ln T, of S/T₀ and of the time, against the collisions of a disc."""
+        t = math.exp(state[0])
+        x = state[1] / t
+        return [-loss_of_motion(grains, x), -t * loss_of_spin(grains, x), 1 / (rate * math.sqrt(t))]
+
+    def late(_: float, state: np.ndarray) -> float:
+        return state[2] - float(time[-1])
+
+    late.terminal = True  # type: ignore[attr-defined]
+    found = solve_ivp(slopes, (0.0, 1e9), [0.0, spin / temperature, 0.0], events=late, rtol=1e-8, atol=1e-12)
+    log_t, s, at = found.y
+    return temperature * np.exp(np.interp(time, at, log_t)), temperature * np.interp(time, at, s)

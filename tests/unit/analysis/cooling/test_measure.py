@@ -1,0 +1,71 @@
+"""Cooling of small gases: against theory, what tells that they are not uniform, and what is refused."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.cooling.figure import cooling_figure
+from idealgas.analysis.cooling.measure import cooling
+from idealgas.errors import NotApplicableError
+
+GAS = """
+scene.seed = 1
+box = { size = [14, 14], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic" }
+species = [{ name = "grains", count = 300, radius = 0.1, temperature = 1 }]
+restitution.normal = 0.95
+run.collisions_per_disc = 70
+"""
+
+
+def test_a_uniform_gas_cools_as_theory_says(make):
+    """Within 4 standard errors, and resolved to 3 %."""
+    found = cooling(make())
+    assert found.premises == ()
+    for estimate, resolution in ((found.loss, 0.03), (found.haff, 0.06), (found.fourth, 2.0)):
+        assert estimate.standard_error < resolution * abs(estimate.theory)
+        assert abs(estimate.deviation) < 4
+    assert found.temperature_ratio is None
+    assert found.spin is None
+    assert found.collisions[-1] == pytest.approx(70, rel=1e-3)
+    assert np.diff(found.collisions).std() < 0.5 * np.diff(found.collisions).mean()  # as many between any two times
+    assert found.collisions[found.time.searchsorted(found.start)] >= 20
+    assert np.abs(np.log(found.temperature / found.law)).max() < 0.2  # e⁻³·⁴ is left
+    assert json.loads(json.dumps(found.as_dict(), allow_nan=False)) == found.as_dict()
+
+
+def test_spins_come_to_a_ratio_of_their_own(make):
+    log = make("rotation={ inertia = 0.5, roughness = 0.5 }", "species.0.spin_temperature=0.2")
+    found = cooling(log)
+    assert abs(found.temperature_ratio.deviation) < 4
+    assert found.temperature_ratio.standard_error < 0.04
+    assert found.fourth.theory is None
+    assert found.spin[0] == pytest.approx(0.2)
+    middle = len(found.time) // 8
+    assert found.spin[middle] / found.temperature[middle] > 0.4
+    assert abs(math.log(found.spin_law[-1] / found.spin[-1])) < 0.5
+    assert len(cooling_figure(found).axes) == 4
+
+
+def test_clusters_are_said(make):
+    log = make("restitution.normal=0.5", "species.0.count=1200", "species.0.radius=0.12", "run.collisions_per_disc=60")
+    found = cooling(log)
+    clusters, flow = found.premises
+    assert clusters.startswith("Clusters form: numbers of discs in small cells scatter ")
+    assert flow.startswith("Discs move together: ")
+    assert found.last_scatter.value > 3 * found.first_scatter.value
+    assert found.temperature[-1] > 2 * found.law[-1]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "why"),
+    [
+        (("restitution.normal=1",), "collisions of its discs lose no energy"),
+        (("restitution.wall=0.9", "box={ size = [14, 14] }"), r"more than collisions of discs .* \(walls\)"),
+        (("run.collisions_per_disc=15",), "too short, with 15 collisions a disc"),
+    ],
+)
+def test_refused(make, overrides, why):
+    with pytest.raises(NotApplicableError, match=why):
+        cooling(make("run.collisions_per_disc=2", *overrides))
