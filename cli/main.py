@@ -24,7 +24,7 @@ from ._interrupt import EXIT_CODE
 from ._terminal import echo, readers_may_go
 
 GROUPS = {
-    "Run": ("check", "run", "resume", "recover"),
+    "Run": ("check", "run", "resume", "recover", "warm-up"),
     "Look": ("info", "follow", "animate"),
     "Analyse": registry.commands(),
     "Share": ("report", "export"),

@@ -1,0 +1,29 @@
+"""Command `idealgas warm-up`: machine code of scenes, compiled beforehand."""
+
+import click
+
+from ._options import json_option
+from ._tables import facts, print_tables
+from ._terminal import data, terminal
+
+
+@click.command(epilog="Example: idealgas warm-up gas.toml")
+@click.argument("paths", metavar="SCENE.toml...", nargs=-1, required=True)
+@json_option
+def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
+    """Compile beforehand what scenes need, so that their first run starts at once.
+
+    Machine code is compiled for the effects that a scene calls for, and is kept on disk.
+    """
+    import json
+
+    from idealgas.run.warm_up import warm_up as compile_for
+    from idealgas.scene import load_scene
+
+    scenes = {path: load_scene(path) for path in paths}
+    with terminal(err=True).status("compiling"):
+        seconds = {path: compile_for(scene) for path, scene in scenes.items()}
+    if as_json:
+        data(json.dumps({"compile_seconds": seconds}, indent=2))
+    else:
+        print_tables([facts("Compilation", {path: f"{taken:.1f} s" for path, taken in seconds.items()})])

@@ -1,0 +1,50 @@
+"""Compiling beforehand."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from idealgas_cli.main import main
+from support import ROOT
+
+from idealgas.run import warm_up as module
+from idealgas.scene import load_scene, parse_scene
+
+SCENE = """
+box.size = [10, 10]
+species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
+run.collisions_per_disc = 1e6
+"""
+
+
+def test_a_long_scene_runs_for_one_event_and_leaves_nothing(monkeypatch, tmp_path):
+    ran = []
+
+    def simulate(scene, path):
+        summary = original(scene, path)
+        ran.append((path, summary))
+        return summary
+
+    original = module.simulate
+    monkeypatch.setattr(module, "simulate", simulate)
+    seconds = module.warm_up(parse_scene(SCENE))
+    ((path, summary),) = ran
+    assert summary.events == 1
+    assert seconds == summary.compile_seconds >= 0.0
+    assert not path.parent.exists()
+
+
+@pytest.mark.parametrize("name", ["novak-bortz", "periodic"])
+def test_every_method_ends(name):
+    module.warm_up(load_scene(ROOT / "configs" / f"{name}.toml", ["species.0.count=20"]))
+
+
+def test_the_command_says_what_it_compiled(tmp_path):
+    scene = tmp_path / "gas.toml"
+    scene.write_text(SCENE)
+    done = CliRunner().invoke(main, ["warm-up", str(scene), "--json"])
+    assert done.exit_code == 0, done.output
+    assert list(json.loads(done.stdout)["compile_seconds"]) == [str(scene)]
+    assert [path.name for path in tmp_path.iterdir()] == ["gas.toml"]
+    wrong = CliRunner().invoke(main, ["warm-up", str(scene), str(tmp_path / "none.toml")])
+    assert (wrong.exit_code, wrong.stderr.count("\n")) == (2, 1)
