@@ -89,6 +89,15 @@ def is_of_kind(path: Path, kind: str) -> bool:
         return bool(re.match(_BEGINNINGS[kind], file.read(HEAD), re.DOTALL))
 
 
+def told_kind(head: bytes) -> str:
+    """What a file is, in words, by its first bytes, and which command reads such files."""
+    if re.match(_HDF5, head):
+        return "an HDF5 file (`idealgas info` reads logs)"
+    if b"\0" in head:
+        return "a binary file"
+    return "a text (`idealgas check` reads scenes)" if head else "empty"
+
+
 def _stat(path: Name) -> os.stat_result | None:
     with suppress(FileNotFoundError, NotADirectoryError):
         return os.stat(path)

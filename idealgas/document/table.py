@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 SMALLEST, LARGEST = 1e-60, 1e30
@@ -17,6 +17,14 @@ def _not_tiny(number: float) -> float:
 
 
 Real = Annotated[float, AfterValidator(_not_tiny)]
+
+
+def _whole(number: object) -> object:
+    """A number without a fraction as a whole one, however it is written, as 1e6 is; anything else as it is."""
+    return int(number) if isinstance(number, float) and number.is_integer() else number
+
+
+Whole = Annotated[int, BeforeValidator(_whole)]
 Number = Annotated[Real, Field(ge=-LARGEST, le=LARGEST)]
 Positive = Annotated[Real, Field(gt=0, le=LARGEST)]
 NotNegative = Annotated[Real, Field(ge=0, le=LARGEST)]

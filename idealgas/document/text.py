@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from idealgas.document.messages import SceneError
+from idealgas.files import HEAD, told_kind
 
 
 def read_text(path: str | PathLike[str]) -> str:
@@ -15,6 +16,8 @@ def read_text(path: str | PathLike[str]) -> str:
         raw = Path(path).read_bytes()
         return raw.decode()
     except UnicodeDecodeError as error:
+        if b"\0" in raw[:HEAD]:
+            raise SceneError([f"{path}: no TOML text, but {told_kind(raw[:HEAD])}"]) from None
         line = raw.count(b"\n", 0, error.start) + 1
         raise SceneError([f"{path}:{line}: not UTF-8 text (got byte 0x{raw[error.start]:02x})"]) from None
     except (OSError, ValueError) as error:

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.files import is_locked
+from idealgas.files import HEAD, is_locked, open_regular, told_kind
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5 import gate
@@ -133,12 +133,13 @@ class Source:
         except OSError as error:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
         if marked is None:
-            raise LogError(f"{self.path}: not a log of idealgas")
+            with open_regular(self.path) as file:
+                raise LogError(f"{self.path}: not a log of idealgas, but {told_kind(file.read(HEAD))}")
         self.unclosed = marked
         self._file = h5py.File(Unmarked(self.path) if marked else self.path, "r")
         root = open_object(self._file, "/")
         if not h5py.h5a.exists(root, b"format") or gate.value(root, "format") != schema.FORMAT:
-            raise LogError(f"{self.path}: not a log of idealgas")
+            raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")
         version = gate.value(root, "format_version")
         if not isinstance(version, int) or version < 1:
             raise LogError(f"{self.path}: of format {version} (allowed 1 to {schema.VERSION})")

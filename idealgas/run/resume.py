@@ -52,7 +52,7 @@ def resume(
             if log.complete and dump_document(scene) == dump_document(log.scene):
                 return Summary.of(log.summary)
             last = log.checkpoints[-1] if len(log.checkpoints) else None
-            _check_end(log, last, stop_of(scene, len(log.discs)))
+            _check_end(log, last, scene)
             _check_laws(log, last, _simulation_at(log, last, scene))
             simulation = _simulation_at(log, last, scene)
             past = _history_of(log, last, scene)
@@ -81,16 +81,24 @@ def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
     return scene
 
 
-def _check_end(log: Log, last: Checkpoint | None, stop: Stop) -> None:
+def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:
     """Raise LogError where a run would have to end before the log does."""
     if last is None:
         return
-    end_time = log.end_time if log.complete else last.time
+    run, n = scene.run, len(log.discs)
+    stop = stop_of(scene, n)
+    time = log.end_time if log.complete else last.time
     counts = log.summary if log.complete else last.values
     events, collisions, trials = (int(counts[name]) for name in ("events", "disc_collisions", "trials"))
-    if end_time > stop.time or events >= stop.events or collisions >= stop.disc_collisions or trials >= stop.trials:
-        counters = f"t = {end_time:g}, {events} events"
-        raise LogError(f"{log.path}: goes on to {counters} already, not before the end that is asked for")
+    for passed, asked, there, unit in (
+        (time > stop.time, run.until, time, "units of time"),
+        (events >= stop.events, run.events, events, "events"),
+        (collisions >= stop.disc_collisions, run.collisions_per_disc, 2 * collisions / n, "collisions a disc"),
+        (trials >= stop.trials, run.trials, trials, "trials"),
+    ):
+        if passed and asked is not None:
+            where = "lies before that" if asked < there else "is no later end"
+            raise LogError(f"{log.path}: already at {there:,.12g} {unit}; {asked:,.12g} {where}")
 
 
 def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Simulation:

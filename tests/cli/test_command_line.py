@@ -1,3 +1,4 @@
+import json
 import os
 import re
 import shlex
@@ -69,6 +70,53 @@ def test_a_quiet_command_still_prints_what_is_asked_for_and_errors(log):
     assert called("temperature", log, "-q", "--csv").stdout.startswith("table,")
     missing = called("temperature", "missing.h5", "-q")
     assert (missing.returncode, missing.stderr.count("\n")) == (2, 1)
+
+
+def test_a_file_of_another_kind_is_named(log):
+    """The line says what the file is, and which command reads such files."""
+    info, check = called("info", "scene.toml", folder=log.parent), called("check", "run.h5", folder=log.parent)
+    assert info.stderr == "scene.toml: not a log of idealgas, but a text (`idealgas check` reads scenes)\n"
+    assert check.stderr == "run.h5: no TOML text, but an HDF5 file (`idealgas info` reads logs)\n"
+    assert (info.returncode, check.returncode) == (2, 2)
+
+
+def test_a_whole_number_may_be_written_with_an_exponent(log):
+    done = called("check", "scene.toml", "--set", "species.count=5e1", "--json", folder=log.parent)
+    assert json.loads(done.stdout)["scene"]["species"][0]["count"] == 50
+    done = called("check", "scene.toml", "--set", "species.count=5.5", folder=log.parent)
+    assert done.stderr.endswith("wrong type (got 5.5; allowed a whole number)\n")
+
+
+def test_a_window_beyond_the_end_has_all_digits(log):
+    end = json.loads(called("info", log, "--json").stdout)["run"]["end_time"]
+    beyond = end * (1 + 1e-15)
+    done = called("pressure", log, "--from", repr(beyond))
+    assert done.stderr == f"{log}: no window from t = {beyond!r} to {end!r}: the log covers t = 0 to {end!r}\n"
+
+
+def test_resume_to_an_earlier_end(log):
+    for option, text in (("--collisions-per-disc", "100 collisions a disc; 30"), ("--until", "units of time; 30")):
+        done = called("resume", log, option, "30")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith(f"{log}: already at ")
+        assert done.stderr.endswith(f"{text} lies before that\n")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "check none/scene.toml", "run none/scene.toml -o run.h5", "run scene.toml -o none/run.h5", "info none/run.h5",
+        "pressure none/run.h5", "pressure run.h5 --plot none/p.png", "report run.h5 -o none/page.html",
+        "animate run.h5 -o none/film.gif", "export run.h5 --format csv --events -o none/events.csv",
+        "recover run.h5 -o none/closed.h5", "sweep none/sweep.toml -o out", "resume none/run.h5",
+        "accuracy none/scene.toml",
+    ],
+)  # fmt: skip
+def test_a_missing_folder_is_one_line_and_one_code(log, words):
+    done = called(*words.split(), folder=log.parent)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "none" in done.stderr
+    assert not (log.parent / "none").exists()
 
 
 def test_every_analysis_has_json_csv_and_a_picture():

@@ -139,14 +139,10 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
     """
     if not log.has_events:
         raise UserError(f"{log.path}: has no events (made with log.events = false)")
-    first = log.start_time if start is None else start
-    last = log.end_time if end is None else end
-    covered = f"the log covers t = {log.start_time:g} to {log.end_time:g}"
-    if not log.start_time <= first < last <= log.end_time:
-        raise UserError(f"{log.path}: no window from t = {first:g} to {last:g}: {covered}")
+    first, last = span(log, start, end)
     rows = log.row_at(last, "right") - log.row_at(first, "right")
     if rows == 0:
-        raise UserError(f"{log.path}: no event between t = {first:g} and {last:g}; {covered}")
+        raise UserError(f"{log.path}: no event between t = {exact(first)} and {exact(last)}; {_covered(log)}")
     number = len(log.discs)
     most = min(max(DISC_BLOCKS // number, MANY_BLOCKS), MOST_BLOCKS)
     return np.linspace(first, last, min(max(rows // number, FEWEST_BLOCKS), most) + 1)
@@ -161,6 +157,14 @@ def span(log: Log, start: float | None, end: float | None) -> tuple[float, float
     first = log.start_time if start is None else start
     last = log.end_time if end is None else end
     if not log.start_time <= first < last <= log.end_time:
-        covered = f"the log covers t = {log.start_time:g} to {log.end_time:g}"
-        raise UserError(f"{log.path}: no window from t = {first:g} to {last:g}: {covered}")
+        raise UserError(f"{log.path}: no window from t = {exact(first)} to {exact(last)}: {_covered(log)}")
     return first, last
+
+
+def exact(number: float) -> str:
+    """A number with all the digits that tell it from any other."""
+    return repr(float(number)).removesuffix(".0")
+
+
+def _covered(log: Log) -> str:
+    return f"the log covers t = {exact(log.start_time)} to {exact(log.end_time)}"

@@ -4,14 +4,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from idealgas.document.table import NotNegative, Number, Positive, Table, Vector, Word
+from idealgas.document.table import NotNegative, Number, Positive, Table, Vector, Whole, Word
 
 
 class Species(Table):
     """`[[species]]`: discs of one kind. Exactly one of temperature, speed and velocities says how they move."""
 
     name: Word = Field(description="a word, its own for each species")
-    count: int = Field(ge=1, lt=2**31, description="number of discs, >= 1")
+    count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1")
     radius: Positive = Field(description="radius > 0, length")
     mass: Positive = Field(default=1.0, description="mass")
     temperature: NotNegative | None = Field(

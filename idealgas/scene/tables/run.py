@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from idealgas.document.table import Positive, Table
+from idealgas.document.table import Positive, Table, Whole
 
 Threads = Annotated[
     Annotated[Literal["auto"], Tag("(word)")] | Annotated[int, Field(ge=1, le=256), Tag("(number)")],
@@ -16,7 +16,7 @@ class Header(Table):
     """`[scene]`: what the scene is called, and the seed of its random numbers."""
 
     title: str = Field(default="", description="one line for people")
-    seed: int = Field(
+    seed: Whole = Field(
         default=0, ge=0, lt=2**63, description="whole number from which all random numbers of the scene follow"
     )
 
@@ -28,11 +28,11 @@ class Run(Table):
         default="event_driven", description="how events are found"
     )
     until: Positive | None = Field(default=None, description="time")
-    events: int | None = Field(default=None, ge=1, lt=2**63, description="number of pair collisions and wall hits")
+    events: Whole | None = Field(default=None, ge=1, lt=2**63, description="number of pair collisions and wall hits")
     collisions_per_disc: Positive | None = Field(
         default=None, description="pair collisions a disc takes part in, averaged over all discs (2 * collisions / N)"
     )
-    trials: int | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
+    trials: Whole | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
     dt: Positive | None = Field(default=None, description="with time_driven, and required there: step, time")
     precision: Literal["float32", "float64", "double-double"] | None = Field(
         default=None, description="with brute_force: of its numbers, about 7, 16 (as if absent) or 32 digits"
@@ -63,6 +63,6 @@ class Log(Table):
     heat_flow: bool | None = Field(
         default=None, description="with pressure: heat that flows, in every sample, for its conductivity without events"
     )
-    checkpoint_every: int = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
+    checkpoint_every: Whole = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
     snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")
     fsync: bool = Field(default=False, description="whether what is flushed also survives a loss of power")

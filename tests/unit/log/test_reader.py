@@ -156,10 +156,19 @@ def test_the_reading_example_works(tmp_path, monkeypatch, capsys):
 # ── files that are not logs ──
 
 
-@pytest.mark.parametrize("content", [b"", b"scene", b"\x89HDF\r\n\x1a\n" + bytes(100)], ids=["empty", "text", "cut"])
-def test_other_files(tmp_path, content):
+@pytest.mark.parametrize(
+    ("content", "kind"),
+    [
+        (b"", "empty"),
+        (b"scene", "a text"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(100), "a binary file"),
+        (b"\x89HDF\r\n\x1a\n" + bytes(100), "an HDF5 file"),
+    ],
+    ids=["empty", "text", "picture", "cut"],
+)
+def test_other_files(tmp_path, content, kind):
     (tmp_path / "run.h5").write_bytes(content)
-    with pytest.raises(LogError, match=r"run\.h5: not a log of idealgas$"):
+    with pytest.raises(LogError, match=rf"run\.h5: not a log of idealgas, but {kind}"):
         open_log(tmp_path / "run.h5")
 
 
