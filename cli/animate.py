@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -19,7 +20,9 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
 
 @click.command(epilog="Example: idealgas animate gas.h5 -o gas.mp4 --to 10")
 @log_argument
-@click.option("-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif.")
+@click.option(
+    "-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif; .png with --frame."
+)
 @click.option(
     "--from", "start", type=float, metavar="T", help="Start of the film, in simulated time.  [default: the log's start]"
 )
@@ -40,6 +43,10 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species"]),
     help="Quantity shown by the colour of a disc.",
 )  # fmt: skip
+@click.option(
+    "--background", default="light", show_default=True, type=click.Choice(["light", "dark"]), help="Background."
+)
+@click.option("--frame", type=float, metavar="T", help="Make one picture, of this simulated time, instead of a film.")
 @force_option
 @quiet_option
 def animate(
@@ -51,6 +58,8 @@ def animate(
     speed: float | None,
     size: tuple[int, int],
     colour: str,
+    background: str,
+    frame: float | None,
     force: bool,
 ) -> None:
     """Make a film of a log: the discs at their exact positions, and beside them the distribution of their speeds.
@@ -58,7 +67,14 @@ def animate(
     MP4 needs the program ffmpeg; without it the film becomes a GIF.
     """
     from idealgas.analysis.movie.film import animate as make
+    from idealgas.analysis.movie.film import paint_frame
 
+    by_species, dark = colour == "species", background == "dark"
+    look: dict[str, Any] = {"size": size, "by_species": by_species, "dark": dark, "force": force}
+    if frame is not None:
+        with open_log(path) as log:
+            echo(f"{paint_frame(log, output, frame, **look)}: t = {frame:.6g}")
+        return
     with open_log(path) as log, reading("frames") as progress:
         film = make(
             log,
@@ -67,9 +83,7 @@ def animate(
             end=end,
             fps=fps,
             speed=speed,
-            size=size,
-            by_species=colour == "species",
-            force=force,
+            **look,
             on_frame=progress,
         )
     instead = "" if film.path == Path(output) else f" instead of {output}, as there is no ffmpeg"

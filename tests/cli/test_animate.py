@@ -46,6 +46,17 @@ def test_film(folder, colour, tmp_path):
         assert (image.n_frames, image.size, image.info["duration"]) == (21, (240, 240), 100)
 
 
+@pytest.mark.parametrize(("background", "bright"), [("light", True), ("dark", False)])
+def test_one_picture(folder, background, bright, tmp_path):
+    picture = tmp_path / "frame.png"
+    arguments = ("-o", picture, "--frame", 4, "--background", background, "--size", "320x240")
+    made = idealgas("animate", folder / "run.h5", *arguments)
+    assert (made.exit_code, made.stderr, made.stdout) == (0, "", f"{picture}: t = 4\n")
+    with Image.open(picture) as image:
+        assert (image.size, image.format) == ((320, 240), "PNG")
+        assert (min(image.getpixel((1, 1))) > 200) == bright
+
+
 def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     made = idealgas("animate", folder / "run.h5", "-o", tmp_path / "film.mp4", "--to", 1, *SMALL)
@@ -67,6 +78,8 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
         ("run", ("-o", "film.avi"), "film.avi: unknown kind of film (allowed: .mp4, .gif)"),
         ("run", ("-o", "film"), "film: unknown kind of film (allowed: .mp4, .gif)"),
         ("run", ("-o", "no/film.gif"), "no/film.gif: no folder no"),
+        ("run", ("--frame", 4), "film.gif: unknown kind of picture (allowed: .png)"),
+        ("run", ("--frame", 31, "-o", "a.png"), "run.h5: no state at t = 31: it covers t = 0 to 30"),
         ("none", (), "none.h5: cannot be read: No such file or directory"),
     ],
 )

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
+from PIL import Image
 
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.window import span
@@ -20,7 +21,7 @@ from idealgas.errors import OutputError, UserError
 from idealgas.files import check_output, written
 from idealgas.log import Log
 
-ENDINGS = (".mp4", ".gif")
+ENDINGS, FRAME = (".mp4", ".gif"), ".png"
 LONGEST = 20.0  # default length of a film, seconds
 MOST_FRAMES = 1_000_000
 CODEC = ("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
@@ -61,6 +62,7 @@ def animate(
     speed: float | None = None,
     size: tuple[int, int] = (960, 540),
     by_species: bool = False,
+    dark: bool = False,
     force: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
 ) -> Film:
@@ -75,6 +77,7 @@ def animate(
         speed: simulated time per second of film; None for a disc of typical speed to cross the box in CROSSING seconds.
         size: width and height of a frame in pixels, made even.
         by_species: whether colours show the species instead of the speed of discs.
+        dark: whether the background is dark.
         force: whether to replace an existing film.
         on_frame: called with the number of painted frames and the number of all frames.
 
@@ -85,13 +88,9 @@ def animate(
     path = film_path(output)
     kind = path.suffix.lower()
     check_output(path, kind, force)
-    if not log.has_positions:
-        raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
-    if not log.has_events:
-        raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
+    check_shown(log)
     first, latest = span(log, start, end)
-    some = [state.velocity for state in log.frames(np.linspace(first, latest, 5))]
-    typical, thermal = (max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, drift(log)))
+    typical, thermal = speeds(log, first, latest)
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
     gif = kind == ".gif"
@@ -104,13 +103,63 @@ def animate(
         )
     width, height = (pixels // 2 * 2 for pixels in size)
     piston = piston_track(log, first, last)
-    painter = Painter(log.scene, log.discs, piston, (width, height), float(thermal), by_species)
+    painter = Painter(log.scene, log.discs, piston, (width, height), thermal, by_species, dark)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with written(path, kind, force) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
         for k, state in enumerate(log.frames(times)):
             write(painter.paint(state))
             on_frame(k + 1, number)
     return Film(path, number, fps, first, last)
+
+
+def paint_frame(
+    log: Log,
+    output: str | os.PathLike[str],
+    time: float,
+    *,
+    size: tuple[int, int] = (960, 540),
+    by_species: bool = False,
+    dark: bool = False,
+    force: bool = False,
+) -> Path:
+    """Paint the state of a log at one time as a picture, a .png, and return its path; arguments as for `animate`.
+
+    Raises:
+        UserError: for another ending, if the log has no positions or no events, or if it does not cover the time.
+        OutputError: if the picture cannot be written.
+    """
+    path = Path(output)
+    if path.suffix.lower() != FRAME:
+        raise UserError(f"{output}: unknown kind of picture (allowed: {FRAME})")
+    check_output(path, FRAME, force)
+    check_shown(log)
+    if not log.start_time <= time <= log.end_time:
+        raise UserError(f"{log.path}: no state at t = {time:g}: it covers t = {log.start_time:g} to {log.end_time:g}")
+    _, thermal = speeds(log, log.start_time, log.end_time)
+    piston = piston_track(log, log.start_time, log.end_time)
+    frame = Painter(log.scene, log.discs, piston, size, thermal, by_species, dark).paint(log.state_at(time))
+    with written(path, FRAME, force) as part:
+        Image.fromarray(frame[..., :3]).save(part, format="png")
+    return path
+
+
+def check_shown(log: Log) -> None:
+    """Refuse a log without positions or without events, as nothing moves in its pictures.
+
+    Raises:
+        UserError: in both cases.
+    """
+    if not log.has_positions:
+        raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
+
+
+def speeds(log: Log, first: float, last: float) -> tuple[float, float]:
+    """Largest root-mean-square speed at some times, and the same relative to a conserved motion of the whole gas."""
+    some = [state.velocity for state in log.frames(np.linspace(first, last, 5))]
+    typical, thermal = (max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, drift(log)))
+    return float(typical), float(thermal)
 
 
 Write = Callable[[np.ndarray], object]

@@ -3,10 +3,11 @@
 What never changes is drawn once; a frame restores it and draws only discs, walls, bars, curve and title over it.
 """
 
-from typing import NamedTuple
+from itertools import compress
+from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import colormaps
+from matplotlib import colormaps, rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -15,10 +16,12 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
+from matplotlib.patheffects import Normal, Stroke
+from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.style import COLOURS, show_names
+from idealgas.analysis.core.style import COLOURS, GRID, show_names
 from idealgas.analysis.movie.piston_track import PistonTrack
 from idealgas.analysis.theory.conserved import common_motion
 from idealgas.analysis.theory.distributions import SpeedLaw
@@ -35,9 +38,23 @@ USUAL, LEAST_ZOOM = (960, 540), 0.5
 """Frame size in pixels at which text and margins have their usual size, and smallest factor of that size."""
 
 SHADES = 64
-PALEST = 0.93  # used part of the colour map: its last yellow is invisible on white
+PALEST, DARKEST = 0.93, 0.3
+"""Parts of the colour map that are used: up to the first on white, from the second on on black."""
+
+EDGE = 0.55
+"""Brightness of the edge of a disc on white, relative to the disc: fast discs are seen as well."""
+
+PAPER, INK = "#14161a", "#e6e6e6"
+DARK: dict[Any, Any] = {
+    "figure.facecolor": PAPER,
+    "axes.facecolor": PAPER,
+    "grid.color": "#363b43",
+    **dict.fromkeys(("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color"), INK),
+}
+"""Settings of matplotlib for pictures on a dark background."""
+
 BINS = 36
-SMALLEST = 2.5
+SMALLEST = 3.0
 """Smallest diameter in pixels with which a disc is drawn."""
 
 STRIP = 9  # pixels, height of the strip with the colours
@@ -48,6 +65,9 @@ CROSSING = 5.0
 FASTEST, BRIGHTEST = 3.2, 2.0
 """End of the speed axis and of the colour scale, in units of the root-mean-square speed."""
 
+
+BEYOND = 1.25
+"""Length of the shown room along the way of a piston, relative to the largest one of the gas."""
 
 LEFT, RIGHT, BOTTOM, TOP = 64, 22, 58, 42  # margins, pixels of the usual size
 SPEEDS = 0.3
@@ -79,6 +99,19 @@ def layout(size: tuple[float, float], box: tuple[float, float]) -> Layout:
     return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), speeds, scale)
 
 
+def view(box: tuple[float, float], piston: PistonTrack | None) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Shown part of a box along x and y, length: the box, but of the room beyond a piston only BEYOND the gas."""
+    shown = [(0.0, box[0]), (0.0, box[1])]
+    if piston is not None:
+        low, high = shown[piston.axis]
+        if piston.outward > 0:
+            high = min(high, BEYOND * float(piston.place.max()))
+        else:
+            low = max(low, high - BEYOND * (high - float(piston.place.min())))
+        shown[piston.axis] = low, high
+    return shown[0], shown[1]
+
+
 class Painter:
     """Painter of the states of one gas."""
 
@@ -90,25 +123,41 @@ class Painter:
         size: tuple[int, int],
         rms_speed: float,
         by_species: bool,
+        dark: bool = False,
     ) -> None:
         """Prepare what is the same in all frames.
 
         size: width and height of a frame, pixels. rms_speed: approximate largest root-mean-square speed of the film,
-        length/time. by_species: whether the colour of a disc shows its species instead of its speed. Speeds are those
-        relative to a conserved motion of the whole gas.
+        length/time. by_species: whether the colour of a disc shows its species instead of its speed. dark:
+        whether the background is dark. Speeds are those relative to a conserved motion of the whole gas.
         """
+        with rc_context(DARK if dark else {"grid.color": GRID}):
+            self._prepare(scene, gas, piston, size, rms_speed, by_species, dark)
+
+    def _prepare(
+        self,
+        scene: Scene,
+        gas: Gas,
+        piston: PistonTrack | None,
+        size: tuple[int, int],
+        rms_speed: float,
+        by_species: bool,
+        dark: bool,
+    ) -> None:
+        self._ink, self._line, self._edge = (INK, INK, 1.0) if dark else ("black", COLOURS[0], EDGE)
         self._flow = common_motion(scene, gas)
         self._inside, self._gas, self._piston, self._by_species = walls_inside(scene), gas, piston, by_species
         self._periodic = np.array(scene.properties.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
         self._edges = np.linspace(0, FASTEST * rms_speed or 1.0, BINS + 1)
-        self._shades = colormaps[COLOUR_MAP](np.linspace(0, PALEST, SHADES))
+        self._shades = colormaps[COLOUR_MAP](np.linspace(DARKEST if dark else 0, 1 if dark else PALEST, SHADES))
         self._brightest = self._edges[-1] * BRIGHTEST / FASTEST
         zoom = max(min(size[0] / USUAL[0], size[1] / USUAL[1]), LEAST_ZOOM)
         page = size[0] / zoom, size[1] / zoom
         self._figure = Figure(figsize=(page[0] / DPI, page[1] / DPI), dpi=DPI * zoom)
         self._canvas = FigureCanvasAgg(self._figure)
-        place = layout(page, gas.box)
+        self._view = view(gas.box, piston)
+        place = layout(page, (self._view[0][1] - self._view[0][0], self._view[1][1] - self._view[1][0]))
         self._diameter = np.maximum(2 * gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
         self._title = self._figure.text(LEFT / page[0], 1 - 0.65 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
@@ -135,21 +184,34 @@ class Painter:
         return self._figure.add_axes((place[0] / page[0], place[1] / page[1], place[2] / page[0], place[3] / page[1]))
 
     def _draw_box(self, axes: Axes) -> None:
-        axes.set(xlim=(0, self._gas.box[0]), ylim=(0, self._gas.box[1]), xlabel="x (length)", ylabel="y (length)")
+        axes.set(xlim=self._view[0], ylim=self._view[1], xlabel="x (length)", ylabel="y (length)")
         for axis, pixels in ((axes.xaxis, axes.bbox.width), (axes.yaxis, axes.bbox.height)):
             nbins = 1 + int(pixels * DPI / self._figure.dpi) // 60
             axis.set_major_locator(MaxNLocator(nbins, steps=(1, 2, 5, 10), min_n_ticks=2))
         self._discs = EllipseCollection(
-            [], [], [], units="xy", offset_transform=axes.transData, linewidths=0, animated=True
+            [], [], [], units="xy", offset_transform=axes.transData, linewidths=0.6, animated=True
         )
         axes.add_collection(self._discs)
         self._walls: list[Artist] = []
+        self._names: list[Artist] = []
         for wall in self._inside:
-            (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color="black", linewidth=1.5, animated=True)
+            (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color=self._ink, linewidth=1.5, animated=True)
             self._walls.append(line)
+            self._names.append(self._name(axes, wall.name, max(wall.start, wall.end, key=lambda end: end[1])))
         if self._piston is not None:
             draw = axes.axhline if self._piston.axis else axes.axvline
             self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
+            self._piston_name = self._name(axes, "piston", (0.0, self._view[1][1]))
+
+    def _name(self, axes: Axes, name: str, place: tuple[float, float]) -> Annotation:
+        """Name of a wall beside a place of it, on the side with more room, legible on discs."""
+        low, high = self._view[0]
+        right = place[0] < (low + high) / 2 or (self._piston is not None and self._piston.axis == 0)
+        around = [Stroke(linewidth=3, foreground=axes.get_facecolor()), Normal()]
+        return axes.annotate(
+            name, place, (6 if right else -6, -6), textcoords="offset points", ha="left" if right else "right",
+            va="top", fontsize="small", path_effects=around, animated=True, annotation_clip=False,
+        )  # fmt: skip
 
     def _draw_speeds(self, axes: Axes) -> None:
         """Draw the axes of the speed distribution, with the colours of the discs along the x axis."""
@@ -158,12 +220,12 @@ class Painter:
         highest = 1.8 * self._law((top / FASTEST) ** 2 * float(self._gas.mass.mean()) / 2).max()
         axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)")
         axes.set_xlabel("speed (length/time)" if not self._flow.any() else "speed relative to the gas (length/time)")
-        axes.grid(color="#dddddd", linewidth=0.6)
+        axes.grid(linewidth=0.6)
         axes.set_axisbelow(True)
         self._bars = StepPatch(np.zeros(BINS), self._edges, color=COLOURS[5], alpha=0.6, fill=True, animated=True)
         axes.add_patch(self._bars)
-        (self._curve,) = axes.plot(self._speeds, self._law(1.0), color=COLOURS[0], animated=True)
-        handles = [Line2D([], [], color=COLOURS[0], label="Maxwell-Boltzmann")]
+        (self._curve,) = axes.plot(self._speeds, self._law(1.0), color=self._line, animated=True)
+        handles = [Line2D([], [], color=self._line, label="Maxwell-Boltzmann")]
         if self._by_species:
             kinds = zip(self._species.name, np.resize(COLOURS, len(self._species.name)), strict=True)
             handles += [Line2D([], [], marker="o", linestyle="", color=colour, label=name) for name, colour in kinds]
@@ -194,16 +256,18 @@ class Painter:
                 which = np.concatenate((which, which[reach]))
         diameter = self._diameter[which]
         self._discs.set(widths=diameter, heights=diameter, angles=np.zeros(len(which)), offsets=position)
-        self._discs.set(facecolors=colours[which])
+        self._discs.set(facecolors=colours[which], edgecolors=colours[which] * (*[self._edge] * 3, 1.0))
 
     def _walls_at(self, time: float) -> list[Artist]:
         """Draw the walls that are present at a time, as gates may be open, and the piston."""
-        lines = [line for line, wall in zip(self._walls, self._inside, strict=True) if wall.is_there(time)]
+        there = [wall.is_there(time) for wall in self._inside]
+        drawn = list(compress((*self._walls, *self._names), there * 2))
         if self._piston is None:
-            return lines
-        place = [self._piston.at(time)] * 2
-        self._piston_line.set(**{"ydata" if self._piston.axis else "xdata": place})
-        return [*lines, self._piston_line]
+            return drawn
+        place = self._piston.at(time)
+        self._piston_line.set(**{"ydata" if self._piston.axis else "xdata": [place] * 2})
+        self._piston_name.xy = (self._view[0][0], place) if self._piston.axis else (place, self._view[1][1])
+        return [*drawn, self._piston_line, self._piston_name]
 
     def _law(self, temperature: float) -> np.ndarray:
         """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""

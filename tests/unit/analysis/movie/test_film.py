@@ -12,7 +12,7 @@ from support import program
 from idealgas.analysis.movie import film
 from idealgas.analysis.movie.film import animate, film_path
 from idealgas.analysis.movie.gif import GifWriter
-from idealgas.analysis.movie.painter import LEFT, Painter, layout
+from idealgas.analysis.movie.painter import LEFT, Painter, layout, view
 from idealgas.analysis.movie.piston_track import PistonTrack
 from idealgas.errors import UserError
 from idealgas.gas.build import make_gas
@@ -67,6 +67,15 @@ def test_box_and_speeds_are_in_the_frame_and_apart(size, box):
     (x, y, width, height), (u, v, wide, high) = place.box, place.speeds
     assert x + width < u or v + high < y
     assert wide * high > 0.1 * size[0] * size[1]
+
+
+def test_the_room_beyond_a_piston_is_shown_in_part():
+    place = np.array([4.0, 5.0])
+    right = PistonTrack(0, place, place, 0.0, (0.0, 40.0), 1.0)
+    left = PistonTrack(0, place, 40 - place, 0.0, (0.0, 40.0), -1.0)
+    assert view((40.0, 10.0), right) == ((0.0, 6.25), (0.0, 10.0))
+    assert view((40.0, 10.0), left) == ((33.75, 40.0), (0.0, 10.0))
+    assert view((40.0, 10.0), None) == ((0.0, 40.0), (0.0, 10.0))
 
 
 def test_discs_are_where_they_are():
