@@ -238,8 +238,6 @@ EXACT = (
     "temperature, heavy",
     "temperature",
     "mean vx (histogram)",
-    "viscosity, difference of routes",
-    "heat conductivity, difference of routes",
     "pressure tensor, xy",
 )
 """Estimates whose theory is exact for this number of discs; others are compared with their mean over all seeds."""

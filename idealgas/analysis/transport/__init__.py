@@ -8,7 +8,8 @@ ANALYSIS = Analysis(
 
     They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, heat conductivity and the
     pressure tensor take a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution
-    of free paths.
+    of free paths. Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over
+    Enskog's against the packing fraction.
     """,
     sections=(
         Section(
@@ -16,6 +17,9 @@ ANALYSIS = Analysis(
             "Velocity correlation, mean square displacement, pair distribution, and transport coefficients over time",
         ),
     ),
+    several=True,
+    averages=True,
+    folders=True,
     options=(
         Option(
             "lag",

@@ -16,11 +16,16 @@ from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
 from idealgas.analysis.transport.enskog import Enskog
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
+from idealgas.gas.state import Gas
 from idealgas.log import Log
 
 STEPS = 100  # number of steps up to the longest lag
 MOST_BLOCKS = 2**18  # of the currents; a longer run has longer steps
 PLATEAU_FROM = 0.5  # share of the longest lag from which on a coefficient is averaged
+
+DIRECTIONS = 3.0
+"""Part by which η by its two routes differs for N discs in a square periodic box, times N: 50 discs at φ = 0.2 have
+(5.6 ± 1.1) % less by xy."""
 
 SYMBOLS = {"viscosity": "η", "heat_conductivity": "λ", "bulk_viscosity": "ζ"}
 """Symbols of the coefficients, by their names."""
@@ -142,29 +147,31 @@ def collective(
     conducts = single and not np.isnan(flow[0, CARRIED, HEAT_X])
     return Collective(
         lags.plateau,
-        _coefficients(flow, lags, log.discs.area, equilibrium.temperature, conducts, theory[0]),
+        _coefficients(flow, lags, log.discs, equilibrium.temperature, conducts, theory[0]),
         _pressure(flow / width, log, equilibrium, theory[1]),
     )
 
 
 def _coefficients(
-    flow: np.ndarray, lags: Lags, area: float, temperature: float, conducts: bool, enskog: Enskog | None
+    flow: np.ndarray, lags: Lags, gas: Gas, temperature: float, conducts: bool, enskog: Enskog | None
 ) -> dict[str, Coefficient]:
     """Coefficients by name from integrals (B, 2, 5) of the currents; conducts: whether heat goes by conduction only."""
     whole = flow.sum(axis=1).T
     shear = {"xy": whole[XY], "(xx - yy)/2": (whole[XX] - whole[YY]) / 2}
     heat, trace = {"x": whole[HEAT_X], "y": whole[HEAT_Y]}, {"(xx + yy)/2": (whole[XX] + whole[YY]) / 2}
-    factor = 1 / (area * temperature)
-    found = {"viscosity": _coefficient(shear, lags, factor, "mass/time", enskog.viscosity if enskog else None)}
+    number, factor = len(gas), 1 / (gas.area * temperature)
+    found = {"viscosity": _coefficient(shear, lags, factor, "mass/time", number, enskog.viscosity if enskog else None)}
     if conducts:
         theory = enskog.conductivity if enskog else None
-        found["heat_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", theory)
-    found["bulk_viscosity"] = _coefficient(trace, lags, factor, "mass/time", enskog.bulk_viscosity if enskog else None)
+        found["heat_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", number, theory)
+    found["bulk_viscosity"] = _coefficient(
+        trace, lags, factor, "mass/time", number, enskog.bulk_viscosity if enskog else None
+    )
     return found
 
 
 def _coefficient(
-    currents: dict[str, np.ndarray], lags: Lags, factor: float, unit: str, theory: Theory | None
+    currents: dict[str, np.ndarray], lags: Lags, factor: float, unit: str, number: int, theory: Theory | None
 ) -> Coefficient:
     found = growth(np.array([*currents.values()]), lags)
     return Coefficient(
@@ -174,8 +181,13 @@ def _coefficient(
         factor * found.error,
         mean(factor * found.series.mean(axis=0), theory),
         {name: mean(factor * series) for name, series in zip(currents, found.series, strict=True)},
-        mean(factor * (found.series[0] - found.series[1]), 0.0) if len(currents) > 1 else None,
+        _difference(factor * found.series, number) if len(currents) > 1 else None,
     )
+
+
+def _difference(series: np.ndarray, number: int) -> Estimate:
+    """Difference of two routes, from the series of both; theory: none but for the box of N discs."""
+    return mean(series[0] - series[1], Theory(0.0, DIRECTIONS / number * abs(float(series.mean())), "isotropy"))
 
 
 def _pressure(current: np.ndarray, log: Log, equilibrium: Ensemble, z: Theory | None) -> dict[str, Estimate]:

@@ -6,10 +6,36 @@ from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import COLOURS, GREY, panels
 from idealgas.analysis.transport.coefficients import SYMBOLS
+from idealgas.analysis.transport.combine import DIFFUSION, States
 from idealgas.analysis.transport.measure import FITTED_FROM, Transport
 
 
-def transport_figure(result: Transport) -> Figure:
+def transport_figure(result: Transport | States) -> Figure:
+    """Picture of one log, or of the coefficients of several logs against the packing fraction."""
+    return _of_states(result) if isinstance(result, States) else _of_log(result)
+
+
+def _of_states(result: States) -> Figure:
+    """Picture of coefficients over Enskog's against φ, or against N where all logs have one φ."""
+    figure, (ax,) = panels(1)
+    by_number = len({state.packing_fraction for state in result.states}) == 1 < len(result.states)
+    for symbol, colour in zip((DIFFUSION, *SYMBOLS.values()), COLOURS, strict=False):
+        shown = [state for state in result.states if symbol in state.coefficients]
+        ones = [state.coefficients[symbol] for state in shown]
+        places = [state.number if by_number else state.packing_fraction for state in shown]
+        values, errors = [one.value for one in ones], [one.standard_error for one in ones]
+        if shown:
+            ax.errorbar(places, values, errors, fmt="o-", ms=4, capsize=3, color=colour, label=symbol)
+    ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory")
+    ax.set(xlabel="packing fraction φ (no unit)", ylabel="coefficient over Enskog's (no unit)")
+    if by_number:
+        ax.set_xscale("log")
+        ax.set_xlabel("number of discs")
+    ax.legend()
+    return figure
+
+
+def _of_log(result: Transport) -> Figure:
     """Picture of velocity correlation, mean square displacement, pair distribution and coefficients against time.
 
     Of a log without events there are the coefficients only.

@@ -3,14 +3,38 @@
 from dataclasses import replace
 
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Table, collision_tables, describe, estimates
+from idealgas.analysis.core.tables import THEORY_ERROR, Cell, Number, Table, collision_tables, describe, estimates
 from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
+from idealgas.analysis.transport.combine import States
 from idealgas.analysis.transport.measure import Transport
 
 WALLS = "No viscosities and heat conductivity: they take periodic sides, as walls change the currents of the whole gas."
 
 
-def transport_tables(result: Transport) -> list[Table]:
+def transport_tables(result: Transport | States) -> list[Table]:
+    """Tables of one log, or of the coefficients of several."""
+    return _of_states(result) if isinstance(result, States) else _of_log(result)
+
+
+def _of_states(result: States) -> list[Table]:
+    rows: list[tuple[Cell, ...]] = [
+        (
+            f"{symbol} at φ = {state.packing_fraction:.5g}",
+            Number(state.number, "d"),
+            Number(state.runs, "d"),
+            Number(one.value, ".4f"),
+            Number(one.standard_error, ".1g"),
+            Number(one.theory_error, ".2g"),
+            Number(one.deviation, "+.2f"),
+        )
+        for state in result.states
+        for symbol, one in state.coefficients.items()
+    ]
+    heads = ("", "N", "runs", "value", "± s.e.", THEORY_ERROR, "dev./s.e.")
+    return [Table("Transport coefficients over Enskog's", heads, rows)]
+
+
+def _of_log(result: Transport) -> list[Table]:
     """Tables of collisions, pair distribution at contact, diffusion of each species, and of the currents of the gas."""
     rates, paths = collision_tables(result.collision_rates, result.free_paths)
     contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in result.contacts]

@@ -1,0 +1,60 @@
+"""Coefficients of several logs over Enskog's, averaged over runs of one state, from logs and from sweeps."""
+
+import json
+
+import pytest
+
+from idealgas.analysis import registry
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+scene.seed = {seed}
+box = {{size = [6, 5], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic"}}
+species = [{{name = "gas", count = {count}, radius = 0.3, temperature = 1.0}}]
+run.collisions_per_disc = 60
+"""
+ANALYSIS = registry.find("transport")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Two runs of 12 discs and one of 20."""
+    path, found = tmp_path_factory.mktemp("combine") / "run.h5", []
+    for seed, count in ((1, 12), (2, 20), (3, 12)):
+        simulate(parse_scene(SCENE.format(seed=seed, count=count)), path, force=True)
+        with open_log(path) as log:
+            found.append(registry.analyse(log, "transport"))
+    return found
+
+
+def test_states(results):
+    states = ANALYSIS.combine(results).states
+    assert [(state.number, state.runs) for state in states] == [(12, 2), (20, 1)]
+    assert list(states[0].coefficients) == ["D", "η", "λ", "ζ"]
+    alone = results[1].collective.coefficients["viscosity"].value
+    assert states[1].coefficients["η"].value == pytest.approx(alone.value / alone.theory)
+    assert states[1].coefficients["η"].standard_error == pytest.approx(alone.standard_error / alone.theory)
+    both = [results[k].diffusion[0].coefficient for k in (0, 2)]
+    assert states[0].coefficients["D"].value == pytest.approx(sum(one.value / one.theory for one in both) / 2)
+    assert all(one.theory == pytest.approx(1.0) for state in states for one in state.coefficients.values())
+
+
+def test_what_a_sweep_stores_gives_the_same(results):
+    stored = [json.loads(json.dumps(one.as_dict())) for one in results]
+    restored = [ANALYSIS.restore(found, "point", one.origin) for found, one in zip(stored, results, strict=True)]
+    assert ANALYSIS.combine(restored).states == ANALYSIS.combine(results).states
+
+
+def test_a_single_log_stays_as_it_is(results):
+    assert ANALYSIS.combine(results[:1]) is results[0]
+
+
+def test_tables_and_figures(results):
+    combined = ANALYSIS.combine(results)
+    (table,) = ANALYSIS.tables(combined)
+    assert len(table.rows) == 8
+    (ax,) = ANALYSIS.figure(combined).axes
+    assert {"D", "η", "λ", "ζ", "Enskog's theory"} == {text.get_text() for text in ax.get_legend().get_texts()}
+    assert ANALYSIS.figure(ANALYSIS.combine([results[0], results[2]])).axes[0].get_xlabel().startswith("packing")
