@@ -1,7 +1,7 @@
 """The logs that every crafted and every damaged one begins with.
 
 They are the old ones in `cases/logs`, with all effects, and some that this program makes: of the newest layout, and
-with more than one chunk of events, which are not compressed; and of the second version of the format.
+with more than one chunk of events, which are not compressed.
 """
 
 import lzma
@@ -29,11 +29,10 @@ LIVE = "live"
 """The one that was killed, while another process holds it as its writer would."""
 MADE = {
     "sums": ("mixture", "run.events=3000", "log.pressure=true", "log.snapshot_every=0.5"),
-    "kicks": ("thermostat", "run.events=3000"),
     "chunks": ("quickstart", "run.events=40000", 'log.compression="none"'),
 }
 """Scenes of those that are made."""
-CRAFTED = (*OLD, "sums", "kicks")
+CRAFTED = (*OLD, "sums")
 DAMAGED = (*OLD, LIVE, *MADE)
 
 

@@ -1,19 +1,20 @@
-"""Logs of format version 1 and trajectory version 3 as they were once written: every reading command gives the numbers
-that it gave then, and a log that is resumed comes to the same events.
+"""Logs of formats 1 and 2, most of trajectory version 3, as they were once written: every reading command gives the
+numbers that it gave then, and a log that is resumed comes to the same events.
 
 `cases/logs` has them packed (xz), as most of a small log is room for more: a run that was killed and one that was
-interrupted, all effects at once with thermal walls and, as `effects`, without, Monte Carlo, snapshots, no events. Each
-has its scene in it. NAME.json has what the commands said, and resumed.json digests of what runs without a break wrote.
-Where an analysis is to give other numbers, this puts the new ones on record:
+interrupted, all effects at once with thermal walls and, as `effects`, without, Monte Carlo, snapshots, no events, and
+the kicks of a heat bath (format 2, trajectory 4). Each has its scene in it. NAME.json has what the commands said, and
+resumed.json digests of what runs without a break wrote. Where an analysis is to give other numbers, this puts the new
+ones on record:
 
     python tests/stability/test_old_logs.py
 
 Some defaults are others since trajectory version 4. `cases/logs/defaults` has logs of version 3 that had the old ones,
 and digests of what version 3 wrote in runs without a break: they go on with the values that they began with.
 
-New formats get logs of their own; these are never written again. What thermal walls emit goes through the logarithm of
-the C library, so of such a log no digest is on record: it is compared with a run on this machine. For the other digests
-see test_golden_logs.py.
+New formats get logs of their own; these are never written again. What thermal walls emit and a heat bath gives goes
+through the logarithm of the C library, so of such a log no digest is on record: it is compared with a run on this
+machine. For the other digests see test_golden_logs.py.
 """
 
 import contextlib
@@ -84,7 +85,8 @@ ENDS = {
     "snapshots": "--until 22",
 }
 """How each log is resumed; those that were left unfinished go to the end that their scene has."""
-HEAT_BATH = "--until 80"
+BATHS = {"heat-bath": "--until 80", "kicks": "--events 1800"}
+"""The same of logs in which logarithms of the C library are."""
 RULES = ("until", "events", "collisions_per_disc", "trials")
 
 DIGITS = 15
@@ -240,10 +242,10 @@ def test_resumed_to_the_same_events(log, own):
     assert stored_digests(resume(log, ENDS[log])) == json.loads(RESUMED.read_text())[log]
 
 
-def test_between_thermal_walls_resumed_to_the_same_events(own):
-    """With the logarithm of another C library, what is emitted at first is still the same but for rounding."""
-    log = "heat-bath"
-    whole = run_without_a_break(log, HEAT_BATH)
+@pytest.mark.parametrize("log", BATHS)
+def test_with_heat_resumed_to_the_same_events(log, own):
+    """With the logarithm of another C library, what discs get at first is still the same but for rounding."""
+    whole = run_without_a_break(log, BATHS[log])
     with h5py.File(f"{log}.h5") as old, h5py.File(whole) as new:
         rows = len(old["events/time"])
         stored, again = ({name: column[:rows] for name, column in file["events"].items()} for file in (old, new))
@@ -251,7 +253,7 @@ def test_between_thermal_walls_resumed_to_the_same_events(own):
         np.testing.assert_allclose(again[name][:100], values[:100], rtol=1e-9, atol=1e-12, err_msg=name)
     if any(not np.array_equal(again[name], values) for name, values in stored.items()):
         pytest.skip("the logarithm of this C library differs in the last bit")
-    assert stored_digests(resume(log, HEAT_BATH)) == stored_digests(whole)
+    assert stored_digests(resume(log, BATHS[log])) == stored_digests(whole)
 
 
 @pytest.mark.parametrize(("log", "end"), [("resting", "--events 4000"), ("monte-carlo", "--trials 4500")])
