@@ -24,7 +24,7 @@ from ._interrupt import EXIT_CODE
 from ._terminal import echo, readers_may_go
 
 GROUPS = {
-    "Run": ("check", "run", "resume", "recover", "warm-up"),
+    "Run": ("new", "examples", "schema", "check", "run", "resume", "recover", "warm-up"),
     "Look": ("info", "follow", "animate"),
     "Analyse": registry.commands(),
     "Share": ("report", "export"),
@@ -33,7 +33,7 @@ GROUPS = {
 """All commands in the groups, and in the order, in which `--help` shows them."""
 
 EXAMPLES = {
-    "Run": "idealgas run gas.toml -o gas.h5",
+    "Run": "idealgas new gas",
     "Look": "idealgas info gas.h5",
     "Analyse": "idealgas pressure gas.h5 --plot pressure.png",
     "Share": "idealgas report gas.h5 -o gas.html",

@@ -37,6 +37,8 @@ _BEGINNINGS = {
     ".png": rb"\x89PNG\r\n\x1a\n",
     ".svg": rb"<\?xml.*<svg",
     ".toml": rb"# \d+ points",
+    "scene": rb"#:schema scene",
+    "scene.schema.json": rb'\{\s*"\$defs"',
 }
 """How files of each kind begin that this program has written."""
 

@@ -153,6 +153,8 @@ def test_wheel(source, tmp_path):
         for p in (ROOT / "idealgas").rglob("*")
         if p.is_file() and p.suffix not in (".pyc", ".md")
     }
+    expected |= {f"idealgas_scenes/{path.name}" for path in (ROOT / "configs").glob("*.toml")}
+    expected |= {"idealgas_scenes/scene.schema.json"}
     expected |= {f"idealgas_cli/{p.name}" for p in (ROOT / "cli").glob("*.py")}
     assert code == expected
     assert "idealgas = idealgas_cli.main:main" in entry_points

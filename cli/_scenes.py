@@ -1,0 +1,46 @@
+"""Scenes that are installed with the program, and copies of them."""
+
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+from idealgas.analysis.core.declaration import unknown
+
+from ._terminal import written
+
+SCENE = ".toml"
+TEMPLATE = "template"
+"""Name of the scene that explains itself, to start from."""
+
+SCHEMA = "scene.schema.json"
+"""Name of the JSON Schema of scenes, in the folder of a scene that refers to it in its first line."""
+
+
+def _folder() -> Path:
+    return Path(next(iter(import_module("idealgas_scenes").__path__)))
+
+
+def names() -> list[str]:
+    """Names of the scenes, in alphabetical order."""
+    return sorted(path.stem for path in _folder().glob(f"*{SCENE}"))
+
+
+def title(name: str) -> str:
+    """What a scene says of itself, in one line."""
+    return tomllib.loads((_folder() / f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]["title"]
+
+
+def copy_scene(name: str, path: Path, force: bool) -> None:
+    """Copy a scene, and beside it the schema that its first line refers to; UserError if that cannot be."""
+    if name not in names():
+        raise unknown("example", name, names())
+    from idealgas.files import check_output, replacing
+
+    schema = path.with_name(SCHEMA)
+    check_output(path, "scene", force)
+    if schema.exists():
+        check_output(schema, SCHEMA, force=True)
+    for target, source in ((path, name + SCENE), (schema, SCHEMA)):
+        with replacing(target) as part:
+            part.write_bytes((_folder() / source).read_bytes())
+        written(target)

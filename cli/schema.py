@@ -1,0 +1,19 @@
+"""Command `idealgas schema`: JSON Schema of scenes and sweeps."""
+
+import click
+
+from ._terminal import data
+
+
+@click.command(epilog="Example: idealgas schema scene")
+@click.argument("kind", type=click.Choice(["scene", "sweep"]), default="scene")
+def schema(kind: str) -> None:
+    """Print the JSON Schema of scenes (or of sweeps), with which editors complete and check the keys.
+
+    A file names its schema in its first line, as in `#:schema scene.schema.json`.
+    """
+    from idealgas.document.schema import schema_text
+    from idealgas.scene import Scene
+    from idealgas.study.sweep.plan import Tables
+
+    data(schema_text(Scene if kind == "scene" else Tables), nl=False)

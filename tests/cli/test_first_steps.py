@@ -1,0 +1,90 @@
+"""From nothing to a scene: `new`, `examples` and `schema`."""
+
+import json
+import tomllib
+
+import pytest
+from support import ROOT, called, idealgas
+
+from idealgas.scene import parse_scene
+
+CONFIGS = ROOT / "configs"
+SCENES = sorted(path.stem for path in CONFIGS.glob("*.toml"))
+
+
+def test_examples_are_listed_with_their_titles():
+    lines = called("examples").stdout.splitlines()
+    titles = {name: tomllib.loads((CONFIGS / f"{name}.toml").read_text())["scene"]["title"] for name in SCENES}
+    assert {line.split()[0]: line.split(maxsplit=1)[1] for line in lines} == titles
+
+
+def test_an_example_is_copied_and_can_be_checked(tmp_path):
+    done = idealgas("examples", "piston", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "piston.toml: written\nscene.schema.json: written\n"
+    for name in ("piston.toml", "scene.schema.json"):
+        assert (tmp_path / name).read_bytes() == (CONFIGS / name).read_bytes()
+    assert called("check", "piston.toml", folder=tmp_path).returncode == 0
+    again = called("examples", "piston", folder=tmp_path)
+    assert (again.returncode, again.stderr) == (2, "piston.toml: exists already (--force replaces it)\n")
+    assert called("examples", "piston", "--force", folder=tmp_path).returncode == 0
+    assert called("examples", "quickstart.toml", "-o", "mine.toml", folder=tmp_path).returncode == 0
+    assert (tmp_path / "mine.toml").read_bytes() == (CONFIGS / "quickstart.toml").read_bytes()
+
+
+def test_a_mistyped_example_is_one_line(tmp_path):
+    done = called("examples", "pistn", folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert done.stderr.startswith('unknown example, did you mean "piston"?')
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_new_scene_is_valid(tmp_path):
+    assert called("new", "gas", folder=tmp_path).stdout == "gas.toml: written\nscene.schema.json: written\n"
+    assert called("check", "gas.toml", folder=tmp_path).returncode == 0
+    assert called("new", "gas", folder=tmp_path).returncode == 2
+
+
+@pytest.mark.parametrize("table", ["[[disc]]", "[[wall]]", "[gravity]", "[rotation]", "[restitution]", "[piston]"])
+def test_every_table_of_the_template_is_valid_without_its_comment_signs(table):
+    before, block = (CONFIGS / "template.toml").read_text(encoding="utf-8").split(f"\n# {table}")
+    lines, after = block.split("\n\n", 1)
+    scene = parse_scene(f"{before}\n{table}{lines.replace(chr(10) + '# ', chr(10))}\n\n{after}")
+    assert getattr(scene, table.strip("[]"))
+
+
+def test_a_file_that_is_no_scene_is_not_replaced(tmp_path):
+    (tmp_path / "gas.toml").write_text("precious = 1")
+    done = called("new", "gas", "--force", folder=tmp_path)
+    assert done.returncode == 2
+    assert (tmp_path / "gas.toml").read_text() == "precious = 1"
+
+
+@pytest.mark.parametrize("kind", ["scene", "sweep"])
+def test_the_schema_beside_the_scenes_is_this_one(kind):
+    printed = called("schema", kind).stdout
+    assert (CONFIGS / f"{kind}.schema.json").read_text(encoding="utf-8") == printed
+    assert json.loads(printed)["additionalProperties"] is False
+
+
+def test_every_shipped_file_names_a_schema_that_is_there():
+    for path in CONFIGS.rglob("*.toml"):
+        first = path.read_text(encoding="utf-8").splitlines()[0]
+        kind = "sweep" if path.parent.name == "sweeps" else "scene"
+        named = path.parent / first.removeprefix("#:schema ")
+        assert named.resolve() == (CONFIGS / f"{kind}.schema.json").resolve(), path
+
+
+def test_the_schema_takes_shipped_scenes_and_no_wrong_ones():
+    jsonschema = pytest.importorskip("jsonschema")
+    check = jsonschema.Draft202012Validator(json.loads((CONFIGS / "scene.schema.json").read_text(encoding="utf-8")))
+    for name in SCENES:
+        assert check.is_valid(tomllib.loads((CONFIGS / f"{name}.toml").read_text(encoding="utf-8"))), name
+    wrong = tomllib.loads((CONFIGS / "quickstart.toml").read_text(encoding="utf-8"))
+    for table, key, value in (
+        ("box", "sise", [1, 1]),
+        ("scene", "seed", -1),
+        ("run", "until", 0),
+        ("box", "size", [0, 1]),
+    ):
+        assert not check.is_valid(wrong | {table: wrong[table] | {key: value}}), key
