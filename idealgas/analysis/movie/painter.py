@@ -189,7 +189,7 @@ class Painter:
             nbins = 1 + int(pixels * DPI / self._figure.dpi) // 60
             axis.set_major_locator(MaxNLocator(nbins, steps=(1, 2, 5, 10), min_n_ticks=2))
         self._discs = EllipseCollection(
-            [], [], [], units="xy", offset_transform=axes.transData, linewidths=0.6, animated=True
+            [], [], [], units="xy", offset_transform=axes.transData, linewidths=0.4, animated=True
         )
         axes.add_collection(self._discs)
         self._walls: list[Artist] = []
@@ -201,7 +201,7 @@ class Painter:
         if self._piston is not None:
             draw = axes.axhline if self._piston.axis else axes.axvline
             self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
-            self._piston_name = self._name(axes, "piston", (0.0, self._view[1][1]))
+            self._piston_name = self._name(axes, self._piston.name, (0.0, self._view[1][1]))
 
     def _name(self, axes: Axes, name: str, place: tuple[float, float]) -> Annotation:
         """Name of a wall beside a place of it, on the side with more room, legible on discs."""

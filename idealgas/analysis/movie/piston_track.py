@@ -12,7 +12,7 @@ from idealgas.log import Log
 class PistonTrack:
     """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way.
 
-    outward: +1 if the gas is below it on this axis, -1 if above.
+    outward: +1 if the gas is below it on this axis, -1 if above. name: what pictures call it.
     """
 
     axis: int
@@ -21,6 +21,7 @@ class PistonTrack:
     pull: float
     limits: tuple[float, float]
     outward: float
+    name: str = "piston"
 
     def at(self, time: float) -> float:
         """Coordinate of the piston at a time, on the parabola through the known positions before and after it."""
