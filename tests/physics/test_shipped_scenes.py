@@ -21,6 +21,7 @@ from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature.measure import temperature
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.transport.measure import transport
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
@@ -191,6 +192,33 @@ def test_rough(run):
     energy = log.discs.kinetic_energy / len(log.discs)
     capacity = Estimate(energy / both.value, energy * both.standard_error / both.value**2, 0, theory=1.5)
     agrees(capacity, 0.01)
+
+
+def test_brownian_motion(run):
+    """A heavy disc forgets its velocity at the rate γ that Enskog's friction gives, before its own wake comes back.
+
+    The other discs recoil, so that the velocity relative to them decays by a part M/(M_all - M) faster.
+    """
+    rates, friction = [], math.nan
+    for seed in range(1, 5):
+        log = run("brownian", f"scene.seed={seed}")
+        grain = transport(log).diffusion[0]
+        friction = 1 / grain.velocity_correlation_time.theory / (1 - 20 / log.discs.mass.sum())
+        k = grain.lag.searchsorted(0.1 / friction)
+        rates.append(-math.log(grain.correlation[k]) / grain.lag[k])
+    agrees(of_runs(rates, friction), resolution=0.04)
+
+
+def test_gases_under_gravity_separate(run):
+    """Each has its own barometric law: 20 strips, two species; P(|t| > 4) = 6e-5 each."""
+    found = profile(run("separation"))
+    light, heavy = found.species
+    for density in (*light.density, *heavy.density):
+        if density.value * found.strip > 1:
+            assert abs(density.deviation) < STANDARD_ERRORS
+    assert light.density[10].standard_error < 0.03 * light.density[10].value
+    assert heavy.density[0].value > 4 * heavy.density[-1].value
+    assert light.density[0].value < 3 * light.density[-1].value
 
 
 def test_cooling(run):

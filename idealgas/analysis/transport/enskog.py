@@ -1,7 +1,9 @@
 """Enskog's transport coefficients of the gas of a log, with their errors."""
 
+import math
 from dataclasses import dataclass
 
+from idealgas.analysis.core.collisions import ExpectedRates
 from idealgas.analysis.core.composition import Composition
 from idealgas.analysis.core.equilibrium import Ensemble
 from idealgas.analysis.theory import hard_discs
@@ -23,6 +25,24 @@ class Enskog:
     conductivity: Theory
     bulk_viscosity: Theory
     kinematic_viscosity: float
+
+
+def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: ExpectedRates) -> list[Theory | None]:
+    """Diffusion coefficient of each species of a mixture, length²/time, in the first approximation of Enskog's theory.
+
+    Discs of species i lose their velocity at the rate γ_i = Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and
+    collision rates Γ_ij: the friction of a Brownian disc among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
+    None where theory has no rates. The error is that of equal discs, that of the rates, and what the others recoil.
+    """
+    found: list[Theory | None] = []
+    whole, error = log.discs.mass.sum(), enskog_error("diffusion", log.discs.packing_fraction)
+    for i, mass in enumerate(discs.mass):
+        reduced = mass * discs.mass / (mass + discs.mass)
+        resistance = float((2 * reduced * rates.rate[i]).sum())
+        relative = error + float(rates.relative_error[i].max()) + 2 * mass / whole
+        value = equilibrium.temperature / resistance if resistance > 0 else math.nan
+        found.append(Theory(value, relative * value, "Enskog") if math.isfinite(value) else None)
+    return found
 
 
 def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:

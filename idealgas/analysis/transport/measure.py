@@ -28,8 +28,9 @@ from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
-from idealgas.analysis.transport.enskog import Enskog, enskog
+from idealgas.analysis.transport.enskog import Enskog, enskog, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import NotApplicableError, UserError
@@ -52,7 +53,7 @@ class Diffusion:
     correlation at late times by theory; None for several species or above freezing. running, running_error: (L,), a
     quarter of the slope of the displacement, length²/time, and its standard error. coefficient: diffusion coefficient
     D, a quarter of the slope of the displacement at late lags, length²/time; its theory is Enskog's.
-    velocity_correlation_time: integral of the correlation up to the last lag, time.
+    velocity_correlation_time: integral of the correlation up to the last lag, time; its theory is that of mD/T.
     """
 
     species: str
@@ -160,7 +161,8 @@ def transport(
     rates = collision_rates(discs, expected, window, impacts)
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    diffusion = _diffusion(log, discs, window, longest, enskogs)
+    alone = [enskogs.diffusion] if enskogs else self_diffusion(log, discs, equilibrium, expected)
+    diffusion = _diffusion(log, discs, window, longest, (enskogs, alone, equilibrium.temperature))
     whole = None
     if all(log.periodic):
         currents = flow_in_events(log, window, longest, progress)
@@ -253,9 +255,13 @@ def _free_time(discs: Composition, rates: tuple[CollisionRate, ...]) -> float:
 
 
 def _diffusion(
-    log: Log, discs: Composition, window: Window, longest: float, expected: Enskog | None
+    log: Log,
+    discs: Composition,
+    window: Window,
+    longest: float,
+    expected: tuple[Enskog | None, Sequence[Theory | None], float],
 ) -> tuple[Diffusion, ...]:
-    """Diffusion of each species up to the longest lag, time."""
+    """Diffusion of each species up to the longest lag, time; expected: Enskog's theory, D of each species, and T."""
     segments = min(int(window.duration / longest), MOST_SEGMENTS)
     lag = np.linspace(0.0, longest, LAGS + 1)
     starts = np.linspace(window.start, window.end - longest, segments)
@@ -270,17 +276,24 @@ def _diffusion(
     places = places - lag[:, None, None] * drift(log)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), strict=True)
-    return tuple(_of_species(name, lag, r, v, expected) for name, r, v in parts)
+    whole, coefficients, temperature = expected
+    theories = [
+        (whole, alone, alone and alone.times(float(mass) / temperature))
+        for alone, mass in zip(coefficients, discs.mass, strict=True)
+    ]
+    return tuple(_of_species(*part, lag, *theory) for part, theory in zip(parts, theories, strict=True))
 
 
 def _of_species(
     name: str,
-    lag: np.ndarray,
     places: np.ndarray,
     velocities: np.ndarray,
+    lag: np.ndarray,
     expected: Enskog | None,
+    coefficient: Theory | None,
+    memory: Theory | None,
 ) -> Diffusion:
-    """Diffusion of one species from positions and velocities (segments, L, discs, 2)."""
+    """Diffusion of one species from positions and velocities (segments, L, discs, 2), with theories of D and mD/T."""
     correlation = autocorrelation(velocities)
     square = correlation[:, 0].mean()
     displacement = mean_square_displacement(places)
@@ -299,8 +312,8 @@ def _of_species(
         tail=_tail(np.maximum(lag, 1e-300), expected) if expected else None,
         running=running.mean(axis=0),
         running_error=running.std(axis=0, ddof=1) / count,
-        coefficient=mean(slope, theory=expected.diffusion if expected else None),
-        velocity_correlation_time=mean(correlation_time),
+        coefficient=mean(slope, theory=coefficient),
+        velocity_correlation_time=mean(correlation_time, theory=memory),
     )
 
 
