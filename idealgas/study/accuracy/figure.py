@@ -57,7 +57,7 @@ AVERAGES: dict[str, Measure] = {
 MARKERS = "osD^vP*X"
 ENTRIES = (0.5, 1.0, 2.0)  # collisions per disc at which errors of trajectories are shown against CPU time
 LEAST = 1e-17  # error in diameters below which nothing is drawn
-SHOWN_STEPS = 5
+SHOWN_STEPS = 4
 """Number of time steps, evenly chosen, whose length is written at their points."""
 
 
