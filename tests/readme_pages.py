@@ -87,8 +87,7 @@ def make_folder(folder: Path) -> Path:
     shutil.copytree(ROOT / "configs", folder / "configs", dirs_exist_ok=True)
     (folder / ".readme").mkdir(exist_ok=True)
     for path in (folder / "configs" / "sweeps").rglob("*.toml"):
-        text = path.read_text(encoding="utf-8").replace("replicates = 8", "replicates = 1")
-        text = text.replace("replicates = 4", "replicates = 1")
+        text = re.sub(r"^replicates = \d+", "replicates = 1", path.read_text(encoding="utf-8"), flags=re.M)
         for key, factor in SHORTER_SWEEPS:
             text = re.sub(
                 rf"^{key} = ([\d_]+)", lambda found, k=key, f=factor: f"{k} = {int(found[1]) // f}", text, flags=re.M

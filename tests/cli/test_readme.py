@@ -245,7 +245,13 @@ def test_code_of_the_analyses_runs(folder):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
-    ["equation-of-state", *(pytest.param(name, marks=pytest.mark.long) for name in ("effusion", "heat-capacity"))],
+    [
+        "equation-of-state",
+        *(
+            pytest.param(name, marks=pytest.mark.long)
+            for name in ("effusion", "heat-capacity", "transport", "diffusion")
+        ),
+    ],
 )
 def test_shipped_sweeps_give_their_pictures(folder, name):
     (block,) = (block for block in analysis_blocks()[0] if f"sweeps/{name}.toml" in block.text)

@@ -18,7 +18,7 @@ def transport_figure(result: Transport | States) -> Figure:
 def _of_states(result: States) -> Figure:
     """Picture of coefficients over Enskog's against φ, or against N where all logs have one φ."""
     figure, (ax,) = panels(1)
-    by_number = len({state.packing_fraction for state in result.states}) == 1 < len(result.states)
+    by_number = len({round(state.packing_fraction, 9) for state in result.states}) == 1 < len(result.states)
     for symbol, colour in zip((DIFFUSION, *SYMBOLS.values()), COLOURS, strict=False):
         shown = [state for state in result.states if symbol in state.coefficients]
         ones = [state.coefficients[symbol] for state in shown]
@@ -29,7 +29,10 @@ def _of_states(result: States) -> Figure:
     ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory")
     ax.set(xlabel="packing fraction φ (no unit)", ylabel="coefficient over Enskog's (no unit)")
     if by_number:
+        numbers = [state.number for state in result.states]
         ax.set_xscale("log")
+        ax.set_xticks(numbers, [str(number) for number in numbers])
+        ax.minorticks_off()
         ax.set_xlabel("number of discs")
     ax.legend()
     return figure

@@ -1,6 +1,7 @@
 """Coefficients of several logs over Enskog's, averaged over runs of one state, from logs and from sweeps."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -58,3 +59,5 @@ def test_tables_and_figures(results):
     (ax,) = ANALYSIS.figure(combined).axes
     assert {"D", "η", "λ", "ζ", "Enskog's theory"} == {text.get_text() for text in ax.get_legend().get_texts()}
     assert ANALYSIS.figure(ANALYSIS.combine([results[0], results[2]])).axes[0].get_xlabel().startswith("packing")
+    closer = [replace(found, packing_fraction=0.3 + 1e-15 * k) for k, found in enumerate(results)]
+    assert ANALYSIS.figure(ANALYSIS.combine(closer)).axes[0].get_xlabel() == "number of discs"
