@@ -2,15 +2,19 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from idealgas.errors import UserError
+from idealgas.files import check_output
 
-from ._options import quiet_option
+from ._analysis import print_json
+from ._options import force_option, json_option, plot_option, quiet_option
 from ._tables import print_tables, shown
-from ._terminal import echo, terminal
+from ._terminal import echo, terminal, written
 
 if TYPE_CHECKING:
     from idealgas.study.sweep.plan import Sweep
@@ -25,42 +29,74 @@ if TYPE_CHECKING:
 )
 @click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
 @click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
+@plot_option
+@click.option(
+    "--of", "quantity", metavar="ANALYSIS/QUANTITY",
+    help="What the picture shows, by its names in results.csv.  [default: the first number with an error bar]",
+)  # fmt: skip
+@click.option("--against", "axis", metavar="KEY", help="The axis of the picture.  [default: the first one]")
+@force_option
+@json_option
 @quiet_option
-def sweep(path: str, output: str | None, workers: int | None, scheduler: str | None, dry_run: bool) -> None:
+def sweep(
+    path: str,
+    output: str | None,
+    workers: int | None,
+    scheduler: str | None,
+    dry_run: bool,
+    plot: str | None,
+    quantity: str | None,
+    axis: str | None,
+    force: bool,
+    as_json: bool,
+) -> None:
     """Run a scene at many points and collect the results of its analyses in DIR/results.csv.
 
     The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
-    twice more and then reported; the other points are run.
+    twice more and then reported; the other points are run. With --plot the command draws a picture in the end.
     """
     from idealgas.study.sweep.plan import load_sweep
 
     plan = load_sweep(path)
     if dry_run:
-        _print_plan(plan, workers)
+        _print_plan(plan, workers, as_json)
         return
     if output is None:
         raise UserError("-o DIR: missing (the folder for logs and results)")
+    if plot:
+        check_output(plot, Path(plot).suffix.lower(), force, [path])
     from ._interrupt import EXIT_CODE, ctrl_c
 
     failed = False
     with ctrl_c(raises=True) as interrupted:
         try:
-            failed = _run(plan, output, workers, scheduler, interrupted)
+            failed = _run(plan, output, workers, scheduler, interrupted, as_json)
         except BaseException:
             if not interrupted():  # else it may be anything that was torn down in the middle
                 raise
         if interrupted():
             echo("interrupted; the same command goes on where this one stopped", err=True)
             raise SystemExit(EXIT_CODE)
+    if plot:
+        from idealgas.analysis.core.style import save
+        from idealgas.study.sweep.figure import sweep_figure
+
+        save(sweep_figure(output, quantity, axis), plot, force)
+        written(plot, err=as_json)
     if failed:
         raise SystemExit(1)
 
 
 def _run(
-    plan: "Sweep", output: str, workers: int | None, scheduler: str | None, interrupted: Callable[[], bool]
+    plan: "Sweep",
+    output: str,
+    workers: int | None,
+    scheduler: str | None,
+    interrupted: Callable[[], bool],
+    as_json: bool,
 ) -> bool:
     """Run a sweep and write its tables; whether any points failed."""
-    from idealgas.study.sweep.results import write_tables
+    from idealgas.study.sweep.results import result_rows, write_tables
     from idealgas.study.sweep.run import run_sweep
 
     with _progress_bar() as show:
@@ -73,9 +109,16 @@ def _run(
         outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress)
     for index, reason in outcome.failures.items():
         echo(f"point {index} failed: {reason}", err=True)
-    if outcome.ran or outcome.before:
-        tables = " and ".join(map(str, write_tables(output)))
-        echo(f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed: {tables}")
+    tables = write_tables(output) if outcome.ran or outcome.before else []
+    if as_json:
+        rows = result_rows(output) if tables else []
+        print_json({**asdict(outcome), "files": list(map(str, tables)), "results": rows})
+    elif tables:
+        done = f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed"
+        foreseen = "" if outcome.estimated is None else f" (estimate {outcome.estimated:.3g} s)"
+        echo(f"{done}: {' and '.join(map(str, tables))}")
+        if outcome.ran:
+            echo(f"time: {outcome.seconds:.3g} s{foreseen}")
     return bool(outcome.failures)
 
 
@@ -100,7 +143,7 @@ def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
         yield show
 
 
-def _print_plan(plan: "Sweep", workers: int | None) -> None:
+def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
     import os
 
     from rich.filesize import decimal
@@ -110,6 +153,12 @@ def _print_plan(plan: "Sweep", workers: int | None) -> None:
 
     workers = workers or os.cpu_count() or 1
     costs = estimate_cost(plan)
+    seconds = sum(cost.seconds for cost in costs) / workers
+    if as_json:
+        labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)
+        points = [label | cost._asdict() for label, cost in zip(labels, costs, strict=True)]
+        print_json({"points": points, "workers": workers, "seconds": seconds})
+        return
     rows: list[tuple[Cell, ...]] = [
         (
             str(point.index),
@@ -125,5 +174,4 @@ def _print_plan(plan: "Sweep", workers: int | None) -> None:
     print_tables([Table("", ("point", "replicate", *plan.axes, "N", "φ", "events", "log"), rows)])
     size = sum(cost.bytes for cost in costs)
     kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
-    seconds = sum(cost.seconds for cost in costs) / workers
     echo(f"{len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")

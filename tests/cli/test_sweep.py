@@ -1,6 +1,7 @@
 """Sweeps as a user starts, kills and continues them."""
 
 import contextlib
+import csv
 import json
 import os
 import resource
@@ -109,6 +110,46 @@ def test_dry_run_shows_the_points_and_runs_none(plan, tmp_path):
     assert done.returncode == 0, done.stderr
     assert "6 points, about" in done.stdout
     assert not (tmp_path / "out").exists()
+
+
+def test_a_dry_run_has_the_axes_in_their_order_also_as_json(plan, tmp_path):
+    plan.write_text(SWEEP.replace("[base]", '[[axis]]\nkey = "species.gas.count"\nvalues = [20, 30]\n[base]'))
+    done = called("sweep", plan, "--dry-run")
+    head, first = (line.split() for line in done.stdout.splitlines()[1:4:2])
+    assert [word for word in head if word != "┃"][:4] == ["point", "replicate", "phi", "species.gas.count"]
+    assert [word for word in first if word != "│"][:4] == ["0", "0", "0.02", "20"]
+    found = json.loads(called("sweep", plan, "--dry-run", "--json").stdout)
+    assert [point["values"] for point in found["points"][::6]] == [
+        {"phi": 0.02, "species.gas.count": 20},
+        {"phi": 0.1, "species.gas.count": 20},
+    ]
+
+
+@pytest.mark.slow
+def test_all_that_people_want_of_a_sweep(plan, tmp_path):
+    """Every kind of analysis in the table, its premises, the time beside its estimate, JSON, and a picture."""
+    text = SWEEP.replace('["pressure"]', '["pressure", "profile", "evolution"]')
+    plan.write_text(text.replace("replicates = 3", "replicates = 2"))
+    done = called("sweep", plan, "-o", tmp_path / "out", "--workers", 1, "--plot", tmp_path / "z.png")
+    assert (done.returncode, done.stderr) == (0, "")
+    counts, timing, picture = done.stdout.splitlines()
+    assert counts.startswith("4 points run, ")
+    assert timing.startswith("time: ")
+    assert " (estimate " in timing
+    assert picture == f"{tmp_path / 'z.png'}: written"
+    assert (tmp_path / "z.png").stat().st_size > 5000
+    with (tmp_path / "out" / "results.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["analysis"] for row in rows} == {"run", "pressure", "profile", "evolution"}
+    assert list(rows[0])[-1] == "premises"
+    again = called("sweep", plan, "-o", tmp_path / "out", "--json")
+    found = json.loads(again.stdout)
+    assert (found["ran"], found["before"], len(found["results"])) == (0, 4, len(rows))
+    for option, name in (("--of", "pressure/area"), ("--against", "phi")):
+        wrong = called("sweep", plan, "-o", tmp_path / "out", "--plot", tmp_path / "y.png", option, f"{name}s")
+        assert wrong.returncode == 2
+        assert f'did you mean "{name}"' in wrong.stderr
+    assert not (tmp_path / "y.png").exists()
 
 
 @pytest.mark.parametrize("later", ["a point", "the tables"])

@@ -21,6 +21,10 @@ KEYS = {"point", "seed", "combination", "replicate", "values", "scene", "summary
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
 
 
+RESULT = ("analysis", "quantity", *ESTIMATE, "premises")
+"""Columns of results.csv after those that identify the point."""
+
+
 def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Read the result files of a sweep in the order of its points.
 
@@ -59,13 +63,21 @@ def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str,
         yield label, point["analyses"][analysis], run
 
 
+def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
+    """The rows of `results.csv`: one for each number of each point, by the names of the columns.
+
+    Raises:
+        UserError: if there are no results, or if one cannot be read.
+    """
+    return [row for point in read_points(folder) for row in _rows(point)]
+
+
 def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
     """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files; return their paths."""
-    rows = [row for point in read_points(folder) for row in _rows(point)]
+    rows = result_rows(folder)
     names = list(dict.fromkeys(name for row in rows for name in row))
-    names.sort(
-        key=lambda name: name in ("analysis", "quantity", *ESTIMATE)
-    )  # columns that identify the point come first
+    identify = [name for name in names if name not in RESULT]
+    names = [*identify, *(name for name in RESULT if name in names)]
     tables = [Path(folder) / "results.csv"]
     with replacing(tables[0]) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, names, restval="")
@@ -89,8 +101,9 @@ def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
         if isinstance(value, bool | int | float):
             yield {**labels, "analysis": "run", "quantity": name, "value": float(value)}
     for analysis, found in point["analyses"].items():
+        premises = {"premises": " ".join(found.get("premises", ()))}  # those of before have none
         for quantity, estimate in _estimates(found):
-            yield {**labels, "analysis": analysis, "quantity": quantity, **estimate}
+            yield {**labels, "analysis": analysis, "quantity": quantity, **estimate, **premises}
 
 
 def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict[str, float | None]]]:
@@ -99,7 +112,7 @@ def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, di
     An entry of a list is named by its texts or, without texts, by its index.
     """
     if isinstance(found, dict):
-        if "standard_error" in found:
+        if set(ESTIMATE) <= found.keys():
             yield "/".join(path), {name: found[name] for name in ESTIMATE}
             return
         for name, value in found.items():

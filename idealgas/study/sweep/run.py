@@ -7,15 +7,17 @@ the next start continues from the files. The files of a point do not depend on t
 import asyncio
 import logging
 import os
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from idealgas.document.dump import dump_document
 from idealgas.errors import OutputError, UserError
+from idealgas.study.sweep.cost import estimate_cost
 from idealgas.study.sweep.folder import check_folder, continued, held
 from idealgas.study.sweep.plan import Sweep
 from idealgas.study.sweep.point import Task, result_path, run_point
@@ -56,11 +58,15 @@ class Outcome:
     """Outcome of a sweep.
 
     ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
+    seconds: time that it took. estimated: time that it was to take by the estimate of the cost, seconds; None where
+    nothing is known of the machines, or of one of the points.
     """
 
     ran: int
     before: int
     failures: dict[int, str]
+    seconds: float = 0.0
+    estimated: float | None = None
 
 
 def run_sweep(
@@ -96,15 +102,26 @@ def run_sweep(
             for p in open_points
         ]  # fmt: skip
         failures: dict[int, str] = {}
+        workers = min(workers or os.cpu_count() or 1, max(len(tasks), 1))
+        estimated = None if scheduler or not tasks else _estimate(replace(sweep, points=tuple(open_points)), workers)
+        started = time.monotonic()
         on_progress(Progress(before, 0, len(sweep.points)))
         if tasks:
-            with _client(min(workers or os.cpu_count() or 1, len(tasks)), scheduler) as client:
+            with _client(workers, scheduler) as client:
                 for k, (index, failure) in enumerate(_run(client, tasks)):
                     if failure is not None:
                         check_folder(folder)
                         failures[index] = failure
                     on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
-    return Outcome(len(tasks) - len(failures), before, dict(sorted(failures.items())))
+    seconds = time.monotonic() - started
+    return Outcome(len(tasks) - len(failures), before, dict(sorted(failures.items())), seconds, estimated)
+
+
+def _estimate(sweep: Sweep, workers: int) -> float | None:
+    """Time that a sweep is to take on a number of workers, seconds; None if a point of it cannot be run."""
+    with suppress(UserError):
+        return sum(cost.seconds for cost in estimate_cost(sweep)) / workers
+    return None
 
 
 def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]]:
