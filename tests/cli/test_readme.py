@@ -249,7 +249,7 @@ def test_code_of_the_analyses_runs(folder):
         "equation-of-state",
         *(
             pytest.param(name, marks=pytest.mark.long)
-            for name in ("effusion", "heat-capacity", "transport", "diffusion")
+            for name in ("effusion", "heat-capacity", "phases", "transport", "diffusion")
         ),
     ],
 )

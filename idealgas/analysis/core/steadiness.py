@@ -136,9 +136,12 @@ def steady_from(series: Iterable[np.ndarray]) -> int | None:
 
 
 def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:
-    """Sentence on a series (n,) at times (n,) whose mean is taken though it is not known to be steady."""
+    """Sentence on a series (n,) at times (n,) whose mean is taken though it is not known to be steady.
+
+    A start of less than 1/BEYOND of it that does not agree with the rest changes no mean.
+    """
     first, samples = steady_from([series]), error_of_mean(series).samples
-    if first:
+    if first is not None and first > len(series) // BEYOND:
         return (
             f"{name} is not steady in the window: only from t = {time[first]:.4g} on do the means of its parts agree. "
             "It takes a later start or a longer run.",

@@ -13,8 +13,7 @@ def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | Equatio
     """Pressure of a single log, or the equation of state of several logs or of a sweep.
 
     Raises:
-        NotApplicableError: if theory knows Z for none of several gases.
-        UserError: if theory does not know Z for some of them.
+        UserError: if one of several gases is a mixture.
     """
     if len(results) == 1 and isinstance(results[0], Pressure):
         return results[0]

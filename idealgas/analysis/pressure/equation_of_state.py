@@ -1,6 +1,5 @@
 """Equation of state Z(φ) from the pressures of many runs, compared with theory, and fitted virial coefficients."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,10 +10,14 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
-from idealgas.errors import NotApplicableError, UserError
+from idealgas.analysis.theory.values import SOLID, crystal
+from idealgas.errors import UserError
 
 FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""
+
+RESUMMED = "virial series, resummed"
+"""Name of the theory of a fluid."""
 
 FREE_TERMS = 3
 """Number of fitted virial coefficients, from B2 on; higher coefficients have their known values.
@@ -38,8 +41,10 @@ class State:
 
     packing_fraction: φ. number: of discs. kind: kind of gas in words; empty if unknown. runs: number of runs.
     compressibility: mean of Z over the runs; its theory is that of the same number of discs in the same box. infinite:
-    Z extrapolated to an infinite gas, by the ratio of the theories; its theory is the resummed virial series. virial:
-    virial series to B10. henderson: Henderson (1975).
+    up to φ = 0.62 Z extrapolated to an infinite gas, by the ratio of the theories, beside the resummed virial series;
+    above, and where the ratio is not known, Z as it is, beside published simulations or, of a crystal, free-volume
+    theory, or nothing. source: which theory this is; empty without one. virial: virial series to B10. henderson:
+    Henderson (1975); both None above φ = 0.62.
     """
 
     packing_fraction: float
@@ -48,8 +53,9 @@ class State:
     runs: int
     compressibility: Estimate
     infinite: Estimate
-    virial: float
-    henderson: float
+    source: str
+    virial: float | None
+    henderson: float | None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -60,6 +66,7 @@ class State:
             "runs": self.runs,
             "compressibility": self.compressibility.as_dict(),
             "infinite": self.infinite.as_dict(),
+            "theory": self.source or None,
             "virial_series_to_B10": self.virial,
             "henderson": self.henderson,
         }
@@ -77,14 +84,15 @@ class EquationOfState(Result):
     b3: Estimate | None
 
     def check(self) -> Verdict:
-        """Check that Z agrees with the resummed virial series at every packing fraction.
+        """Check that Z agrees with theory in every state that has one.
 
         Raises:
             UserError: if a state has no error bar.
         """
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
-        return judge(zip(names, (s.infinite for s in self.states), strict=True))
+        why_not = f"there is none for a gas of packing fraction {self.states[0].packing_fraction:.5g}"
+        return judge(zip(names, (s.infinite for s in self.states), strict=True), why_not)
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -116,18 +124,13 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     """Equation of state of many runs; runs of one kind of gas, number of discs and packing fraction are averaged.
 
     Raises:
-        NotApplicableError: if theory knows Z for none of the runs.
-        UserError: if theory does not know Z for some of the runs, or if one is of a mixture.
+        UserError: if one of the runs is of a mixture.
     """
     if mixed := next((s.origin for s in samples if s.origin and s.origin.mixture), None):
         raise UserError(
             f"{mixed.path}: no equation of state of a {mixed.kind}: its Z does not follow from φ alone; `idealgas "
             "pressure` of the single log has its theory"
         )
-    phis = [(s.packing_fraction, s.compressibility.theory) for s in samples]
-    if unknown := [phi for phi, theory in phis if theory is None or phi > hard_discs.HIGHEST]:
-        error = NotApplicableError if len(unknown) == len(samples) else UserError
-        raise error(f"no equation of state: no theory for a gas of packing fraction {min(unknown):g}")
     together: dict[tuple[float, int, str], list[Sample]] = {}
     for sample in samples:
         kind = sample.origin.kind if sample.origin else ""
@@ -143,23 +146,29 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
 
 def _state(kind: str, runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
-    together = mean_of_replicates([run.compressibility for run in runs])
-    part = float(hard_discs.compressibility(phi)) / (together.theory or math.nan)
+    found, fluid = mean_of_replicates([run.compressibility for run in runs]), phi <= hard_discs.HIGHEST
+    infinite, source = found, "published simulations" if found.theory is not None else ""
+    if fluid and found.theory is not None:
+        infinite, source = found.times(float(hard_discs.compressibility(phi)) / found.theory), RESUMMED
+    elif SOLID <= phi < hard_discs.CLOSE_PACKING and found.theory is None:
+        solid = crystal(phi)
+        infinite, source = replace(found, theory=solid.value, theory_error=solid.error), solid.source
     return State(
         phi,
         runs[0].number,
         kind,
         n,
-        together,
-        infinite=together.times(part),
-        virial=float(hard_discs.virial_series(phi)),
-        henderson=float(hard_discs.henderson_compressibility(phi)),
+        found,
+        infinite,
+        source,
+        virial=float(hard_discs.virial_series(phi)) if fluid else None,
+        henderson=float(hard_discs.henderson_compressibility(phi)) if fluid else None,
     )
 
 
 def _virial_coefficients(states: Sequence[State]) -> tuple[Estimate | None, Estimate | None]:
     """Virial coefficients B2 and B3 by a weighted least-squares fit of (Z - 1)/2φ = Σ b_k (2φ)^(k - 2)."""
-    used = [s for s in states if 0 < s.packing_fraction <= FITTED and s.infinite.standard_error > 0]
+    used = [s for s in states if 0 < s.packing_fraction <= FITTED and s.source and s.infinite.standard_error > 0]
     if len({round(s.packing_fraction, 6) for s in used}) <= FREE_TERMS:
         return None, None
     density = np.array([2 * s.packing_fraction for s in used])

@@ -1,6 +1,7 @@
 """Pictures of the pressure: compressibility factor Z by every route, and the equation of state."""
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import COLOURS, GREY, _repeated, name_rows, panels
@@ -8,6 +9,10 @@ from idealgas.analysis.pressure.equation_of_state import EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
+
+ROUGH = 10.0
+"""Deviation (‰) from theory above which the axis of deviations is that of small and large ones together."""
 
 
 def pressure_figure(result: Pressure | EquationOfState) -> Figure:
@@ -57,13 +62,13 @@ def _of_log(result: Pressure) -> Figure:
 
 
 def _of_states(result: EquationOfState) -> Figure:
-    """Picture of Z against φ with theories, and below it the deviation from the resummed virial series."""
+    """Picture of Z against φ with theories, and below it the deviation from the theory of each state."""
     figure, (above, below) = panels(2)
     phi = np.array([state.packing_fraction for state in result.states])
     z = np.array([state.infinite.value for state in result.states])
     error = np.array([state.infinite.standard_error for state in result.states])
-    best = hard_discs.compressibility(phi)
-    x = np.linspace(1e-9, 1.05 * phi.max(), 400)
+    best = np.array([state.infinite.theory or np.nan for state in result.states])
+    x = np.linspace(1e-9, min(1.05 * phi.max(), hard_discs.HIGHEST), 400)
     curves = (
         ("virial series, resummed", hard_discs.compressibility, "-", COLOURS[1]),
         ("virial series to B10", hard_discs.virial_series, "--", COLOURS[2]),
@@ -73,12 +78,30 @@ def _of_states(result: EquationOfState) -> Figure:
     for name, function, style, colour in curves:
         above.plot(x, function(x), style, color=colour, label=name)
         below.plot(x, 1e3 * (function(x) / hard_discs.compressibility(x) - 1), style, color=colour)
+    if phi.max() > hard_discs.HIGHEST:
+        _draw_dense(above, float(phi.max()))
     above.errorbar(phi, z, error, fmt="o", ms=4, color=COLOURS[0], label="measured")
     below.errorbar(phi, 1e3 * (z / best - 1), 1e3 * error / best, fmt="o", ms=4, color=COLOURS[0], capsize=3)
-    largest = 1e3 * float((np.abs(z / best - 1) + 3 * error / best).max())
-    below.set_ylim(-largest, largest)
-    above.set_ylabel("Z = PA/NT (no unit), N → ∞")
-    below.set_ylabel("deviation (‰ of Z)")
+    if np.isfinite(best).any():
+        largest = 1e3 * float(np.nanmax(np.abs(z / best - 1) + 3 * error / best))
+        below.set_ylim(-largest, largest)
+        if largest > ROUGH:
+            below.set_yscale("symlog", linthresh=1)
+    above.set_ylabel("Z = PA/NT (no unit)")
+    below.set_ylabel("deviation from theory (‰ of Z)")
     below.set_xlabel("packing fraction φ (no unit)")
-    above.legend()
+    below.set_xlim(above.get_xlim())
+    above.legend(frameon=False, fontsize="small")
     return figure
+
+
+def _draw_dense(ax: Axes, most: float) -> None:
+    """Draw what is known above the range of the virial series: published points, freezing, and the crystal."""
+    published, pressure = np.array(list(PUBLISHED)), np.array([value for value, _ in PUBLISHED.values()])
+    points = pressure * np.pi / (4 * published)
+    ax.plot(published, points, "D", ms=7, mfc="none", color=COLOURS[4], label="870 discs, Li et al. 2022")
+    ax.axvspan(FREEZING, MELTING, color=GREY, alpha=0.2, label="two phases in a large gas")
+    if most > SOLID:
+        x = np.linspace(SOLID, min(1.01 * most, 0.99 * hard_discs.CLOSE_PACKING), 200)
+        ax.plot(x, hard_discs.free_volume_compressibility(x), "-.", color=COLOURS[5], label="free volume, of a crystal")
+        ax.set_yscale("log")

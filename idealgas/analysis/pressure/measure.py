@@ -30,12 +30,13 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import SampledImpacts, SampledWalls, sampled
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
+from idealgas.analysis.core.steadiness import unsteady
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.pressure.bulk import flow_in_events, flow_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, fluid, mixture_error
+from idealgas.analysis.theory.values import SOLID, BoxTheory, NoTheoryError, Theory, crystal, fluid, mixture_error
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
@@ -163,7 +164,15 @@ def pressure(
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
         no_theory=theory.why_not,
+        premises=_slow(gas, window, impacts),
     )
+
+
+def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[str, ...]:
+    """Sentence on a dense gas, which changes slowly, if the means of parts of the window do not agree."""
+    if gas.packing_fraction <= hard_discs.HIGHEST:
+        return ()
+    return unsteady("The virial of the pairs", window.of(impacts.pair_virial), window.edges[window.first : -1])
 
 
 def _without_theory(
@@ -206,6 +215,9 @@ def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[
     theories = {"ideal gas": Theory(1.0, 0.0, "ideal gas")}
     if in_box.pairs:
         theories[in_box.pairs.source] = in_box.pairs
+    if phi >= SOLID and np.ptp(discs.radius) == 0:
+        solid = crystal(phi)
+        return theories | {solid.source: solid}
     try:
         series = fluid(phi)
     except NoTheoryError:

@@ -52,7 +52,19 @@ def _of_log(result: Pressure) -> list[Table]:
 
 def _of_states(result: EquationOfState) -> list[Table]:
     several = len(result.kinds) > 1
-    heads = (*["gas"] * several, "φ", "N", "runs", "Z", "± s.e.", "dev./s.e.", "resummed", "to B10", "Henderson")
+    heads = (
+        *["gas"] * several,
+        "φ",
+        "N",
+        "runs",
+        "Z",
+        "± s.e.",
+        "dev./s.e.",
+        "theory",
+        "to B10",
+        "Henderson",
+        "which theory",
+    )
     rows: list[tuple[Cell, ...]] = [
         (
             *((state.kind,) if several else ()),
@@ -63,10 +75,11 @@ def _of_states(result: EquationOfState) -> list[Table]:
             Number(state.infinite.standard_error, ".1g"),
             Number(state.infinite.deviation, "+.2f"),
             *(Number(value, ".5f") for value in (state.infinite.theory, state.virial, state.henderson)),
+            state.source,
         )
         for state in result.states
     ]
-    states = Table("Z = PA/NT for N → ∞; deviations are from the resummed virial series", heads, rows)
+    states = Table("Z = PA/NT: for N → ∞ up to φ = 0.62, of this N above; deviations are from theory", heads, rows)
     if result.b2 is None or result.b3 is None:
         notes = (f"No virial coefficients: a fit takes {FREE_TERMS + 1} packing fractions or more, up to {FITTED:g}.",)
         return [states, estimates("Virial coefficients, fitted", [], notes)]

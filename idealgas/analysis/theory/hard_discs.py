@@ -19,6 +19,9 @@ VIRIAL = (1.0, 1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114873, 0.064993, 
 HIGHEST = 0.62
 """Packing fraction up to which the resummed virial series holds; the fluid freezes at 0.70."""
 
+CLOSE_PACKING = math.pi / math.sqrt(12)
+"""Packing fraction of a triangular lattice of discs that all touch their neighbours."""
+
 _SERIES = Polynomial([b * 2.0**k for k, b in enumerate(VIRIAL)])
 _RESUMMED = Polynomial((_SERIES * Polynomial([1.0, -2.0, 1.0])).coef[: len(VIRIAL)])
 _PRESSURE = Polynomial([0.0, 1.0]) * _RESUMMED  # φZ (1 - φ)²
@@ -58,6 +61,14 @@ def henderson_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
     """Compressibility factor Z = (1 + φ²/8)/(1 - φ)² of hard discs: Henderson, Mol. Phys. 30, 971 (1975)."""
     phi = np.asarray(packing_fraction, float)
     return (1 + phi**2 / 8) / (1 - phi) ** 2
+
+
+def free_volume_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
+    """Compressibility factor Z = 1/(1 - √(φ/φcp)) of a crystal of hard discs, each in the cage of its neighbours.
+
+    Free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950); φcp is that of close packing, near which it is exact.
+    """
+    return np.asarray(1 / (1 - np.sqrt(np.asarray(packing_fraction, float) / CLOSE_PACKING)))
 
 
 def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:

@@ -32,6 +32,13 @@ PUBLISHED = {0.670: (7.98678, 3e-5), 0.680: (8.51325, 4e-5), 0.690: (8.96990, 8e
 """βP(2R)² and its error by packing fraction, of 870 discs in a square periodic box: Li, Nishikawa, Höllmer, Carillo,
 Maggs & Krauth, J. Chem. Phys. 157, 234111 (2022)."""
 
+FREEZING, MELTING, SOLID = 0.700, 0.716, 0.720
+"""Packing fractions between which fluid and hexatic are side by side, and from which on discs form a crystal: Engel,
+Anderson, Glotzer, Isobe, Bernard & Krauth, Phys. Rev. E 87, 042134 (2013)."""
+
+TOO_LOW = (0.4, 0.8)
+"""By how much Z of a crystal is larger than by free-volume theory: 0.4 + 0.8 (φcp/φ - 1), of 480 discs."""
+
 PUBLISHED_NUMBER, SAME_FRACTION, SLOPE = 870, 1e-4, 50.0
 """Number of discs in the published simulations, largest allowed distance from their φ, and largest dZ/dφ there."""
 
@@ -136,6 +143,19 @@ def fluid(packing_fraction: float) -> Theory:
 def enskog_error(quantity: str, packing_fraction: float) -> float:
     """Relative error of a transport coefficient by Enskog's theory; quantity: a key of ENSKOG_ERRORS."""
     return float(np.interp(packing_fraction, *ENSKOG_ERRORS[quantity]))
+
+
+def crystal(packing_fraction: float) -> Theory:
+    """Compressibility factor Z of an infinite crystal of equal discs by free-volume theory; its error is known.
+
+    Raises:
+        NoTheoryError: where discs form no crystal, or beyond close packing.
+    """
+    if not SOLID <= packing_fraction < hard_discs.CLOSE_PACKING:
+        raise NoTheoryError(f"discs form a crystal from a packing fraction of {SOLID:g} on")
+    room = hard_discs.CLOSE_PACKING / packing_fraction - 1
+    error = TOO_LOW[0] + TOO_LOW[1] * room
+    return Theory(float(hard_discs.free_volume_compressibility(packing_fraction)), error, "free volume, of a crystal")
 
 
 def box_theory(

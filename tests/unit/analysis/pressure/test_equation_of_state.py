@@ -9,7 +9,6 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
 from idealgas.analysis.pressure.tables import pressure_tables
 from idealgas.analysis.theory import hard_discs
-from idealgas.errors import NotApplicableError, UserError
 
 
 def samples(phis, error, number=1000, runs=4, seed=0):
@@ -58,14 +57,23 @@ def test_few_states_give_no_coefficients():
     assert few.b3 is None
 
 
-@pytest.mark.parametrize("theory", [None, 9.36])
-def test_no_equation_of_state_where_there_is_no_theory(theory):
-    dense, published = Sample(0.75, 100, Estimate(9.0, 0.1, 10.0)), Sample(0.67, 870, Estimate(9.36, 0.1, 10.0, theory))
-    with pytest.raises(NotApplicableError, match=r"no theory for a gas of packing fraction 0\.67"):
-        equation_of_state([dense, published])
-    with pytest.raises(UserError, match=r"no theory for a gas of packing fraction 0\.75") as refused:
-        equation_of_state([*samples([0.1, 0.2], 1e-3), dense])
-    assert not isinstance(refused.value, NotApplicableError)  # others of these gases have a theory
+def test_every_phase_has_the_theory_that_is_known():
+    """Fluid, published simulations, nothing where it freezes, and the crystal, with the error of free-volume theory."""
+    published = Sample(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
+    unknown, crystal = (Sample(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
+    found = equation_of_state([*samples([0.1, 0.2], 1e-3), published, unknown, crystal])
+    sources = ["virial series, resummed"] * 2 + ["published simulations", "", "free volume, of a crystal"]
+    assert [state.source for state in found.states] == sources
+    dense = found.states[-1]
+    assert dense.infinite.theory == pytest.approx(1 / (1 - math.sqrt(0.8 * math.sqrt(12) / math.pi)))
+    assert 0.4 < dense.infinite.theory_error < 0.6
+    assert (dense.virial, dense.henderson) == (None, None)
+    verdict = found.check()
+    assert verdict.agrees is True
+    assert len(verdict.judged) == 4
+    assert equation_of_state([unknown]).check().agrees is None
+    (row,) = (row for row in pressure_tables(found)[0].shown if row[0] == "0.71")
+    assert row[5:] == ["", "", "", "", ""]
 
 
 @pytest.mark.parametrize(("phis", "numbers"), [((0.05, 0.1), (100, 400)), ((0.05, 0.1, 0.2), (100, 200, 400))])
