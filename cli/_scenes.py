@@ -20,9 +20,14 @@ def _folder() -> Path:
     return Path(next(iter(import_module("idealgas_scenes").__path__)))
 
 
+def paths() -> list[Path]:
+    """Files of all scenes, in alphabetical order of their names."""
+    return sorted(_folder().glob(f"*{SCENE}"))
+
+
 def names() -> list[str]:
     """Names of the scenes, in alphabetical order."""
-    return sorted(path.stem for path in _folder().glob(f"*{SCENE}"))
+    return [path.stem for path in paths()]
 
 
 def title(name: str) -> str:

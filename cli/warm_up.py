@@ -3,24 +3,26 @@
 import click
 
 from ._options import json_option
+from ._scenes import paths as shipped
 from ._tables import facts, print_tables
 from ._terminal import data, terminal
 
 
 @click.command(epilog="Example: idealgas warm-up gas.toml")
-@click.argument("paths", metavar="SCENE.toml...", nargs=-1, required=True)
+@click.argument("paths", metavar="[SCENE.toml]...", nargs=-1)
 @json_option
 def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
     """Compile beforehand what scenes need, so that their first run starts at once.
 
-    Machine code is compiled for the effects that a scene calls for, and is kept on disk.
+    Machine code is compiled for the effects that a scene calls for, and is kept on disk. Without a scene it is compiled
+    for all those that come with the program.
     """
     import json
 
     from idealgas.run.warm_up import warm_up as compile_for
     from idealgas.scene import load_scene
 
-    scenes = {path: load_scene(path) for path in paths}
+    scenes = {str(path): load_scene(path) for path in paths or shipped()}
     with terminal(err=True).status("compiling"):
         seconds = {path: compile_for(scene) for path, scene in scenes.items()}
     if as_json:

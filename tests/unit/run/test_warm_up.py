@@ -39,12 +39,15 @@ def test_every_method_ends(name):
     module.warm_up(load_scene(ROOT / "configs" / f"{name}.toml", ["species.0.count=20"]))
 
 
-def test_the_command_says_what_it_compiled(tmp_path):
+def test_the_command_says_what_it_compiled(tmp_path, monkeypatch):
     scene = tmp_path / "gas.toml"
     scene.write_text(SCENE)
     done = CliRunner().invoke(main, ["warm-up", str(scene), "--json"])
     assert done.exit_code == 0, done.output
     assert list(json.loads(done.stdout)["compile_seconds"]) == [str(scene)]
     assert [path.name for path in tmp_path.iterdir()] == ["gas.toml"]
+    monkeypatch.setattr("idealgas_cli.warm_up.shipped", lambda: [scene])
+    all_of_them = CliRunner().invoke(main, ["warm-up"])
+    assert str(scene) in all_of_them.stdout.replace("\n", "")
     wrong = CliRunner().invoke(main, ["warm-up", str(scene), str(tmp_path / "none.toml")])
     assert (wrong.exit_code, wrong.stderr.count("\n")) == (2, 1)
