@@ -152,6 +152,8 @@ def _analyse(
         data(tables.as_csv(analysis.tables(result)), nl=False)
     else:
         print_tables(analysis.tables(result))
+        if analysis.in_text:
+            echo(analysis.text(result))
         if verdict:
             echo(f"{verdict}")
     if plot:

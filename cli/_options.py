@@ -12,12 +12,16 @@ PICTURES = (".png", ".pdf", ".svg")
 
 
 def scene_argument(command: Callable) -> Callable:
-    """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, ready for `load_scene`."""
+    """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, for `load_scene`; - is stdin."""
     overrides = click.option(
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
         help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
     )  # fmt: skip
-    return click.argument("path", metavar="SCENE.toml")(overrides(command))
+    return click.argument("path", metavar="SCENE.toml", callback=_or_stdin)(overrides(command))
+
+
+def _or_stdin(_: click.Context, __: click.Parameter, path: str) -> str:
+    return "/dev/stdin" if path == "-" else path
 
 
 force_option = click.option("--force", is_flag=True, help="Replace what the same command has written there before.")

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from idealgas.log import Log
 
 SECONDS = 1.0  # between two updates
-WIDTH = 50
 
 
 @click.command(epilog="Example: idealgas follow gas.h5")
@@ -75,12 +74,9 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
 
 def _histogram(seen: "Status") -> str:
     """Text histogram of the speeds, with a mark at Maxwell-Boltzmann's density in each line."""
+    from idealgas.analysis.core.bars import bars
+
     if seen.density is None:
         return "nothing moves"
-    highest = max(seen.density.max(), seen.expected.max())
-    lines = ["speeds in units of √(T/m); │ Maxwell-Boltzmann"]
-    for low, density, expected in zip(seen.edges[:-1], seen.density, seen.expected, strict=True):
-        bar = list(("█" * round(WIDTH * density / highest)).ljust(WIDTH + 1))
-        bar[round(WIDTH * expected / highest)] = "│"
-        lines.append(f"{low:4.1f} {''.join(bar).rstrip()}")
-    return "\n".join(lines)
+    law = "speeds in units of √(T/m); │ Maxwell-Boltzmann"
+    return f"{law}\n{bars(seen.edges[:-1].tolist(), seen.density.tolist(), seen.expected.tolist())}"

@@ -119,6 +119,34 @@ def test_a_missing_folder_is_one_line_and_one_code(log, words):
     assert not (log.parent / "none").exists()
 
 
+def test_a_histogram_is_printed_with_its_law(log):
+    lines = called("histogram", log).stdout.splitlines()
+    first = lines.index("gas: speed (length/time); │ Maxwell-Boltzmann") + 1
+    bars = lines[first:]
+    assert len(bars) == 24
+    assert all("│" in bar for bar in bars)
+    assert max(bar.count("█") for bar in bars) > 40
+    assert "█" not in bars[-1]
+
+
+def test_a_scene_from_a_pipe():
+    command = [IDEALGAS, "check", "-", "--json"]
+    done = subprocess.run(command, input=SCENE, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["number"] == 60
+    wrong = subprocess.run(command, input=SCENE.replace("60", "-1"), capture_output=True, text=True)
+    assert (wrong.returncode, wrong.stderr.split(": ")[0]) == (2, "/dev/stdin:3")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion(shell):
+    """The answers that the script of each shell asks for."""
+    for words, answer in (("idealgas pres", "pressure"), ("idealgas pressure --pl", "--plot")):
+        last = words.split()[-1]
+        asked = {"COMP_WORDS": words, "COMP_CWORD": last if shell == "fish" else str(words.count(" "))}
+        assert answer in idealgas(_IDEALGAS_COMPLETE=f"{shell}_complete", **asked).stdout
+
+
 def test_every_analysis_has_json_csv_and_a_picture():
     for name in registry.commands():
         options = {option for param in main.get_command(None, name).params for option in param.opts}

@@ -101,6 +101,7 @@ class Analysis:
     several: whether the analysis combines several logs. averages: whether it then takes averages over them, so that
     their runs must be independent. folders: whether it also takes folders of sweeps. checked: whether results have a
     method `check()` that compares measurement and theory. worded: whether it says in words what it found.
+    in_text: whether text.py has NAME_text(result), a picture in characters for the terminal.
     start, end: description of the default start and end of the window. reads: what the progress bar counts, such as
     events or frames.
     """
@@ -114,6 +115,7 @@ class Analysis:
     folders: bool = False
     checked: bool = False
     worded: bool = False
+    in_text: bool = False
     start: str = "detected equilibrium"
     end: str = "the log's end"
     reads: str = "events"
@@ -201,6 +203,10 @@ class Analysis:
     def words(self, combined: Any) -> list[str]:
         """Sentences on what a combined result found; none if the analysis has no words."""
         return self._code("words", f"{self.name}_words")(combined) if self.worded else []
+
+    def text(self, combined: Any) -> str:
+        """Picture of a combined result in characters, for the terminal; only with `in_text`."""
+        return self._code("text", f"{self.name}_text")(combined)
 
     def figure(self, combined: Any, titled: bool = True) -> "Figure":
         """Picture of a combined result; titled: whether it names the run and the analysis above it."""

@@ -26,6 +26,7 @@ ANALYSIS = Analysis(
     Velocities and energies are weighted with the time that discs spend at them. A wait is the time between successive
     events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
     """,
+    in_text=True,
     options=(
         Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),
     ),
