@@ -68,7 +68,7 @@ def test_resume_to_a_later_end(copy):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--events", 100), "not before the end that is asked for"),
+        (("--events", 100), "already at 6,000 events; 100 lies before that"),
         (("--until", -1), "run.until: out of range"),
     ],
 )

@@ -456,7 +456,7 @@ def test_a_log_without_events_has_no_player(tmp_path):
     [
         (("-o", "page.pdf"), 2, "page.pdf: unknown kind of report (allowed: .html)"),
         (("-o", "no/page.html"), 2, "no/page.html: no folder no"),
-        (("-o", "page.html", "--from", "1e9"), 2, "no window from t = 1e+09"),
+        (("-o", "page.html", "--from", "1e9"), 2, "no window from t = 1000000000"),
         (("-o", "folder.html"), 2, "folder.html: is a folder"),
     ],
 )

@@ -11,7 +11,7 @@ def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] |
     lows: lower edges of the bins. density: of each bin, 1/unit. law: the same by a law.
     """
     highest = max(*density, *(law or ())) or 1.0
-    names = [f"{low:.3g}" for low in lows]
+    names = _aligned([f"{low:.3g}" for low in lows])
     widest = max(map(len, names))
     lines = []
     for k, name in enumerate(names):
@@ -20,3 +20,9 @@ def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] |
             bar[round(WIDTH * law[k] / highest)] = "│"
         lines.append(f"{name:>{widest}} {''.join(bar).rstrip()}")
     return "\n".join(lines)
+
+
+def _aligned(numbers: list[str]) -> list[str]:
+    """Numbers with as many decimals as the one that has most, unless some have a power of ten."""
+    decimals = max(len(number.partition(".")[2]) for number in numbers)
+    return numbers if any("e" in number for number in numbers) else [f"{float(one):.{decimals}f}" for one in numbers]

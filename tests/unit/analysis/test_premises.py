@@ -10,7 +10,6 @@ import pytest
 
 from idealgas.analysis import registry
 from idealgas.analysis.core import premises
-from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import estimates
 from idealgas.analysis.info import info
@@ -85,15 +84,6 @@ def test_a_sentence_is_in_tables_json_and_the_report(made):
     fine = combined("pressure", made())
     assert (fine.premises, fine.as_dict()["premises"]) == ((), [])
     assert not any(note.startswith("premise") for note in analysis.tables(fine)[0].notes)
-
-
-def test_every_result_has_premises(made):
-    for analysis in registry.analyses():
-        result = analysis.measure(made(*(SLIT if analysis.name == "effusion" else ())))
-        both = analysis.combine([result])
-        assert isinstance(result, Result)
-        assert isinstance(both, Result)
-        assert isinstance(both.as_dict()["premises"], list)
 
 
 def test_sentences_of_many_logs_have_their_paths_and_are_bounded(made):

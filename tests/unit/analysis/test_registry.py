@@ -16,6 +16,7 @@ from idealgas import analysis as package
 from idealgas.analysis import registry
 from idealgas.analysis.core.declaration import Option
 from idealgas.analysis.core.html import escape, html_table
+from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Number, Table, as_csv, estimates
 from idealgas.analysis.report.sections import make_sections
@@ -117,7 +118,11 @@ def test_an_option_takes_its_default():
 
 @every_analysis
 def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
-    result = analysis.combine([analysis.measure(make(*TAKES.get(analysis.name, ())))])
+    measured = analysis.measure(make(*TAKES.get(analysis.name, ())))
+    result = analysis.combine([measured])
+    assert isinstance(measured, Result)
+    assert isinstance(result, Result)
+    assert isinstance(result.as_dict()["premises"], list)
     tables = analysis.tables(result)
     assert any(table.rows for table in tables)
     rows = list(csv.DictReader(io.StringIO(as_csv(tables))))
