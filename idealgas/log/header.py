@@ -7,6 +7,7 @@ import numpy as np
 
 from idealgas.events import Column
 from idealgas.gas.state import Gas
+from idealgas.log.errors import LogError
 from idealgas.log.rules import check_boundary, check_images, check_species, check_walls
 from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, RUN_COLUMNS, VERSIONS, Wall
 from idealgas.log.source import Source
@@ -20,6 +21,7 @@ class LogHeader:
 
     def __init__(self, source: Source) -> None:
         self._source = source
+        source.rules.in_steps = self._in_steps
         self.path = source.path
         self.unclosed = source.unclosed
         self.box: tuple[float, float] = tuple(source.fixed("box").tolist())
@@ -55,6 +57,13 @@ class LogHeader:
             return scene
 
         return self._source.checked(read, "runs/scene")
+
+    def _in_steps(self) -> bool:
+        """Whether discs move in steps of time; not known where the scene is damaged."""
+        try:
+            return self.scene.run.dt is not None
+        except LogError:
+            return False
 
     @property
     def command(self) -> str:

@@ -6,7 +6,7 @@ Every column is checked as it is read: no number of a file is used before. What 
 import math
 import sys
 from bisect import bisect
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -48,7 +48,7 @@ LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST = 1e-100, 1e50, 1e150
 """Bounds on masses and radii, on these and speeds, and on times and spins: their products are finite numbers too."""
 
-Range = tuple[float, float | tuple[float, float]]
+Range = tuple[float, float]
 
 
 class Rules:
@@ -62,14 +62,15 @@ class Rules:
         complete: whether the run ended. kicks: whether a heat bath kicks discs.
         """
         self._complete, self._kicks = complete, kicks
-        width, height = box
+        self.in_steps: Callable[[], bool] = lambda: False
+        """Whether discs move in steps of time; asked only where one is beyond the box."""
+        self._box = box
         self._ranges: dict[str, Range] = {
             **dict.fromkeys(ORDERED, (0, LARGEST)),
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
             "kind": (0, max(kinds(kicks))),
-            "position": (0, width if width == height else box),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
@@ -161,15 +162,29 @@ class Rules:
         unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
         low, high = self._ranges.get(name, (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST))
         in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())
-        if isinstance(high, tuple):
-            for axis, most in enumerate(high):
-                _check_range(data[..., axis], low, most, start)
-        elif not (in_order and low <= data[0] and data[-1] <= high):  # where the others lie between
+        if name == "position":
+            self._check_places(path, data, start)
+            return
+        if not (in_order and low <= data[0] and data[-1] <= high):  # where the others lie between
             _check_range(data, low, high, start)
         if name in ORDERED:
             self._check_order(path, data, start, in_order)
         if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:
             raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0, or from {LEAST:g} on)")
+
+    def _check_places(self, path: str, data: np.ndarray, start: int) -> None:
+        """Positions: in the box at the start, and later too unless steps of time carry discs beyond it."""
+        width, height = self._box
+        try:
+            if width == height:
+                _check_range(data, 0, width, start)
+            else:
+                for axis, most in enumerate(self._box):
+                    _check_range(data[..., axis], 0, most, start)
+        except ValueError:
+            if path.startswith("discs/") or not self.in_steps():
+                raise
+            _check_range(data, -MOST, MOST, start)
 
     def _check_order(self, path: str, data: np.ndarray, start: int, in_order: bool) -> None:
         """Rows of a chunk, unless they are known to be in order, and against the chunks that were read before.

@@ -61,7 +61,8 @@ def test_its_files_hold_all_numbers(small):
 def test_the_orbit_of_three_discs(tmp_path):
     scene = ROOT / "configs" / "three-discs.toml"
     done = called("accuracy", scene, "--json", "-o", tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
+    written = "".join(f"{tmp_path / name}: written\n" for name in ("orbit.csv", "orbit.json", "orbit.png"))
+    assert (done.returncode, done.stderr) == (0, written)
     result = json.loads(done.stdout)
     assert result["placements"] >= 12
     medians = [found["median"] for found in result["survivals"]]

@@ -72,7 +72,7 @@ def pages(tmp_path_factory):
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(registry, "NAMES", registry.NAMES if name in FULL else QUICK)
                 made = idealgas("report", log, "-o", page)
-            assert (made.exit_code, made.output) == (0, f"{page}\n"), made.output
+            assert (made.exit_code, made.output) == (0, f"{page}: written\n"), made.output
         return log, page
 
     return make

@@ -10,6 +10,8 @@ from log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, w
 import idealgas.log.reader as log_reader
 from idealgas.events import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
 
 STOP = 2 * BLOCK + 300
 
@@ -193,3 +195,15 @@ def test_a_newer_format(tmp_path):
         file.attrs["format_version"] = 9
     with pytest.raises(LogError, match="of format 9; this version of idealgas reads up to 2"):
         open_log(path)
+
+
+def test_steps_of_time_may_carry_discs_beyond_a_side(tmp_path):
+    text = """
+    box.size = [5, 4]
+    species = [{name = "gas", count = 10, radius = 0.1, temperature = 1.0}]
+    run = {method = "time_driven", dt = 0.05, until = 20.0}
+    """
+    simulate(parse_scene(text), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        position = np.concatenate([rows.position for rows in log.chunks()])
+        assert position.min() < 0 or (position > log.box).any()
