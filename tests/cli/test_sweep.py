@@ -200,7 +200,7 @@ def workers_of(running: subprocess.Popen) -> list[psutil.Process]:
     return [child for child in children if any("spawn_main" in word for word in child.cmdline())]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_killed_worker_loses_nothing(plan, tmp_path):
     plan.write_text(LONGER)
     running = start(plan, tmp_path / "out")
@@ -216,7 +216,9 @@ def test_a_killed_worker_loses_nothing(plan, tmp_path):
     assert results(tmp_path / "out") == results(tmp_path / "undisturbed")
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=lambda how: how.name)
+@pytest.mark.parametrize(
+    "how", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.long)], ids=lambda how: how.name
+)
 @pytest.mark.slow
 def test_a_killed_sweep_goes_on_where_it_stopped(plan, tmp_path, how):
     plan.write_text(LONGER)

@@ -15,7 +15,7 @@ LEAST_KEPT = 0.9
 """Share of a steady log that at least half of all logs keep."""
 
 
-QUICK = {"closed box", "two chambers", "equal speeds"}
+QUICK = {"closed box", "two chambers"}
 """Gases that take less than half a minute; the others take up to two minutes each, and are run by hand."""
 
 

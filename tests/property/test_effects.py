@@ -42,7 +42,7 @@ def test_same_log_as_the_oracle(names):
 @pytest.mark.parametrize(
     "names",
     [
-        pytest.param(ALL, id="all but periodic sides"),
+        pytest.param(ALL, id="all but periodic sides", marks=pytest.mark.long),
         pytest.param(ALL_PERIODIC, id="all but the piston", marks=pytest.mark.long),
     ],
 )

@@ -135,7 +135,7 @@ def test_a_disc_that_slides_along_a_wall_never_meets_it():
     assert rows.time[rows.kind == Kind.WALL].tolist() == [13.5 + 15 * k for k in range(66)]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_million_bounces():
     """Energy m(v²/2 + gy) to 1e-10; the disc never sinks, but for the rounding of each contact by itself."""
     gas = gas_of((64, 64), [(7.3, 11.7)], [(0.9, 0.4)], 0.5)

@@ -181,7 +181,7 @@ PARTED = (
 """A rough gas under gravity on both sides of a wall without ends that discs could touch."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_same_mechanical_pressure_without_events(tmp_path):
     paths = tmp_path / "events.h5", tmp_path / "samples.h5"
     for path, events in zip(paths, ("true", "false"), strict=True):
