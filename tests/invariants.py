@@ -151,13 +151,11 @@ class InvariantChecker:
         duration = time - self.now
         apart = self.wrapped(place[self.first] - place[self.second])
         closing = velocity[self.first] - velocity[self.second]
-        boundary_crossings = np.where(
-            self.periodic, np.ceil(np.abs(closing).max(axis=0, initial=0) * duration / self.size) + 1, 0
-        )
-        boundary_crossings = np.minimum(boundary_crossings, 4).astype(int)
+        across = np.ceil(np.abs(closing).max(axis=0, initial=0) * duration / self.size) + 1
+        crossed = np.where(self.periodic, np.minimum(across, 4), 0).astype(int)
         squared = (closing**2).sum(axis=1)
-        for x in range(-boundary_crossings[0], boundary_crossings[0] + 1):
-            for y in range(-boundary_crossings[1], boundary_crossings[1] + 1):
+        for x in range(-crossed[0], crossed[0] + 1):
+            for y in range(-crossed[1], crossed[1] + 1):
                 shifted = apart + np.array([x, y]) * self.size
                 nearest = np.divide(-(shifted * closing).sum(axis=1), squared, out=0 * squared, where=squared > 0)
                 path = shifted + closing * np.clip(nearest, 0, duration)[:, None]

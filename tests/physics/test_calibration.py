@@ -15,8 +15,8 @@ LEAST_KEPT = 0.9
 """Share of a steady log that at least half of all logs keep."""
 
 
-QUICK = {"closed box", "two chambers"}
-"""Gases that take less than half a minute; the others take up to two minutes each, and are run by hand."""
+QUICK = {"closed box"}
+"""A gas that takes less than a minute; the others take up to two minutes each, and are run by hand."""
 
 
 @pytest.mark.parametrize(

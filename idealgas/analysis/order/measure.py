@@ -155,26 +155,28 @@ class _Distances:
 
     def __init__(self, log: Log) -> None:
         number = len(log.discs)
-        self._box, self._periodic = np.array(log.box), np.array(log.periodic)
-        reach, spacing = min(log.box) / 2, math.sqrt(log.discs.area / number)
-        self._edges = np.linspace(0.0, reach, max(int(BINS_A_SPACING * reach / spacing), 1) + 1)
+        self._box, self._periodic = log.box, log.periodic
+        self._reach, spacing = min(log.box) / 2, math.sqrt(log.discs.area / number)
+        self._bins = max(int(BINS_A_SPACING * self._reach / spacing), 1)
         self._chosen = np.arange(0, number, -(-(number**2) // MOST_PAIRS))
         self._sums: list[np.ndarray] = []
 
     def add(self, position: np.ndarray, local: np.ndarray) -> None:
         """Add the pairs of an instant with positions (N, 2) and the order ψ₆ (N,) of each disc."""
-        apart = position[self._chosen, None] - position
-        apart -= np.where(self._periodic, self._box * np.round(apart / self._box), 0.0)
-        bins = np.digitize(np.hypot(apart[..., 0], apart[..., 1]), self._edges) - 1
-        bins[np.arange(len(self._chosen)), self._chosen] = len(self._edges)  # a disc is no pair with itself
-        products = (local[self._chosen, None].conj() * local).real
-        sums = (np.bincount(bins.ravel(), weights, len(self._edges) + 1) for weights in (products.ravel(), None))
-        self._sums.append(np.array([each[: len(self._edges) - 1] for each in sums]))
+        squared = np.zeros((len(self._chosen), len(position)))
+        for place, size, periodic in zip(position.T, self._box, self._periodic, strict=True):
+            apart = place[self._chosen, None] - place
+            squared += (apart - size * np.round(apart / size) if periodic else apart) ** 2
+        bins = np.minimum(np.sqrt(squared) * (self._bins / self._reach), self._bins).astype(np.int64)
+        bins[np.arange(len(self._chosen)), self._chosen] = self._bins  # a disc is no pair with itself
+        products = sum(part[self._chosen, None] * part for part in (local.real, local.imag))
+        sums = (np.bincount(bins.ravel(), weights, self._bins + 1) for weights in (products.ravel(), None))
+        self._sums.append(np.array([each[: self._bins] for each in sums]))
 
     def correlation(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Middle of each bin with pairs in it, mean of the product there, and its standard error."""
         product, pairs = np.moveaxis(np.array(self._sums), 1, 0)
-        middle = (self._edges[1:] + self._edges[:-1]) / 2
+        middle = (np.arange(self._bins) + 0.5) * (self._reach / self._bins)
         some = pairs.sum(axis=0) > 0
         value = product.sum(axis=0)[some] / pairs.sum(axis=0)[some]
         influence = (product[:, some] - value * pairs[:, some]) / pairs[:, some].mean(axis=0)

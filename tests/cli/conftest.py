@@ -1,0 +1,69 @@
+"""Report pages, and the browser that opens them."""
+
+import pytest
+from report_pages import FULL, QUICK, SCENES
+from selenium import webdriver
+from support import called, program
+
+from idealgas.analysis import registry
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+
+@pytest.fixture(scope="session")
+def pages(tmp_path_factory):
+    """make(name): paths of the log and the page of one of the SCENES; only FULL ones have all the sections."""
+    folder = tmp_path_factory.mktemp("report")
+
+    def make(name):
+        log, page = folder / f"{name}.h5", folder / f"{name}.html"
+        if not log.exists():
+            simulate(parse_scene(SCENES[name]), log)
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(registry, "NAMES", registry.NAMES if name in FULL else QUICK)
+                made = called("report", log, "-o", page)
+            assert (made.returncode, made.stdout, made.stderr) == (0, f"{page}: written\n", "")
+        return log, page
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def browser():
+    programs = [program("chromium"), program("chromedriver")]
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1200,1000"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(programs[1]))
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture
+def opened(browser, pages):
+    """open(name): the browser with the page of a scene; nothing may be complained about until the end of the test."""
+
+    def open_page(name):
+        browser.get(pages(name)[1].as_uri())
+        return browser
+
+    yield open_page
+    assert browser.get_log("browser") == []
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
+
+
+@pytest.fixture
+def sized(opened, browser):
+    """sized(name, width, scheme): the page of a scene on a screen of this width, light or dark."""
+
+    def open_sized(name, width, scheme="light"):
+        metrics = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+        return opened(name)
+
+    yield open_sized
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

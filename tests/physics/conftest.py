@@ -1,0 +1,25 @@
+"""Runs of shipped scenes."""
+
+import pytest
+from support import ROOT
+
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import load_scene
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Run a shipped scene with overrides; its log, open until the test ends or the next run."""
+    logs = []
+
+    def make(name, *overrides):
+        for log in logs:
+            log.close()
+        simulate(load_scene(ROOT / "configs" / f"{name}.toml", overrides), tmp_path / "run.h5", force=True)
+        logs.append(open_log(tmp_path / "run.h5"))
+        return logs[-1]
+
+    yield make
+    for log in logs:
+        log.close()
