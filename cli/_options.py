@@ -11,6 +11,27 @@ from ._terminal import be_quiet
 PICTURES = (".png", ".pdf", ".svg")
 
 
+class Count(click.ParamType[int]):
+    """An integer, which may be written as 1e6."""
+
+    name = "integer"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """As click asks for it."""
+        text = str(value)
+        try:
+            return int(text)
+        except ValueError:
+            pass
+        try:
+            number = float(text)
+            if number.is_integer():
+                return int(number)
+        except ValueError:
+            pass
+        self.fail(f"{text!r} is not a valid integer.", param, ctx)
+
+
 def scene_argument(command: Callable) -> Callable:
     """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, for `load_scene`; - is stdin."""
     overrides = click.option(

@@ -1,5 +1,7 @@
 """Command `idealgas export`: files for other programs from a log."""
 
+import sys
+
 import click
 
 from ._analysis import log_argument, open_log
@@ -18,7 +20,12 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
     metavar="N|every=DT",
     help="Write all discs at N times from start to end, or every DT in simulated time.",
 )
-@click.option("-o", "--output", metavar="OUT", help="The file to write.  [default: RUN with the format's ending]")
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT",
+    help="The file to write; - for standard output (csv, extxyz).  [default: RUN with the format's ending]",
+)
 @force_option
 @quiet_option
 def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:
@@ -35,6 +42,7 @@ def export(path: str, kind: str, events: bool, frames: str | None, output: str |
     from idealgas.log.export.export import export as write
 
     with open_log(path) as log:
+        times = None if frames is None else frame_times(log, frames).tolist()
         target = output or str(Path(path).with_suffix(FORMATS[kind].ending))
-        number = write(log, kind, target, None if frames is None else frame_times(log, frames).tolist(), force)
-    echo(f"{target}: {number:,} {'event rows' if events else 'frames'}")
+        number = write(log, kind, sys.stdout.buffer if target == "-" else target, times, force)
+    echo(f"{target}: {number:,} {'event rows' if events else 'frames'}", err=target == "-")

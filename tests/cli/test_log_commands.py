@@ -57,7 +57,7 @@ def dead(tmp_path_factory):
 
 
 def test_resume_to_a_later_end(copy):
-    result = idealgas("resume", copy, "--events", 9000)
+    result = idealgas("resume", copy, "--events", "9e3")
     assert (result.returncode, result.stderr) == (0, "")
     assert "9,000" in result.stdout
     with open_log(copy) as log:
@@ -137,9 +137,46 @@ def test_export(copy):
     assert copy.with_suffix(".extxyz").read_text().startswith("1000\nLattice=")
 
 
+@pytest.mark.parametrize("arguments", [("csv", "--events"), ("csv", "--frames", 3), ("extxyz", "--frames", 3)])
+@pytest.mark.slow
+def test_export_to_a_pipe(copy, arguments):
+    """The same as in a file, and not a word more."""
+    piped = idealgas("export", copy, "--format", *arguments, "-o", "-")
+    filed = idealgas("export", copy, "--format", *arguments, "-o", copy.with_name("file." + arguments[0]))
+    assert (piped.returncode, filed.returncode) == (0, 0)
+    assert piped.stdout == copy.with_name("file." + arguments[0]).read_text()
+    assert piped.stderr.startswith("-: ")
+    assert not (copy.parent / "-").exists()
+
+
+def test_export_to_a_reader_who_goes(copy):
+    ended = subprocess.run(
+        ["bash", "-c", '"$0" export "$1" --format csv --events -o - | head -1; echo ${PIPESTATUS[0]}', IDEALGAS, copy],
+        capture_output=True,
+        text=True,
+    )
+    header, code = ended.stdout.splitlines()
+    assert header.startswith('"time"')
+    assert (code, ended.stderr) == ("141", "")
+
+
+def test_export_to_a_full_device(copy):
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run(
+            [IDEALGAS, "export", copy, "--format", "csv", "--events", "-o", "-"], stdout=full, stderr=subprocess.PIPE
+        )
+    assert ended.returncode == 1
+    assert ended.stderr == b"<stdout>: cannot be written: No space left on device\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (
+            ("--format", "gsd", "--frames", "3", "-o", "-"),
+            "gsd needs a file of its own (allowed for a pipe csv, extxyz)",
+        ),
+        (("--format", "parquet", "--events", "-o", "-"), "parquet needs a file of its own"),
         (("--format", "extxyz", "--frames", "no"), "no choice of frames"),
         (("--format", "gsd", "--events"), "has no room for events"),
         (("--format", "csv"), "one of --events and --frames"),

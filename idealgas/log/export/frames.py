@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
@@ -69,7 +69,7 @@ PROPERTIES = "id:I:1:type:S:1:species:S:1:tags:I:1:pos:R:3:velo:R:3:momenta:R:3:
 """Columns of extended XYZ. OVITO reads `type`, `velo` and `mass`, ASE `species`, `tags`, `momenta` and `masses`."""
 
 
-def write_extxyz(log: Log, times: Sequence[float], path: Path) -> int:
+def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
     """Extended XYZ: 17 digits, so every float64 comes back. The box's depth is the largest diameter.
 
     `species` is the symbol of a chemical element where the species has the name of one, and else X, of no element.
@@ -80,17 +80,15 @@ def write_extxyz(log: Log, times: Sequence[float], path: Path) -> int:
     names = ["_".join(plain(name).split()) or "_" for name in discs.species_names]
     kinds = [f"{name} {name if name in ELEMENTS else 'X'} {k}" for k, name in enumerate(names)]
     fixed = list(zip((kinds[k] for k in discs.species), discs.radius.tolist(), discs.mass.tolist(), strict=True))
-    with path.open("w", encoding="utf-8") as file:
-        for state in log.frames(times):
-            file.write(
-                f'{len(discs)}\nLattice="{lattice}" Properties={PROPERTIES} Time={float(state.time)!r} pbc="{pbc}"\n'
-            )
-            momenta = (discs.mass[:, np.newaxis] * state.velocity).tolist()
-            moving = zip(state.position.tolist(), state.velocity.tolist(), momenta, strict=True)
-            for i, ((kind, radius, mass), ((x, y), (vx, vy), (px, py))) in enumerate(zip(fixed, moving, strict=True)):
-                file.write(
-                    f"{i} {kind} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {px!r} {py!r} 0.0 {radius!r} {mass!r} {mass!r}\n"
-                )
+    for state in log.frames(times):
+        time = f'Lattice="{lattice}" Properties={PROPERTIES} Time={float(state.time)!r} pbc="{pbc}"'
+        momenta = (discs.mass[:, np.newaxis] * state.velocity).tolist()
+        moving = zip(fixed, state.position.tolist(), state.velocity.tolist(), momenta, strict=True)
+        rows = [
+            f"{i} {kind} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {px!r} {py!r} 0.0 {radius!r} {mass!r} {mass!r}"
+            for i, ((kind, radius, mass), (x, y), (vx, vy), (px, py)) in enumerate(moving)
+        ]
+        file.write("\n".join((str(len(discs)), time, *rows, "")).encode())
     return len(times)
 
 

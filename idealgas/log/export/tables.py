@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -11,14 +11,14 @@ from idealgas.log.flat import KIND_NAMES, Columns, flat_events, flat_states
 from idealgas.log.reader import Log
 
 
-def write_csv_events(log: Log, path: Path) -> int:
+def write_csv_events(log: Log, file: BinaryIO) -> int:
     """One row for each event row."""
-    return _write(path, _event_columns(log), _csv_writer)
+    return _write(file, _event_columns(log), _csv_writer)
 
 
-def write_csv_frames(log: Log, times: Sequence[float], path: Path) -> int:
+def write_csv_frames(log: Log, times: Sequence[float], file: BinaryIO) -> int:
     """One row for each disc and time."""
-    _write(path, _frame_columns(log, times), _csv_writer)
+    _write(file, _frame_columns(log, times), _csv_writer)
     return len(times)
 
 
@@ -33,10 +33,10 @@ def write_parquet_frames(log: Log, times: Sequence[float], path: Path) -> int:
     return len(times)
 
 
-def _csv_writer(path: Path, schema: Any) -> AbstractContextManager[Any]:
+def _csv_writer(file: BinaryIO, schema: Any) -> AbstractContextManager[Any]:
     from pyarrow import csv
 
-    return csv.CSVWriter(str(path), schema)
+    return csv.CSVWriter(file, schema)
 
 
 def _parquet_writer(path: Path, schema: Any) -> AbstractContextManager[Any]:
@@ -45,7 +45,7 @@ def _parquet_writer(path: Path, schema: Any) -> AbstractContextManager[Any]:
     return parquet.ParquetWriter(str(path), schema)
 
 
-def _write(path: Path, blocks: Iterable[Columns], make_writer: Callable[[Path, Any], Any]) -> int:
+def _write(target: Path | BinaryIO, blocks: Iterable[Columns], make_writer: Callable[[Any, Any], Any]) -> int:
     """The first of the blocks, which may be empty, names the columns."""
     import pyarrow
 
@@ -53,7 +53,7 @@ def _write(path: Path, blocks: Iterable[Columns], make_writer: Callable[[Path, A
     try:
         for columns in blocks:
             table = pyarrow.table(columns)
-            writer = writer or make_writer(path, table.schema)
+            writer = writer or make_writer(target, table.schema)
             if len(table):
                 writer.write_table(table)
             rows += len(table)
