@@ -28,19 +28,22 @@ class SpeciesProfile:
     """Profiles of one species, one value for each strip.
 
     species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, energy. spin: mean I ω² per
-    disc, energy; None for discs without spin.
+    disc, energy; None for discs without spin. gradient: slope of the straight line through the temperatures, each with
+    the weight of its discs, energy/length; None where fewer than two strips have a temperature.
     """
 
     species: str
     density: tuple[Estimate, ...]
     temperature: tuple[Estimate, ...]
     spin: tuple[Estimate, ...] | None
+    gradient: Estimate | None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
         columns = {"density": self.density, "temperature": self.temperature, "spin": self.spin}
         values = {name: [e.as_dict() for e in column] for name, column in columns.items() if column is not None}
-        return {"species": self.species, **values}
+        gradient = None if self.gradient is None else self.gradient.as_dict()
+        return {"species": self.species, **values, "gradient": gradient}
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,7 @@ def profile(
     names = composition(log.discs).name
     strip = float(edges[1] - edges[0]) * log.box[1 - axis]
     spinning = log.inertia is not None
-    species = tuple(_of_species(name, sums[:, s], strip, expected, s, spinning) for s, name in enumerate(names))
+    species = tuple(_of_species(name, sums[:, s], edges, strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
     premises = (*_unknown_strips(species), *_not_dilute(log, species, expected))
     return Profile(window, axis, edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
@@ -155,7 +158,7 @@ def _collect(
 
 
 def _of_species(
-    name: str, sums: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
+    name: str, sums: np.ndarray, edges: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
 ) -> SpeciesProfile:
     """Profiles of one species from its sums (F, K, 3); strip: area of a strip, length²."""
     strips = range(sums.shape[1])
@@ -171,7 +174,25 @@ def _of_species(
         tuple(mean(sums[:, k, 0] / strip, None if n is None else float(n[s, k])) for k in strips),
         tuple(per_disc(k, 1) for k in strips),
         tuple(per_disc(k, 2) for k in strips) if spinning else None,
+        _gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, None if t is None else t[s]),
     )
+
+
+def _gradient(
+    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: np.ndarray | None
+) -> Estimate | None:
+    """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T."""
+    known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
+    if np.count_nonzero(known) < 2:
+        return None
+    counts, energies, place = counts[:, known], energies[:, known], middles[known]
+    weight = counts.mean(axis=0)
+    away = place - np.average(place, weights=weight)
+    lever = weight * away / (weight @ away**2)
+    temperature = energies.mean(axis=0) / weight
+    influence = (energies - temperature * counts) / weight
+    theory = None if expected is None else float(lever @ expected[known])
+    return mean(lever @ temperature + influence @ lever, theory)
 
 
 def _heat(log: Log, window: Window) -> dict[str, Estimate]:

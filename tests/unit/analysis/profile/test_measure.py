@@ -49,6 +49,21 @@ def test_strips_are_counted_by_hand(make):
     assert json.dumps(found.as_dict(), allow_nan=False)
 
 
+def test_the_gradient_is_the_slope_of_a_line_through_the_temperatures(make):
+    log = make("box.bottom={ thermal = 4 }", "box.top={ thermal = 1 }")
+    found = profile(log, "y", bins=8, start=10.0)
+    for entry in found.species:
+        values = [[e.value for e in column] for column in (entry.temperature, entry.density)]
+        weights = np.sqrt(values[1])  # polyfit squares them
+        assert entry.gradient.value == pytest.approx(np.polyfit(found.middles, values[0], 1, w=weights)[0])
+        assert entry.gradient.theory < 0
+        assert entry.gradient.value < -3 * entry.gradient.standard_error
+    for entry in profile(make(), "y", bins=8, start=10.0).species:
+        assert entry.gradient.theory == pytest.approx(0.0, abs=1e-15)
+        assert abs(entry.gradient.deviation) < 4
+    assert profile(make(), "y", bins=1).species[0].gradient is None
+
+
 def test_all_discs_are_in_a_uniform_gas(make):
     log = make()
     expected = expected_profile(log, 0, np.linspace(0.1, 11.9, 8), 0.0)
