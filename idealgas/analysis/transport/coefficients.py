@@ -1,4 +1,4 @@
-"""Viscosities, heat conductivity and pressure tensor of a periodic gas, from the currents of momentum and energy."""
+"""Viscosities, heat conductivity, mutual diffusion and pressure tensor of a periodic gas, from its currents."""
 
 import math
 from collections.abc import Callable
@@ -13,7 +13,18 @@ from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.window import Window
 from idealgas.analysis.theory.values import Theory
-from idealgas.analysis.transport.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
+from idealgas.analysis.transport.currents import (
+    APART_X,
+    APART_Y,
+    CARRIED,
+    HEAT_X,
+    HEAT_Y,
+    PASSED_ON,
+    XX,
+    XY,
+    YY,
+    Currents,
+)
 from idealgas.analysis.transport.enskog import Enskog
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.gas.state import Gas
@@ -27,7 +38,7 @@ DIRECTIONS = 3.0
 """Part by which η by its two routes differs for N discs in a square periodic box, times N: 50 discs at φ = 0.2 have
 (5.6 ± 1.1) % less by xy."""
 
-SYMBOLS = {"viscosity": "η", "heat_conductivity": "λ", "bulk_viscosity": "ζ"}
+SYMBOLS = {"viscosity": "η", "heat_conductivity": "λ", "bulk_viscosity": "ζ", "mutual_diffusion": "D₁₂"}
 """Symbols of the coefficients, by their names."""
 
 
@@ -65,7 +76,8 @@ class Collective:
     """What the currents of a whole gas tell.
 
     plateau: first and last time over which coefficients are averaged. coefficients: by name; no heat conductivity for
-    several species, where energy also comes along with discs that diffuse, and from samples without sums of the heat.
+    several species, where energy also comes along with discs that diffuse, and from samples without sums of the heat;
+    mutual diffusion of two species, from events.
     pressure: xx, yy and xy component of the pressure tensor, energy/length².
     """
 
@@ -85,7 +97,7 @@ class Collective:
 def flow_in_events(
     log: Log, window: Window, longest: float, progress: Callable[[int, int], None] | None = None
 ) -> tuple[np.ndarray, float]:
-    """Integrals (B, 2, 5) of the currents over blocks of a window, from the events of a log, and the width of a block.
+    """Integrals (B, 2, 7) of the currents over blocks of a window, from the events of a log, and the width of a block.
 
     longest: lag up to which currents are followed, time. progress(done, in all) is called as events are read.
     """
@@ -99,17 +111,17 @@ def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarra
     """The same from the sums in the samples of a log, by blocks no shorter than the time between two samples.
 
     With snapshots blocks begin and end with them, so that the integrals are exact; without, sums grow evenly from one
-    sample to the next. Without sums of the heat its current is not a number.
+    sample to the next. Without sums of the heat its current is not a number, nor is that of a species.
     """
     observed, still = log.observables, drift(log)
     edges = _sample_edges(log, window, longest)
-    flow = np.full((len(edges) - 1, 2, 5), np.nan)
+    flow = np.full((len(edges) - 1, 2, 7), np.nan)
     for part, (momentum, heat) in enumerate(
         (("kinetic_flow", "kinetic_heat_flow"), ("collision_flow", "collision_heat_flow"))
     ):
         flow[:, part, : YY + 1] = in_blocks(*observed[momentum], edges)[:, : YY + 1]
         if heat in observed:
-            flow[:, part, HEAT_X:] = in_blocks(*observed[heat], edges)
+            flow[:, part, HEAT_X : HEAT_Y + 1] = in_blocks(*observed[heat], edges)
     whole = log.discs.mass.sum() * still[[0, 0, 1]] * still[[0, 1, 1]]  # samples have the motion of the gas as a whole
     flow[:, CARRIED, : YY + 1] -= np.diff(edges)[:, None] * whole
     return flow, float(edges[1] - edges[0])
@@ -135,27 +147,36 @@ def collective(
     log: Log,
     equilibrium: Ensemble,
     longest: float,
-    theory: tuple[Enskog | None, Theory | None],
+    theory: tuple[Enskog | None, Theory | None, Theory | None],
 ) -> Collective:
-    """Coefficients of the gas of a log in a periodic box, from integrals (B, 2, 5) of its currents over blocks.
+    """Coefficients of the gas of a log in a periodic box, from integrals (B, 2, 7) of its currents over blocks.
 
-    width: of a block, time. longest: lag up to which currents are followed, time. theory: Enskog's coefficients, and
-    Z = PA/NT of this gas.
+    width: of a block, time. longest: lag up to which currents are followed, time. theory: Enskog's coefficients,
+    Z = PA/NT of this gas, and the diffusion of two species in each other.
     """
-    lags = lags_of(width, longest, PLATEAU_FROM)
-    single = len(log.discs.species_names) == 1
-    conducts = single and not np.isnan(flow[0, CARRIED, HEAT_X])
-    return Collective(
-        lags.plateau,
-        _coefficients(flow, lags, log.discs, equilibrium.temperature, conducts, theory[0]),
-        _pressure(flow / width, log, equilibrium, theory[1]),
-    )
+    lags, gas = lags_of(width, longest, PLATEAU_FROM), log.discs
+    conducts = len(gas.species_names) == 1 and not np.isnan(flow[0, CARRIED, HEAT_X])
+    found = _coefficients(flow, lags, gas, equilibrium.temperature, conducts, theory[0])
+    if len(gas.species_names) == 2 and not np.isnan(flow[0, CARRIED, APART_X]):
+        found["mutual_diffusion"] = _mutual_diffusion(flow[:, CARRIED], lags, gas, theory[2])
+    return Collective(lags.plateau, found, _pressure(flow / width, log, equilibrium, theory[1]))
+
+
+def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | None) -> Coefficient:
+    """Maxwell's and Stefan's coefficient of two species from integrals (B, 7) of currents.
+
+    N₁N₂/N times half the slope of the spread of one species relative to the other, along a direction: Zhou & Miller,
+    J. Phys. Chem. 100, 5516 (1996). Fick's coefficient is this one times the thermodynamic factor of the mixture.
+    """
+    first, second = np.bincount(gas.species, minlength=2)
+    apart = {"x": flow[:, APART_X], "y": flow[:, APART_Y]}
+    return _coefficient(apart, lags, first * second / len(gas), "length²/time", len(gas), theory)
 
 
 def _coefficients(
     flow: np.ndarray, lags: Lags, gas: Gas, temperature: float, conducts: bool, enskog: Enskog | None
 ) -> dict[str, Coefficient]:
-    """Coefficients by name from integrals (B, 2, 5) of the currents; conducts: whether heat goes by conduction only."""
+    """Coefficients by name from integrals (B, 2, 7) of the currents; conducts: whether heat goes by conduction only."""
     whole = flow.sum(axis=1).T
     shear = {"xy": whole[XY], "(xx - yy)/2": (whole[XX] - whole[YY]) / 2}
     heat, trace = {"x": whole[HEAT_X], "y": whole[HEAT_Y]}, {"(xx + yy)/2": (whole[XX] + whole[YY]) / 2}
@@ -191,7 +212,7 @@ def _difference(series: np.ndarray, number: int) -> Estimate:
 
 
 def _pressure(current: np.ndarray, log: Log, equilibrium: Ensemble, z: Theory | None) -> dict[str, Estimate]:
-    """Pressure tensor from currents (B, 2, 5): what discs carry counts as the temperature 2E/D does.
+    """Pressure tensor from currents (B, 2, 7): what discs carry counts as the temperature 2E/D does.
 
     Along x and along y the theory is Z = PA/NT of a square box.
     """

@@ -45,6 +45,22 @@ def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: E
     return found
 
 
+def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: ExpectedRates) -> Theory | None:
+    """Maxwell's and Stefan's diffusion coefficient of two species in each other, length²/time, in Enskog's theory.
+
+    In the first approximation velocities of the species relative to each other decay by collisions of unlike discs
+    alone: D₁₂ = x₂ T/(2 μ Γ₁₂), with the share x₂, the reduced mass μ, and the rate Γ₁₂ at which a disc of the first
+    species meets those of the second. For discs that differ by name only it is that of self-diffusion. None for other
+    numbers of species, or where theory has no rates.
+    """
+    if len(discs.name) != 2 or not rates.rate[0, 1] > 0:
+        return None
+    reduced, share = discs.mass[0] * discs.mass[1] / discs.mass.sum(), discs.number[1] / discs.number.sum()
+    value = float(share * equilibrium.temperature / (2 * reduced * rates.rate[0, 1]))
+    relative = enskog_error("diffusion", log.discs.packing_fraction) + float(rates.relative_error[0, 1])
+    return Theory(value, relative * value, "Enskog")
+
+
 def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
     """Enskog's coefficients of the gas of a log; None for several species and above φ = 0.62.
 

@@ -30,7 +30,7 @@ from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
-from idealgas.analysis.transport.enskog import Enskog, enskog, self_diffusion
+from idealgas.analysis.transport.enskog import Enskog, enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import NotApplicableError, UserError
@@ -138,7 +138,8 @@ def transport(
 
     Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
     displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity, heat
-    conductivity and pressure tensor in a periodic box; pair distribution functions. Without events the sums of
+    conductivity, diffusion of two species in each other and pressure tensor in a periodic box; pair distribution
+    functions. Without events the sums of
     `log.pressure = true` and `log.heat_flow = true` give the collision rates and what the currents of a periodic gas
     tell.
 
@@ -165,8 +166,8 @@ def transport(
     diffusion = _diffusion(log, discs, window, longest, (enskogs, alone, equilibrium.temperature))
     whole = None
     if all(log.periodic):
-        currents = flow_in_events(log, window, longest, progress)
-        whole = collective(*currents, log, equilibrium, longest, (enskogs, box.pairs))
+        theories = enskogs, box.pairs, mutual_diffusion(log, discs, equilibrium, expected)
+        whole = collective(*flow_in_events(log, window, longest, progress), log, equilibrium, longest, theories)
     return Transport(
         window=window,
         packing_fraction=gas.packing_fraction,
@@ -192,7 +193,7 @@ def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: flo
     rates = collision_rates(discs, expected_rates(discs, gas.box, equilibrium, box), window, impacts)
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    currents, theories = flow_in_samples(log, window, longest), (enskog(log, discs, equilibrium), box.pairs)
+    currents, theories = flow_in_samples(log, window, longest), (enskog(log, discs, equilibrium), box.pairs, None)
     whole = collective(*currents, log, equilibrium, longest, theories)
     return Transport(
         window=window,

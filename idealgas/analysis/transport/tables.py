@@ -58,9 +58,12 @@ def _of_currents(found: Collective, free_times: float) -> list[Table]:
     plateau = (
         f"plateau: t = {first:.4g} to {last:.4g} ({free_times * first / last:.3g} to {free_times:.3g} mean free times)"
     )
-    rows = [row for name, one in found.coefficients.items() for row in _rows(SYMBOLS[name], one)]
+    rows = {name: _rows(SYMBOLS[name], one) for name, one in found.coefficients.items()}
+    mutual = rows.pop("mutual_diffusion", [])
+    currents = [row for each in rows.values() for row in each]
     return [
-        estimates("Viscosity η, heat conductivity λ and bulk viscosity ζ, theory Enskog's", rows, (plateau,)),
+        estimates("Viscosity η, heat conductivity λ and bulk viscosity ζ, theory Enskog's", currents, (plateau,)),
+        estimates("Diffusion of two species in each other (Maxwell and Stefan), theory Enskog's", mutual),
         estimates("Pressure tensor (energy/length²)", [(f"P {name}", one) for name, one in found.pressure.items()]),
     ]
 

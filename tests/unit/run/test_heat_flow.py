@@ -5,7 +5,7 @@ import pytest
 from log_compare import contents, differences
 
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.transport.currents import CARRIED, HEAT_X, PASSED_ON, Currents
+from idealgas.analysis.transport.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, Currents
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
@@ -41,7 +41,7 @@ def test_the_sums_are_those_of_the_events(whole):
         currents = Currents()
         stream(log, time, [currents])
         for name, part in SUMS.items():
-            found, expected = np.diff(log.observables[name][1], axis=0), currents.flow[:, part, HEAT_X:]
+            found, expected = np.diff(log.observables[name][1], axis=0), currents.flow[:, part, HEAT_X : HEAT_Y + 1]
             assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
 
 

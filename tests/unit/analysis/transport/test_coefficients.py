@@ -10,7 +10,7 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.transport.coefficients import flow_in_samples
-from idealgas.analysis.transport.currents import CARRIED, PASSED_ON, XX, YY, Currents
+from idealgas.analysis.transport.currents import APART_X, CARRIED, PASSED_ON, XX, YY, Currents
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.tables import WALLS, transport_tables
@@ -52,14 +52,17 @@ def edges(log, request):
 
 def obvious(log, edges):
     """Currents in blocks by plain loops over flights and collisions."""
-    flow = np.zeros((len(edges) - 1, 2, 5))
-    mass, box = log.discs.mass, np.array(log.box)
+    flow = np.zeros((len(edges) - 1, 2, 7))
+    mass, box, kinds = log.discs.mass, np.array(log.box), log.discs.species
+    two = len(log.discs.species_names) == 2
+    share = (1 / np.array([12, -3]))[kinds] if two else np.zeros(len(mass))
     frame = mass @ log.discs.velocity / mass.sum()
     velocity = log.state_at(edges[0]).velocity - frame
     since = np.full(len(mass), edges[0])
 
     def fly(i, until):
         carried = [*(mass[i] * velocity[i][[0, 0, 1]] * velocity[i][[0, 1, 1]]), *velocity[i] * _energy(i)]
+        carried += [*share[i] * velocity[i]]
         for k in range(len(edges) - 1):
             duration = min(until, edges[k + 1]) - max(since[i], edges[k])
             if duration > 0:
@@ -80,7 +83,7 @@ def obvious(log, edges):
             apart -= box * np.round(apart / box)
             (px, py), gain = mass[i] * (velocity[i] - before), _energy(i) - energy
             k = min(max(int(np.searchsorted(edges, time, "left")) - 1, 0), len(edges) - 2)
-            flow[k, PASSED_ON] += [px * apart[0], px * apart[1], py * apart[1], *gain * apart]
+            flow[k, PASSED_ON] += [px * apart[0], px * apart[1], py * apart[1], *gain * apart, 0, 0]
     for i in range(len(mass)):
         fly(i, edges[-1])
     return flow
@@ -94,6 +97,17 @@ def test_currents(log, edges):
     assert currents.flow[:, CARRIED, XX : YY + 1 : 2] == pytest.approx(flights, rel=1e-11, abs=1e-11)
     trace = currents.flow[:, PASSED_ON, XX] + currents.flow[:, PASSED_ON, YY]
     assert trace == pytest.approx(impacts.pair_virial, rel=1e-11, abs=1e-11)
+
+
+def test_one_species_moves_apart_from_the_other(log, edges):
+    """As the middles of their discs do."""
+    currents = Currents()
+    stream(log, edges, [currents])
+    states = [log.state_at(time) for time in edges[[0, -1]]]
+    first, last = (state.position + state.image * log.box for state in states)
+    middles = [(last - first)[log.discs.species == s].mean(axis=0) for s in range(len(log.discs.species_names))]
+    apart = middles[0] - middles[1] if len(middles) == 2 else np.zeros(2)
+    assert currents.flow[:, CARRIED, APART_X:].sum(axis=0) == pytest.approx(apart, rel=1e-9, abs=1e-9)
 
 
 def test_growth_is_half_the_slope_of_plain_averages():
@@ -139,13 +153,14 @@ def test_coefficients_of_a_log(log):
     found = transport(log)
     whole = found.collective
     single = len(log.discs.species_names) == 1
-    assert list(whole.coefficients) == ["viscosity", *["heat_conductivity"] * single, "bulk_viscosity"]
+    last = ["bulk_viscosity", *["mutual_diffusion"] * (not single)]
+    assert list(whole.coefficients) == ["viscosity", *["heat_conductivity"] * single, *last]
     assert whole.plateau[1] == pytest.approx(2 * whole.plateau[0])
-    for one in whole.coefficients.values():
+    for name, one in whole.coefficients.items():
         routes = [route.value for route in one.routes.values()]
         assert one.value.value == pytest.approx(np.mean(routes))
         assert one.value.value > 0
-        assert (one.value.theory is not None) == single
+        assert (one.value.theory is not None) == (single or name == "mutual_diffusion")
         assert (one.difference is None) == (len(routes) == 1)
         if one.difference is not None:
             assert one.difference.value == pytest.approx(routes[0] - routes[1])
@@ -168,6 +183,22 @@ def test_walls_have_no_coefficients_of_the_whole_gas(tmp_path):
     assert found.collective is None
     assert any(WALLS in table.notes for table in transport_tables(found))
     assert math.isfinite(found.diffusion[0].coefficient.value)
+
+
+def test_species_that_differ_by_name_only_diffuse_like_their_discs(tmp_path):
+    gas = 'name = "{}", count = {}, radius = 0.3, temperature = 1.0'
+    species = ", ".join("{" + gas.format(name, count) + "}" for name, count in (("white", 12), ("black", 30)))
+    sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
+    simulate(
+        parse_scene(f"box = {{size = [8, 9], {sides}}}\nspecies = [{species}]\nrun.events = 20_000"),
+        tmp_path / "log.h5",
+    )
+    with open_log(tmp_path / "log.h5") as log:
+        found = transport(log)
+    mutual = found.collective.coefficients["mutual_diffusion"].value
+    for one in found.diffusion:
+        assert mutual.theory == pytest.approx(one.coefficient.theory, rel=0.05)  # exactly so in an infinite gas
+    assert abs(mutual.deviation) < 4
 
 
 def test_a_longer_lag_is_a_later_plateau(tmp_path):
@@ -202,13 +233,13 @@ def test_the_same_coefficients_without_events(tmp_path):
                 edges = 1.5 + width * np.arange(len(flows[name]) + 1)
                 currents = Currents()
                 stream(log, edges, [currents])
-                assert flows[name] == pytest.approx(currents.flow, rel=1e-9, abs=1e-9)
+                assert flows[name][..., :APART_X] == pytest.approx(currents.flow[..., :APART_X], rel=1e-9, abs=1e-9)
             else:
                 assert (found.diffusion, found.pair_distributions, found.free_paths) == ((), (), ())
                 assert list(found.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
                 assert len(transport_tables(found)) == 4
                 assert json.dumps(found.as_dict(), allow_nan=False)
-    assert np.array_equal(flows["events"], flows["samples"])
+    assert np.array_equal(flows["events"], flows["samples"], equal_nan=True)
 
 
 @pytest.mark.slow
