@@ -40,8 +40,8 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     "--size", default="960x540", show_default=True, callback=_pixels, help="Width and height of a frame, pixels."
 )
 @click.option(
-    "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species"]),
-    help="Quantity shown by the colour of a disc.",
+    "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species", "order"]),
+    help="What the colour of a disc shows; order: the angle of ψ₆ of its neighbours.",
 )  # fmt: skip
 @click.option(
     "--background", default="light", show_default=True, type=click.Choice(["light", "dark"]), help="Background."
@@ -69,8 +69,7 @@ def animate(
     from idealgas.analysis.movie.film import animate as make
     from idealgas.analysis.movie.film import paint_frame
 
-    by_species, dark = colour == "species", background == "dark"
-    look: dict[str, Any] = {"size": size, "by_species": by_species, "dark": dark, "force": force}
+    look: dict[str, Any] = {"size": size, "colouring": colour, "dark": background == "dark", "force": force}
     if frame is not None:
         with open_log(path) as log:
             echo(f"{paint_frame(log, output, frame, **look)}: t = {frame:.6g}")

@@ -26,6 +26,7 @@ def folder(tmp_path_factory):
         "run": SCENE,
         "homogeneous": SCENE + 'run.method = "monte_carlo"\n',
         "eventless": SCENE + "log.events = false\n",
+        "piston": SCENE + 'piston = {side = "right", position = 15, mass = 20, pressure = 0.1}\n',
     }
     for name, text in logs.items():
         simulate(parse_scene(text), folder / f"{name}.h5")
@@ -36,7 +37,7 @@ def idealgas(*arguments):
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
-@pytest.mark.parametrize("colour", ["speed", "species"])
+@pytest.mark.parametrize("colour", ["speed", "species", "order"])
 def test_film(folder, colour, tmp_path):
     film = tmp_path / "film.gif"
     made = idealgas("animate", folder / "run.h5", "-o", film, "--to", 4, "--speed", 2, "--colour", colour, *SMALL)
@@ -78,6 +79,7 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
         ("run", ("-o", "film.avi"), "film.avi: unknown kind of film (allowed: .mp4, .gif)"),
         ("run", ("-o", "film"), "film: unknown kind of film (allowed: .mp4, .gif)"),
         ("run", ("-o", "no/film.gif"), "no/film.gif: no folder no"),
+        ("piston", ("--colour", "order"), "piston.h5: has a piston, and neighbours are told in a box whose sides stay"),
         ("run", ("--frame", 4), "film.gif: unknown kind of picture (allowed: .png)"),
         ("run", ("--frame", 31, "-o", "a.png"), "run.h5: no state at t = 31: it covers t = 0 to 30"),
         ("none", (), "none.h5: cannot be read: No such file or directory"),

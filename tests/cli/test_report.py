@@ -91,7 +91,7 @@ def test_nothing_is_cut_off_or_wider_than_its_column(sized, name, width):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [360, 1600])
+@pytest.mark.parametrize("width", [360, 800, 1600])
 def test_everyone_can_read_it(sized, width, scheme):
     """Nothing serious by the rules of axe-core, contrast of at least 4.5:1 among them."""
     browser = sized("piston", width, scheme)

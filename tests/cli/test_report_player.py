@@ -12,6 +12,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
+from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.movie.piston_track import piston_track
 from idealgas.log import open_log
 
@@ -168,3 +169,29 @@ def test_the_flight_of_a_disc(opened, pages):
     chosen = int(browser.find_element(By.ID, "chosen").get_attribute("value"))
     away = browser.execute_script("return Array.from(player.gas.x, (x, i) => Math.hypot(x - 10, player.gas.y[i] - 5))")
     assert away[chosen] == pytest.approx(min(away), abs=0.1)
+
+
+def test_colours_of_the_discs(opened, pages):
+    """Order as the discs have it at the instants that the page knows: none below a third, else one of 16 angles."""
+    browser = opened("two species")
+    colours, shown = Select(browser.find_element(By.ID, "colour")), set()
+    with open_log(pages("two species")[0]) as log:
+        state = log.state_at(log.end_time)
+        order = bond_order(state.position, log.box, log.periodic).value
+        seek(browser, log.end_time)
+    for name in ("speed", "species", "order"):
+        colours.select_by_value(name)
+        shown.add(picture(browser))
+        assert browser.find_element(By.ID, "discs").get_attribute("aria-label").endswith(f"coloured by {name}")
+    assert len(shown) == 3
+    shades = np.array(browser.execute_script("return Array.from(player.gas.orders())"))
+    assert np.array_equal(shades == 0, np.abs(order) < 1 / 3)
+    turn = (shades - 1) % 16 / 16 - np.angle(order) / (2 * np.pi)
+    assert np.abs(turn - np.round(turn))[shades > 0].max() <= 1 / 32 + 1e-9
+    assert np.array_equal(shades > 16, np.abs(order) >= 2 / 3)
+
+
+@pytest.mark.parametrize(("name", "offered"), [("plain", ["speed", "order"]), ("piston", ["speed"])])
+def test_colours_that_tell_nothing_are_not_offered(opened, name, offered):
+    options = opened(name).find_elements(By.CSS_SELECTOR, "#colour option")
+    assert [option.get_attribute("value") for option in options] == offered

@@ -15,7 +15,7 @@ from PIL import Image
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.window import span
 from idealgas.analysis.movie.gif import GifWriter
-from idealgas.analysis.movie.painter import CROSSING, Painter
+from idealgas.analysis.movie.painter import CROSSING, Colouring, Painter
 from idealgas.analysis.movie.piston_track import piston_track
 from idealgas.errors import OutputError, UserError
 from idealgas.files import check_output, written
@@ -61,7 +61,7 @@ def animate(
     fps: float = 25.0,
     speed: float | None = None,
     size: tuple[int, int] = (960, 540),
-    by_species: bool = False,
+    colouring: Colouring = "speed",
     dark: bool = False,
     force: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
@@ -76,19 +76,19 @@ def animate(
         fps: frames per second of film.
         speed: simulated time per second of film; None for a disc of typical speed to cross the box in CROSSING seconds.
         size: width and height of a frame in pixels, made even.
-        by_species: whether colours show the species instead of the speed of discs.
+        colouring: what the colours of discs show.
         dark: whether the background is dark.
         force: whether to replace an existing film.
         on_frame: called with the number of painted frames and the number of all frames.
 
     Raises:
-        UserError: if the log has no positions or no events, or the window is empty.
+        UserError: if the log has no positions or no events, or the window is empty, or for order beside a piston.
         OutputError: if the film cannot be written.
     """
     path = film_path(output)
     kind = path.suffix.lower()
     check_output(path, kind, force)
-    check_shown(log)
+    check_shown(log, colouring)
     first, latest = span(log, start, end)
     typical, thermal = speeds(log, first, latest)
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
@@ -103,7 +103,7 @@ def animate(
         )
     width, height = (pixels // 2 * 2 for pixels in size)
     piston = piston_track(log, first, last)
-    painter = Painter(log.scene, log.discs, piston, (width, height), thermal, by_species, dark)
+    painter = Painter(log.scene, log.discs, piston, (width, height), thermal, colouring, dark)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with written(path, kind, force) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
         for k, state in enumerate(log.frames(times)):
@@ -118,37 +118,39 @@ def paint_frame(
     time: float,
     *,
     size: tuple[int, int] = (960, 540),
-    by_species: bool = False,
+    colouring: Colouring = "speed",
     dark: bool = False,
     force: bool = False,
 ) -> Path:
     """Paint the state of a log at one time as a picture, a .png, and return its path; arguments as for `animate`.
 
     Raises:
-        UserError: for another ending, if the log has no positions or no events, or if it does not cover the time.
+        UserError: for another ending, or a log that has no such state or no positions or events, as for `animate`.
         OutputError: if the picture cannot be written.
     """
     path = Path(output)
     if path.suffix.lower() != FRAME:
         raise UserError(f"{output}: unknown kind of picture (allowed: {FRAME})")
     check_output(path, FRAME, force)
-    check_shown(log)
+    check_shown(log, colouring)
     if not log.start_time <= time <= log.end_time:
         raise UserError(f"{log.path}: no state at t = {time:g}: it covers t = {log.start_time:g} to {log.end_time:g}")
     _, thermal = speeds(log, log.start_time, log.end_time)
     piston = piston_track(log, log.start_time, log.end_time)
-    frame = Painter(log.scene, log.discs, piston, size, thermal, by_species, dark).paint(log.state_at(time))
+    frame = Painter(log.scene, log.discs, piston, size, thermal, colouring, dark).paint(log.state_at(time))
     with written(path, FRAME, force) as part:
         Image.fromarray(frame[..., :3]).save(part, format="png")
     return path
 
 
-def check_shown(log: Log) -> None:
-    """Refuse a log without positions or without events, as nothing moves in its pictures.
+def check_shown(log: Log, colouring: Colouring) -> None:
+    """Refuse a log without positions or without events, as nothing moves in its pictures, and order beside a piston.
 
     Raises:
-        UserError: in both cases.
+        UserError: in these cases.
     """
+    if colouring == "order" and not log.scene.properties.fixed_walls:
+        raise UserError(f"{log.path}: has a piston, and neighbours are told in a box whose sides stay where they are")
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
     if not log.has_events:

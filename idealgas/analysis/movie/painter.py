@@ -4,7 +4,7 @@ What never changes is drawn once; a frame restores it and draws only discs, wall
 """
 
 from itertools import compress
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps, rc_context
@@ -20,8 +20,10 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 
+from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.style import COLOURS, GRID, show_names
+from idealgas.analysis.movie.order_colours import order_colours
 from idealgas.analysis.movie.piston_track import PistonTrack
 from idealgas.analysis.theory.conserved import common_motion
 from idealgas.analysis.theory.distributions import SpeedLaw
@@ -75,6 +77,9 @@ SPEEDS = 0.3
 
 Rectangle = tuple[float, float, float, float]
 
+Colouring = Literal["speed", "species", "order"]
+"""What the colour of a disc shows: its speed, its species, or the order ψ₆ of its neighbours."""
+
 
 class Layout(NamedTuple):
     """Rectangles (left, bottom, width, height) of box and speeds in pixels, and scale in pixels per unit of length."""
@@ -122,43 +127,35 @@ class Painter:
         piston: PistonTrack | None,
         size: tuple[int, int],
         rms_speed: float,
-        by_species: bool,
+        colouring: Colouring = "speed",
         dark: bool = False,
     ) -> None:
         """Prepare what is the same in all frames.
 
         size: width and height of a frame, pixels. rms_speed: approximate largest root-mean-square speed of the film,
-        length/time. by_species: whether the colour of a disc shows its species instead of its speed. dark:
-        whether the background is dark. Speeds are those relative to a conserved motion of the whole gas.
+        length/time. colouring: what the colour of a disc shows. dark: whether the background is dark. Speeds are those
+        relative to a conserved motion of the whole gas.
         """
-        with rc_context(DARK if dark else {"grid.color": GRID}):
-            self._prepare(scene, gas, piston, size, rms_speed, by_species, dark)
-
-    def _prepare(
-        self,
-        scene: Scene,
-        gas: Gas,
-        piston: PistonTrack | None,
-        size: tuple[int, int],
-        rms_speed: float,
-        by_species: bool,
-        dark: bool,
-    ) -> None:
         self._ink, self._line, self._edge = (INK, INK, 1.0) if dark else ("black", COLOURS[0], EDGE)
         self._flow = common_motion(scene, gas)
-        self._inside, self._gas, self._piston, self._by_species = walls_inside(scene), gas, piston, by_species
+        self._inside, self._gas, self._piston, self._colouring = walls_inside(scene), gas, piston, colouring
         self._periodic = np.array(scene.properties.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
         self._edges = np.linspace(0, FASTEST * rms_speed or 1.0, BINS + 1)
         self._shades = colormaps[COLOUR_MAP](np.linspace(DARKEST if dark else 0, 1 if dark else PALEST, SHADES))
         self._brightest = self._edges[-1] * BRIGHTEST / FASTEST
+        with rc_context(DARK if dark else {"grid.color": GRID}):
+            self._draw_still(size)
+
+    def _draw_still(self, size: tuple[int, int]) -> None:
+        """Draw what is the same in all frames, and prepare the parts that are drawn over it."""
         zoom = max(min(size[0] / USUAL[0], size[1] / USUAL[1]), LEAST_ZOOM)
         page = size[0] / zoom, size[1] / zoom
         self._figure = Figure(figsize=(page[0] / DPI, page[1] / DPI), dpi=DPI * zoom)
         self._canvas = FigureCanvasAgg(self._figure)
-        self._view = view(gas.box, piston)
+        self._view = view(self._gas.box, self._piston)
         place = layout(page, (self._view[0][1] - self._view[0][0], self._view[1][1] - self._view[1][0]))
-        self._diameter = np.maximum(2 * gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
+        self._diameter = np.maximum(2 * self._gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
         self._title = self._figure.text(LEFT / page[0], 1 - 0.65 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
         self._draw_speeds(self._add_axes(place.speeds, page))
@@ -226,25 +223,36 @@ class Painter:
         axes.add_patch(self._bars)
         (self._curve,) = axes.plot(self._speeds, self._law(1.0), color=self._line, animated=True)
         handles = [Line2D([], [], color=self._line, label="Maxwell-Boltzmann")]
-        if self._by_species:
-            kinds = zip(self._species.name, np.resize(COLOURS, len(self._species.name)), strict=True)
-            handles += [Line2D([], [], marker="o", linestyle="", color=colour, label=name) for name, colour in kinds]
-        else:
+        if self._colouring == "speed":
             high = STRIP / (axes.bbox.height * DPI / self._figure.dpi)
             strip = axes.inset_axes((0, -high, 1, high))
             shown = np.minimum(np.linspace(0, FASTEST / BRIGHTEST, 200), 1) * (SHADES - 1)
             strip.imshow(self._shades[shown.astype(int)][None], aspect="auto")
             strip.set_axis_off()
             axes.tick_params(axis="x", pad=12, length=0)
-        axes.legend(handles=handles, frameon=False, loc="upper right")
+        kinds = [Line2D([], [], marker="o", linestyle="", color=colour, label=name) for name, colour in self._key()]
+        axes.legend(handles=[*handles, *kinds], frameon=False, loc="upper right")
+
+    def _key(self) -> list[tuple[str, Any]]:
+        """What colours stand for, where the axis of speeds does not tell it."""
+        if self._colouring == "species":
+            return list(zip(self._species.name, np.resize(COLOURS, len(self._species.name)), strict=True))
+        if self._colouring == "order":
+            angles = {"ψ₆ at 0°": 1, "ψ₆ at 120°": np.exp(2j * np.pi / 3), "ψ₆ at 240°": np.exp(-2j * np.pi / 3)}
+            return list(zip([*angles, "no order"], order_colours(np.array([*angles.values(), 0])), strict=True))
+        return []
+
+    def _colours(self, position: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Colours (N, 4) of the discs."""
+        if self._colouring == "species":
+            return to_rgba_array(self._kinds)
+        if self._colouring == "order":
+            return order_colours(bond_order(position, self._gas.box, tuple(self._periodic)).value)
+        return self._shades[np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)]
 
     def _place(self, position: np.ndarray, speed: np.ndarray) -> None:
         """Draw the discs at their positions, and their periodic images at periodic sides."""
-        if self._by_species:
-            colours = to_rgba_array(self._kinds)
-        else:
-            shade = np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)
-            colours = self._shades[shade]
+        colours = self._colours(position, speed)
         radius, box = self._gas.radius, np.array(self._gas.box)
         which = np.arange(len(radius))
         for axis in np.flatnonzero(self._periodic):

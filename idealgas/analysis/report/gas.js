@@ -17,6 +17,7 @@ class Gas {
     this.radius = unpack("radius", Float32Array);
     this.mass = unpack("mass", Float32Array);
     this.species = unpack("species", Uint16Array);
+    this.order = unpack("order", Uint8Array); // shades of all discs at one instant, then at the next
     this.start = { position: unpack("position", Float32Array), velocity: unpack("velocity", Float32Array) };
     this.tick = unpack("event_tick", Uint32Array);
     this.disc = unpack("event_disc", Uint32Array);
@@ -94,6 +95,13 @@ class Gas {
     const away = i => Math.hypot(this.x[i] - x, this.y[i] - y);
     for (let i = 1; i < this.number; i++) if (away(i) < away(best)) best = i;
     return best;
+  }
+
+  // Shades of the discs by the order of their neighbours, at the nearest of the instants for which it is known.
+  orders() {
+    const instants = this.order.length / this.number, { start, end } = this.head;
+    const k = Math.round((this.time - start) / (end - start) * (instants - 1)) || 0;
+    return this.order.subarray(k * this.number, (k + 1) * this.number);
   }
 
   // Speed relative to a conserved motion of the whole gas.

@@ -22,9 +22,17 @@ class Player {
     this.draw();
   }
 
-  // Show the discs, and on wish the flight of one.
+  // Show the discs, and on wish the flight of one; colours that would all be one are not offered.
   showDiscs(canvas) {
     const view = new DiscView(canvas, this.gas), field = document.getElementById("chosen");
+    const colours = document.getElementById("colour");
+    if (this.gas.head.kinds.length < 2) colours.querySelector("[value=species]").remove();
+    if (!this.gas.order.length) colours.querySelector("[value=order]").remove();
+    colours.addEventListener("change", () => {
+      view.colouring = colours.value;
+      canvas.setAttribute("aria-label", `The discs in their box, coloured by ${colours.value}`);
+      this.draw();
+    });
     this.views.push(view);
     this.discs = view;
     field.max = this.gas.number - 1;
@@ -86,7 +94,7 @@ class Player {
   }
 
   key(event) {
-    if (event.target === this.rates || event.target.id === "chosen" || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (["rate", "colour", "chosen"].includes(event.target.id) || event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.target === this.button && event.key === " ") return; // it is a click already
     const second = this.rate * this.gas.head.speed, small = event.shiftKey ? second : second / 25;
     const act = {

@@ -11,12 +11,15 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
+from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.core.window import span
+from idealgas.analysis.movie.order_colours import order_colours
 from idealgas.analysis.movie.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST, PALEST
 from idealgas.analysis.movie.piston_track import piston_track
+from idealgas.errors import UserError
 from idealgas.events import Kind
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
@@ -26,6 +29,9 @@ MOST_ROWS = 600_000
 
 MOST_DISCS = 100_000
 SHADES = 16
+MOST_INSTANTS, FEWEST_INSTANTS, MOST_NEIGHBOURHOODS = 64, 8, 2**15
+"""Limits of the number of instants at which the page knows the order of discs, and of discs times instants."""
+
 TICKS = 2.0**32 - 1
 """Number of steps in the time of the player; times of events are whole numbers of these steps."""
 
@@ -73,6 +79,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
         "flow": flow.tolist(),
         "fastest": FASTEST * thermal,
         "brightest": BRIGHTEST * thermal,
+        "colours": {"order": _hex(_order_shades()), "species": COLOURS[: len(species.name)]},
         "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
         "dark": _hex(shades(np.linspace(0.3, 1, SHADES))),
         "bars": COLOURS[5],
@@ -91,6 +98,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
     arrays = {"radius": gas.radius, "mass": gas.mass, "species": gas.species.astype("<u2"), "velocity": state.velocity}
     if log.has_positions:
         arrays["position"] = state.position
+        arrays |= _order(log, first, last)
     return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, rows), first, last)
 
 
@@ -122,6 +130,29 @@ def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
     whole = {"tick": ticks, "disc": columns.pop("disc"), "hit": hits}
     columns |= {name: numbers.astype("<u4") for name, numbers in whole.items()}
     return {f"event_{name}": _packed(column) for name, column in columns.items()}
+
+
+def _order_shades() -> np.ndarray:
+    """Colours of order: none, then that of each angle at half and at full size."""
+    turn = np.exp(2j * np.pi * np.arange(SHADES) / SHADES)
+    return order_colours(np.concatenate(([0], 0.5 * turn, turn)))
+
+
+def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
+    """Numbers (F, N) of the shades of all discs at F instants, evenly spaced; nothing where neighbours are not told."""
+    if not log.scene.properties.fixed_walls:
+        return {}
+    number = min(max(MOST_NEIGHBOURHOODS // len(log.discs), FEWEST_INSTANTS), MOST_INSTANTS)
+    try:
+        found = [
+            bond_order(s.position, log.box, log.periodic).value for s in log.frames(np.linspace(first, last, number))
+        ]
+    except UserError:  # discs at one place
+        return {}
+    order = np.array(found)
+    hue = np.round(np.angle(order) / (2 * np.pi) * SHADES).astype(int) % SHADES
+    level = np.digitize(np.abs(order), (1 / 3, 2 / 3))
+    return {"order": np.where(level == 0, 0, 1 + SHADES * (level - 1) + hue).astype(np.uint8)}
 
 
 def _packed(array: np.ndarray) -> str:

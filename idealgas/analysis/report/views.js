@@ -32,6 +32,7 @@ class DiscView {
     this.canvas = canvas;
     this.gas = gas;
     this.shade = new Uint8Array(gas.number);
+    this.colouring = "speed"; // or "species", "order"
     this.chosen = null; // number of the disc whose flight is shown
   }
 
@@ -42,16 +43,24 @@ class DiscView {
       (box.height - event.clientY + box.top) / this.scale);
   }
 
+  // Colours, and which of them each disc has.
+  shades(theme) {
+    const { gas, shade } = this, { head } = gas;
+    if (this.colouring === "order") shade.set(gas.orders());
+    const colours = head.colours[this.colouring] ?? (theme.dark ? head.dark : head.light);
+    for (let i = 0; i < gas.number && this.colouring !== "order"; i++) {
+      shade[i] = this.colouring === "species" ? gas.species[i] % colours.length
+        : Math.min(Math.floor(gas.speed(i) / head.brightest * colours.length), colours.length - 1);
+    }
+    return colours;
+  }
+
   draw() {
     const { gas } = this, { head } = gas, [boxX, boxY] = head.box;
     const { pen, width, height, inset } = prepare(this.canvas, boxY / boxX, 0, Math.max(240, Math.min(640, innerHeight / 2)));
-    const theme = themed(), shades = theme.dark ? head.dark : head.light;
+    const theme = themed(), shades = this.shades(theme);
     const scale = (width - 2 * inset) / boxX;
     [this.inset, this.scale] = [inset, scale];
-    for (let i = 0; i < gas.number; i++) {
-      const speed = gas.speed(i) / head.brightest;
-      this.shade[i] = Math.min(Math.floor(speed * shades.length), shades.length - 1);
-    }
     pen.fillStyle = theme.panel;
     pen.fillRect(inset, 0, width - 2 * inset, height);
     pen.save();

@@ -46,7 +46,7 @@ def scene(extra=""):
 def paint(extra="", state=STATE, piston=None, by_species=False, size=SIZE):
     """(height, width, 3) of a frame, and at(x, y): its pixel there in the box."""
     made = scene(extra)
-    painter = Painter(made, make_gas(made), piston, size, 1.0, by_species)
+    painter = Painter(made, make_gas(made), piston, size, 1.0, "species" if by_species else "speed")
     frame = painter.paint(state).copy()[..., :3].astype(int)
     place = layout(size, (10.0, 10.0))
 
@@ -98,7 +98,7 @@ def test_discs_at_joined_sides_show_their_other_half():
     made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
         f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
     ))  # fmt: skip
-    painter = Painter(made, make_gas(made), None, SIZE, 1.0, False)
+    painter = Painter(made, make_gas(made), None, SIZE, 1.0)
     frame = painter.paint(state)[..., :3]
     place = layout(SIZE, (10.0, 10.0))
     for x, y in ((0.25, 9.75), (9.75, 9.75), (0.25, 0.25), (9.75, 0.25)):
@@ -120,7 +120,7 @@ def test_the_piston_is_drawn():
 
 def test_frames_of_the_same_state_are_the_same_whatever_came_before():
     made = scene()
-    painter = Painter(made, make_gas(made), None, SIZE, 1.0, False)
+    painter = Painter(made, make_gas(made), None, SIZE, 1.0)
     first = painter.paint(STATE).copy()
     painter.paint(STATE._replace(time=9.0, position=STATE.position + 1, velocity=3 * STATE.velocity))
     assert np.array_equal(painter.paint(STATE), first)
@@ -231,9 +231,7 @@ def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
             for k, velocity in enumerate(velocities)
         )
         made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
-        frame = Painter(made, make_gas(made), None, SIZE, 1.0, False).paint(
-            STATE._replace(velocity=np.array(velocities))
-        )
+        frame = Painter(made, make_gas(made), None, SIZE, 1.0).paint(STATE._replace(velocity=np.array(velocities)))
         x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).speeds)
         return frame[SIZE[1] - y - height + 4 : SIZE[1] - y - 4, x + 4 : x + width - 4].copy()
 
