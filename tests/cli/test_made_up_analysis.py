@@ -82,7 +82,9 @@ FOLDER = {
 LINE = '    "fastest_disc",\n'
 
 SCENE = """
+# without positions few other analyses apply
 scene.seed = 3
+run.method = "monte_carlo"
 box.size = [10, 10]
 species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
 run.events = 500

@@ -35,6 +35,7 @@ def listing(folder):
 
 
 @commands
+@pytest.mark.slow
 def test_results_only(command, folder):
     before = listing(folder)
     result = idealgas(command, "run.h5", folder=folder)

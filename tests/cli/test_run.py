@@ -200,6 +200,7 @@ def test_wrong_usage(arguments, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_clock_that_stands_still_is_one_line(tmp_path):
     """A gate closes over a disc at the top of its flight: at rest, it collides with it without end."""
     (tmp_path / "scene.toml").write_text("""
@@ -257,6 +258,7 @@ species = [{ name = "gas", count = 2, radius = 0.2, velocities = [[1, 2], [1, 2]
     assert json.loads(resumed.stdout)["end_time"] == 1e6
 
 
+@pytest.mark.slow
 def test_a_disc_that_keeps_the_run_busy_is_named_on_stderr(tmp_path):
     (tmp_path / "scene.toml").write_text("""
 box.size = [10, 10]

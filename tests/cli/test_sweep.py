@@ -253,7 +253,7 @@ def test_a_folder_that_goes_while_a_sweep_is_running_in_it(plan, tmp_path):
     assert (stderr.count("\n"), str(folder) in stderr) == (1, True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_full_disk_ends_a_sweep_which_goes_on_later(plan, tmp_path):
     """A limit of the size of a file stands for it: the larger points do not fit."""
     plan.write_text(SWEEP.replace('"phi"\nvalues = [0.02, 0.1]', '"run.events"\nvalues = [2000, 200_000]'))

@@ -29,7 +29,7 @@ def test_heat_bath(run):
     assert stats.kstest(thinned, stats.gamma(n).cdf).pvalue > LEAST_P
 
 
-@pytest.mark.parametrize("rate", [0.1, 0.6, 4.0])
+@pytest.mark.parametrize("rate", [pytest.param(0.1, marks=pytest.mark.long), 0.6, 4.0])
 def test_thermostat(run, rate):
     """Andersen, J. Chem. Phys. 72, 2384 (1980): canonical at any rate, here a tenth to four times that of collisions.
 
@@ -92,6 +92,7 @@ def test_conduction(run):
     assert 0 < (cold - 1) / np.mean(slopes) < 5 * path
 
 
+@pytest.mark.long
 def test_compression(run):
     """d ln T = -Z (1 + ε) dL/(L - 2R): the adiabat, which for points is T A = const, with the gas's viscosity.
 

@@ -31,11 +31,8 @@ DRIVEN = 'piston = {side = "right", position = 32, velocity = -0.002}\nrun.until
 SLOPE = "wall = [{from = [3, 4], to = [9, 11]}, {from = [15, 2], to = [15, 9], opens_at = 300}]\n"
 
 
-@pytest.mark.parametrize(
-    "effects",
-    [pytest.param(HOT + MASSIVE, marks=pytest.mark.long), HOT + DRIVEN + SLOPE],
-    ids=["a piston with a mass", "a driven one"],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("effects", [HOT + MASSIVE, HOT + DRIVEN + SLOPE], ids=["a piston with a mass", "a driven one"])
 def test_a_million_events_of_all_effects(effects, tmp_path):
     summary = simulate(parse_scene(GAS + effects), tmp_path / "run.h5")
     assert summary.events > 0.3 * EVENTS

@@ -90,9 +90,9 @@ def test_four_discs_pass(radius, sides, measured):
         (400, 0.2, 1500, "random"),
         pytest.param(400, 0.5, 2500, "random", marks=pytest.mark.slow),
         pytest.param(400, 0.6, 3000, "lattice", marks=pytest.mark.slow),
-        pytest.param(870, 0.67, 8000, "lattice", marks=pytest.mark.long),
+        pytest.param(870, 0.67, 8000, "lattice", marks=pytest.mark.slow),
         pytest.param(870, 0.68, 10000, "lattice", marks=pytest.mark.long),
-        pytest.param(870, 0.69, 12000, "lattice", marks=pytest.mark.slow),
+        pytest.param(870, 0.69, 12000, "lattice", marks=pytest.mark.long),
         pytest.param(870, 0.70, 40000, "lattice", marks=pytest.mark.long),  # a log of 1.3 GB
     ],
 )

@@ -150,6 +150,7 @@ def test_rough(run):
     agrees(capacity, 0.01)
 
 
+@pytest.mark.long
 def test_brownian_motion(run):
     """A heavy disc forgets its velocity at the rate γ that Enskog's friction gives, before its own wake comes back.
 

@@ -92,12 +92,14 @@ many = settings(few, max_examples=10_000)
 
 @few
 @given(scenes)
+@pytest.mark.slow
 def test_no_disc_crosses_a_wall(scene):
     assert_walls_hold(scene)
 
 
 @few
 @given(scenes, st.sampled_from([(0.0, -1.0), (0.3, 0.1), (-2.0, 0.0)]))
+@pytest.mark.slow
 def test_no_falling_disc_crosses_a_wall(scene, gravity):
     assert_walls_hold(scene, gravity)
 

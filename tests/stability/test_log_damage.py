@@ -85,6 +85,7 @@ def assert_found_or_harmless(path: Path, rows: int, dead: bool) -> bool:
     return True
 
 
+@pytest.mark.slow
 def test_damage_anywhere(whole, tmp_path):
     data, rows, dead = whole
     path = tmp_path / "run.h5"

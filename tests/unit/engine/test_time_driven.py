@@ -65,6 +65,7 @@ def plainly(gas, dt, steps, effects):
 @pytest.mark.interpreted
 @pytest.mark.parametrize("gravity", [False, True])
 @pytest.mark.parametrize("periodic", ["", "x", "xy"])
+@pytest.mark.slow
 def test_it_does_what_the_plain_method_does(gravity, periodic):
     gas, dt, steps = some_gas(radius=0.2), 0.02, 120  # no three overlap: the order of collisions does not matter
     effects = effects_of(gravity=gravity, periodic=periodic)

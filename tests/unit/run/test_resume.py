@@ -45,6 +45,7 @@ def whole(request, tmp_path_factory):
     return request.param, path
 
 
+@pytest.mark.slow
 def test_extended(whole, tmp_path):
     name, expected = whole
     path = tmp_path / "run.h5"
@@ -54,6 +55,7 @@ def test_extended(whole, tmp_path):
 
 
 @pytest.mark.parametrize("slices", [1, 3])
+@pytest.mark.slow
 def test_interrupted(whole, tmp_path, slices):
     name, expected = whole
     path = tmp_path / "run.h5"
@@ -73,6 +75,7 @@ def test_from_a_time_to_a_later_one(tmp_path):
     assert differences(tmp_path / "run.h5", tmp_path / "whole.h5") == []
 
 
+@pytest.mark.slow
 def test_sparse_checkpoints_and_no_events(tmp_path):
     for number, override in enumerate(("log.checkpoint_every=3", "log.events=false")):
         scene = partial(scene_of, "quickstart", override, SNAPSHOTS)

@@ -23,6 +23,7 @@ def run(path, scene):
     return summary, open_log(path)
 
 
+@pytest.mark.slow
 def test_a_shipped_scene_conserves_what_it_should(shipped_scene, tmp_path):
     """Energy less what walls and a heat bath gave, to 1e-12, and momentum where nothing takes any."""
     scene = load_scene(shipped_scene, ["run.events=3000"])

@@ -15,6 +15,8 @@ from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import SceneError, parse_scene
 
+pytestmark = pytest.mark.slow
+
 PRESSURE = "log.pressure=true"
 SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_push", "face_drag")
 
@@ -54,7 +56,7 @@ def same(one, other):
 
 @pytest.fixture(
     scope="module",
-    params=[pytest.param(case, marks=pytest.mark.slow if case == "everything" else ()) for case in CASES],
+    params=[pytest.param(case, marks=pytest.mark.long if case == "everything" else ()) for case in CASES],
 )
 def whole(request, tmp_path_factory):
     """A case and its log, with events."""
@@ -205,7 +207,6 @@ def test_the_same_mechanical_pressure_without_events(tmp_path):
         assert push.y.value == pytest.approx(awaited.y.value, rel=1e-9)
 
 
-@pytest.mark.slow
 def test_samples_do_not_follow_a_piston(tmp_path):
     run("everything", tmp_path / "run.h5", "log.events=false", "run.events=3000")
     with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="do not follow a piston"):

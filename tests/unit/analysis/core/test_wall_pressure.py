@@ -30,6 +30,7 @@ SEGMENTS = (
 )
 
 
+@pytest.mark.slow
 def test_every_hit_counts_for_its_wall_and_face(make):
     log = make(SEGMENTS, "gravity.acceleration=[0.2, -0.5]", "box.left={thermal=1.2}")
     edges, g = np.linspace(0.1, 0.9, 5) * log.end_time, np.array(log.gravity)
