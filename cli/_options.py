@@ -1,6 +1,7 @@
 """Arguments and options that several commands share."""
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import click
 
@@ -11,25 +12,14 @@ from ._terminal import be_quiet
 PICTURES = (".png", ".pdf", ".svg")
 
 
-class Count(click.ParamType[int]):
+def integer(text: str) -> int:
     """An integer, which may be written as 1e6."""
-
-    name = "integer"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> int:
-        """As click asks for it."""
-        text = str(value)
-        try:
-            return int(text)
-        except ValueError:
-            pass
-        try:
-            number = float(text)
-            if number.is_integer():
-                return int(number)
-        except ValueError:
-            pass
-        self.fail(f"{text!r} is not a valid integer.", param, ctx)
+    with suppress(ValueError):
+        return int(text)
+    with suppress(ValueError):
+        if (number := float(text)).is_integer():
+            return int(number)
+    raise click.BadParameter(f"{text!r} is not a valid integer.")
 
 
 def scene_argument(command: Callable) -> Callable:

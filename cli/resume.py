@@ -5,18 +5,18 @@ from typing import Any
 import click
 
 from ._analysis import log_argument
-from ._options import Count, json_option, quiet_option
+from ._options import integer, json_option, quiet_option
 
 
 @click.command(epilog="Example: idealgas resume gas.h5 --until 200")
 @log_argument
 @click.option("--until", type=float, metavar="T", help="End at this simulated time.")
-@click.option("--events", type=Count(), metavar="N", help="End after this number of events since time 0.")
+@click.option("--events", type=integer, metavar="N", help="End after this number of events since time 0.")
 @click.option(
     "--collisions-per-disc", type=float, metavar="X", help="End after this number of collisions per disc since time 0."
 )
 @click.option(
-    "--trials", type=Count(), metavar="N", help="With monte_carlo: end after this number of trials since time 0."
+    "--trials", type=integer, metavar="N", help="With monte_carlo: end after this number of trials since time 0."
 )
 @json_option
 @quiet_option

@@ -2,6 +2,7 @@
 
 python tests/fuzz_logs.py --cases 0:500 --commands info,pressure
 python tests/fuzz_logs.py --damages 0:500
+python tests/fuzz_logs.py --headers 0:500
 """
 
 import argparse
@@ -14,6 +15,8 @@ from pathlib import Path
 from log_fuzz import sound
 from log_fuzz.campaign import crafted_outcomes, damaged_outcomes, real_outcomes
 from log_fuzz.commands import forms, in_turn, reading_commands
+from log_fuzz.damages import damage
+from log_fuzz.headers import spoil
 from log_fuzz.judge import FAILURES, Table
 
 
@@ -21,6 +24,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", metavar="A:B", help="Numbers of crafted logs.")
     parser.add_argument("--damages", metavar="A:B", help="Numbers of damaged logs.")
+    parser.add_argument("--headers", metavar="A:B", help="Numbers of logs whose HDF5 structures are changed.")
     parser.add_argument("--real", metavar="A:B", help="Numbers of crafted logs for one real command each.")
     parser.add_argument("--commands", metavar="NAME,...", help="Commands to run; by default all that read a log.")
     parser.add_argument("--each", type=int, metavar="N", help="So many of the commands for each case, in turn.")
@@ -30,11 +34,13 @@ def main() -> None:
     given = parser.parse_args()
     names = given.commands.split(",") if given.commands else reading_commands()
     chosen = [form for name in names if name not in given.without.split(",") for form in forms(name)]
-    first, last = map(int, (given.damages or given.real or given.cases).split(":"))
-    run = damaged_outcomes if given.damages else real_outcomes if given.real else crafted_outcomes
+    first, last = map(int, (given.damages or given.headers or given.real or given.cases).split(":"))
+    run = real_outcomes if given.real else crafted_outcomes
+    if given.damages or given.headers:
+        run = partial(damaged_outcomes, harm=damage if given.damages else spoil)
     each = 1 if given.real else given.each
     table, begun = Table(), time.monotonic()
-    all_logs = sound.DAMAGED if given.damages else sound.CRAFTED
+    all_logs = sound.DAMAGED if given.damages or given.headers else sound.CRAFTED
     logs = given.logs.split(",") if given.logs else all_logs
     for number, what, form, verdict in run(range(first, last), partial(in_turn, chosen, each), logs):
         table.add(number, form, verdict)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from log_fuzz.commands import NAME, Form
 from log_fuzz.crafted import Crafted, craft
-from log_fuzz.damages import Damaged, damage
+from log_fuzz.damages import Damaged
 from log_fuzz.judge import Reference, Verdict, judge, judge_damage, reference
 from log_fuzz.sound import LIVE, held, states, unpacked
 from log_fuzz.workers import Outcome, Task, outcomes, run_command
@@ -46,8 +46,8 @@ def crafted_outcomes(cases: range, choice: Choice, names: Sequence[str]) -> Foun
         yield number, (made.sound, _words(made)), form, verdict
 
 
-def damaged_outcomes(cases: range, choice: Choice, names: Sequence[str]) -> Found:
-    """Damaged logs of these numbers, each with the commands that are chosen for it."""
+def damaged_outcomes(cases: range, choice: Choice, names: Sequence[str], harm: Callable[..., Damaged]) -> Found:
+    """Damaged logs of these numbers, each with the commands that are chosen for it; harm: `damage`, or `spoil`."""
     whole = {name: states(name) for name in names}
     chosen = {case: choice(case) for case in cases}
     wanted = _wanted(chosen, names)
@@ -58,7 +58,7 @@ def damaged_outcomes(cases: range, choice: Choice, names: Sequence[str]) -> Foun
                 known.setdefault((name, form), []).append(found.outcome)
     _freeze()
     first = {name: logs[0] for name, logs in whole.items()}
-    tasks = [Task(case, partial(damage, case, sound=first, names=names), forms) for case, forms in chosen.items()]
+    tasks = [Task(case, partial(harm, case, sound=first, names=names), forms) for case, forms in chosen.items()]
     made: Damaged
     for number, made, form, outcome in outcomes(tasks):
         verdict = judge_damage(form, outcome, known[made.sound, form])

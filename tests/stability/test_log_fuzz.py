@@ -10,6 +10,8 @@ import pytest
 from log_fuzz import sound
 from log_fuzz.campaign import crafted_outcomes, damaged_outcomes, real_outcomes
 from log_fuzz.commands import SLOW, Form, forms, in_turn, reading_commands
+from log_fuzz.damages import damage
+from log_fuzz.headers import spoil
 from log_fuzz.judge import FAILURES, Table
 
 CRAFTED, DAMAGED, REAL = 5_000, 10_000, 300
@@ -43,7 +45,7 @@ def test_some_crafted_logs():
 
 @pytest.mark.slow
 def test_some_damaged_logs():
-    assert tried(damaged_outcomes(range(DAMAGED_IN_CI), few, (*sound.SOME, "chunks"))) == []
+    assert tried(damaged_outcomes(range(DAMAGED_IN_CI), few, (*sound.SOME, "chunks"), damage)) == []
 
 
 @pytest.mark.long
@@ -53,7 +55,12 @@ def test_crafted_logs():
 
 @pytest.mark.long
 def test_damaged_logs():
-    assert tried(damaged_outcomes(range(DAMAGED), partial(in_turn, FORMS, 5), sound.DAMAGED)) == []
+    assert tried(damaged_outcomes(range(DAMAGED), partial(in_turn, FORMS, 5), sound.DAMAGED, damage)) == []
+
+
+@pytest.mark.long
+def test_changed_headers():
+    assert tried(damaged_outcomes(range(CRAFTED), few, sound.DAMAGED, spoil)) == []
 
 
 @pytest.mark.long

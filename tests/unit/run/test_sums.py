@@ -208,7 +208,8 @@ def test_the_same_mechanical_pressure_without_events(tmp_path):
 
 
 def test_samples_do_not_follow_a_piston(tmp_path):
-    run("everything", tmp_path / "run.h5", "log.events=false", "run.events=3000")
+    piston = GAS + 'piston = {side = "right", velocity = -0.01}\n'
+    simulate(parse_scene(piston, overrides=["log.events=false", "run.events=3000", "run.until=300"]), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="do not follow a piston"):
         pressure(log)
 
