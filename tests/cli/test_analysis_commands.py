@@ -1,5 +1,7 @@
+import csv
 import json
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
@@ -140,3 +142,12 @@ def test_not_a_log(command, tmp_path):
         result = idealgas(*command, tmp_path / name)
         assert result.exit_code == 2
         assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_histogram_in_csv_has_its_bins(path):
+    rows = list(csv.DictReader(idealgas("histogram", path, "--csv").stdout.splitlines()))
+    bins = [row for row in rows if row["table"].startswith("Density of speed")]
+    low, high, value, law = (np.array([float(row[name]) for row in bins]) for name in ("from", "to", "value", "theory"))
+    assert value @ (high - low) == pytest.approx(1, abs=1e-3)
+    assert law @ (high - low) == pytest.approx(1, abs=1e-3)
+    assert (low[1:] == high[:-1]).all()

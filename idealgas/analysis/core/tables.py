@@ -40,7 +40,7 @@ class Table:
 
     title: heading of the table. heads: headings of the columns; the first column names the rows. rows: cells, row by
     row. notes: lines printed before the rows. most: largest number of rows that are shown, evenly chosen from all rows;
-    CSV has all of them.
+    CSV has all of them. With 0 the table is for CSV alone.
     """
 
     title: str

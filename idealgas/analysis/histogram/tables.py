@@ -1,11 +1,11 @@
-"""Tables of distributions: means and Kolmogorov-Smirnov tests."""
+"""Tables of distributions: means, Kolmogorov-Smirnov tests and, in CSV, the bins."""
 
 from idealgas.analysis.core.tables import Number, Table, describe, estimates
-from idealgas.analysis.histogram.measure import Histogram
+from idealgas.analysis.histogram.measure import Distribution, Histogram
 
 
 def histogram_tables(result: Histogram) -> list[Table]:
-    """Tables of the means, and of the Kolmogorov-Smirnov distances between samples and laws."""
+    """Tables of the means, of Kolmogorov-Smirnov distances between samples and laws, and of the densities in bins."""
     tests = [
         (
             found.name,
@@ -21,7 +21,22 @@ def histogram_tables(result: Histogram) -> list[Table]:
     means = [(found.name, found.mean) for found in result.distributions]
     notes = (describe(result.window), *([f"No law here: {result.no_law}."] if result.no_law else []))
     average = estimates(f"Mean {result.quantity} ({result.unit})", means, notes)
-    if not tests:
-        return [average]
     heads = ("", "law", "distance", "p", "samples", "spacing (time)")
-    return [average, Table("Kolmogorov-Smirnov tests (no unit)", heads, tests)]
+    distances = Table("Kolmogorov-Smirnov tests (no unit)", heads, tests)
+    rows = [row for found in result.distributions for row in _bins(found)]
+    heads = ("", "from", "to", "value", "± s.e.", "theory")
+    return [
+        average,
+        *[distances] * bool(tests),
+        Table(f"Density of {result.quantity} (per {result.unit})", heads, rows, most=0),
+    ]
+
+
+def _bins(found: Distribution) -> list[tuple[str | Number, ...]]:
+    """Rows of the bins, with the first of the laws as theory, as its mean over a bin."""
+    law = found.tests[0].law if found.tests else None
+    edges, rows = found.edges.tolist(), []
+    for low, high, density, error in zip(edges, edges[1:], found.density.tolist(), found.error.tolist(), strict=False):
+        theory = None if law is None else float(law.cdf(high) - law.cdf(low)) / (high - low)
+        rows.append((found.name, *map(Number, (low, high, density, error, theory))))
+    return rows

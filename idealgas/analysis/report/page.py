@@ -172,7 +172,7 @@ def _shown(value: object) -> str:
 def _section(section: Section, key: str) -> str:
     notes = "".join(f'<p class="note">{escape(note)}</p>' for table in section.tables for note in table.notes)
     picture = "" if section.picture is None else html_pictures(section.picture, section.caption, key)
-    return f"{picture}{notes}{_tables([table for table in section.tables if table.rows])}"
+    return f"{picture}{notes}{_tables([table for table in section.tables if table.shown])}"
 
 
 def _tables(tables: Sequence[Table]) -> str:

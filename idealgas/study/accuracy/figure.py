@@ -92,7 +92,7 @@ def _cost(ax: Panel, found: Accuracy) -> None:
     ax.set(xscale="log", yscale="log", xlim=(0.75, 2 * cost.max()), ylim=(0.5 * min(*error, best), 2 * error.max()))
     ax.xaxis.set_major_formatter("{x:g}")
     ax.yaxis.set_major_formatter(PercentFormatter(1))
-    ax.set_xlabel("CPU time, of the event-driven run (no unit)")
+    ax.set_xlabel("CPU time, that of the event-driven run is 1 (no unit)")
     ax.set_ylabel(f"error of the {names[0]}")
 
 

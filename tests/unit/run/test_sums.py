@@ -209,7 +209,9 @@ def test_the_same_mechanical_pressure_without_events(tmp_path):
 
 def test_samples_do_not_follow_a_piston(tmp_path):
     piston = GAS + 'piston = {side = "right", velocity = -0.01}\n'
-    simulate(parse_scene(piston, overrides=["log.events=false", "run.events=3000", "run.until=300"]), tmp_path / "run.h5")
+    simulate(
+        parse_scene(piston, overrides=["log.events=false", "run.events=3000", "run.until=300"]), tmp_path / "run.h5"
+    )
     with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="do not follow a piston"):
         pressure(log)
 
