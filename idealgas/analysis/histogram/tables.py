@@ -1,6 +1,6 @@
 """Tables of distributions: means, Kolmogorov-Smirnov tests and, in CSV, the bins."""
 
-from idealgas.analysis.core.tables import Number, Table, describe, estimates
+from idealgas.analysis.core.tables import Cell, Number, Table, describe, estimates
 from idealgas.analysis.histogram.measure import Distribution, Histogram
 
 
@@ -32,11 +32,11 @@ def histogram_tables(result: Histogram) -> list[Table]:
     ]
 
 
-def _bins(found: Distribution) -> list[tuple[str | Number, ...]]:
+def _bins(found: Distribution) -> list[tuple[Cell, ...]]:
     """Rows of the bins, with the first of the laws as theory, as its mean over a bin."""
     law = found.tests[0].law if found.tests else None
-    edges, rows = found.edges.tolist(), []
+    edges, rows = found.edges.tolist(), list[tuple[Cell, ...]]()
     for low, high, density, error in zip(edges, edges[1:], found.density.tolist(), found.error.tolist(), strict=False):
         theory = None if law is None else float(law.cdf(high) - law.cdf(low)) / (high - low)
-        rows.append((found.name, *map(Number, (low, high, density, error, theory))))
+        rows.append((found.name, *(Number(value) for value in (low, high, density, error, theory))))
     return rows
