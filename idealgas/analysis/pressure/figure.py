@@ -11,9 +11,6 @@ from idealgas.analysis.pressure.mechanical import Mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
 
-ROUGH = 10.0
-"""Deviation (‰) from theory above which the axis of deviations is that of small and large ones together."""
-
 
 def pressure_figure(result: Pressure | EquationOfState) -> Figure:
     """Picture of Z of one log by every route, or of several logs against the packing fraction."""
@@ -83,10 +80,8 @@ def _of_states(result: EquationOfState) -> Figure:
     above.errorbar(phi, z, error, fmt="o", ms=4, color=COLOURS[0], label="measured")
     below.errorbar(phi, 1e3 * (z / best - 1), 1e3 * error / best, fmt="o", ms=4, color=COLOURS[0], capsize=3)
     if np.isfinite(best).any():
-        largest = 1e3 * float(np.nanmax(np.abs(z / best - 1) + 3 * error / best))
-        below.set_ylim(-largest, largest)
-        if largest > ROUGH:
-            below.set_yscale("symlog", linthresh=1)
+        low, high = (1e3 * (z / best - 1 + sign * 3 * error / best) for sign in (-1, 1))
+        below.set_ylim(min(np.nanmin(low), 0.0), max(np.nanmax(high), 0.0))
     above.set_ylabel("Z = PA/NT (no unit)")
     below.set_ylabel("deviation from theory (‰ of Z)")
     below.set_xlabel("packing fraction φ (no unit)")

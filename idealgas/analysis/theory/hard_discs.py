@@ -98,6 +98,16 @@ def mixture_compressibility(radius: ArrayLike, number: ArrayLike, area: float) -
 # a closed box with reflecting walls
 
 
+def thin_pair_distribution(distance: ArrayLike, diameter: float, number_density: float) -> np.ndarray:
+    """g(r) of equal discs to first order in the number density n (1/length²), at distances r >= the diameter σ.
+
+    1 + n A(r), where A is the area that two circles of radius σ have in common: Hansen & McDonald, Theory of Simple
+    Liquids, section 4.6, in two dimensions. The next order is about 2 φ² at contact.
+    """
+    half = np.minimum(np.asarray(distance, float) / (2 * diameter), 1.0)
+    return 1 + number_density * 2 * diameter**2 * (np.arccos(half) - half * np.sqrt(1 - half**2))
+
+
 def confinement(
     radius: ArrayLike,
     box: tuple[float, float],

@@ -1,13 +1,22 @@
 """Picture of the transport in a gas."""
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.combine import DIFFUSION, States
 from idealgas.analysis.transport.measure import FITTED_FROM, Transport
+
+FAINTEST = 1e-4
+"""Smallest velocity correlation in the picture."""
+
+THIN = 0.12
+"""Largest packing fraction at which the pair distribution has a theory beyond contact."""
 
 
 def transport_figure(result: Transport | States) -> Figure:
@@ -58,20 +67,26 @@ def _of_log(result: Transport) -> Figure:
 def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) -> None:
     """Draw velocity correlation and mean square displacement of each species."""
     for entry, colour in zip(result.diffusion, COLOURS * len(result.diffusion), strict=False):
-        correlation.errorbar(entry.lag, entry.correlation, entry.correlation_error, color=colour, label=entry.species)
+        _band(correlation, entry.lag, entry.correlation, entry.correlation_error, colour, entry.species)
         if entry.coefficient.theory is not None and entry.tail is not None:
             rate = result.free_paths[0].time.value ** -1
             correlation.plot(entry.lag, np.exp(-rate * entry.lag), "--", color=GREY, label="Enskog: exp(-Γt)")
             late = rate * entry.lag > 5
             correlation.plot(entry.lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
-        displacement.errorbar(
-            entry.lag, entry.displacement, entry.displacement_error, color=colour, label=f"{entry.species}, measured"
-        )
+        name = f"{entry.species}, measured"
+        _band(displacement, entry.lag, entry.displacement, entry.displacement_error, colour, name)
         d = entry.coefficient.value
         displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
-    correlation.set_yscale("symlog", linthresh=1e-3)
+    if all((entry.correlation > -3 * entry.correlation_error).all() for entry in result.diffusion):
+        correlation.set(yscale="log", ylim=(FAINTEST, 1.5))  # without a number below zero that is resolved
     correlation.set(xlabel="t (time)", ylabel="⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)")
     displacement.set(xlabel="t (time)", ylabel="mean square displacement (length²)")
+
+
+def _band(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, colour: str, label: str) -> None:
+    """Draw a curve with its standard error on both sides."""
+    ax.plot(lag, value, color=colour, label=label)
+    ax.fill_between(lag, value - error, value + error, color=colour, alpha=0.2, linewidth=0)
 
 
 def _draw_pairs(ax: Axes, result: Transport) -> None:
@@ -83,6 +98,13 @@ def _draw_pairs(ax: Axes, result: Transport) -> None:
         for contact in result.contacts:
             if (contact.species, contact.other) == (found.species, found.other):
                 ax.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
+                if contact.value.theory is not None:
+                    ax.plot(found.edges[0], contact.value.theory, "+", ms=12, color=GREY, label="theory at contact")
+        if len(result.pair_distributions) == 1 and result.packing_fraction <= THIN:
+            diameter = found.edges[0]
+            density = 4 * result.packing_fraction / (math.pi * diameter**2)
+            curve = hard_discs.thin_pair_distribution(middle, diameter, density)
+            ax.plot(middle, curve, "--", color=GREY, linewidth=0.9, label="first order in φ")
     ax.axhline(1.0, color=GREY, linewidth=0.8)
     ax.set(xlabel="r (length)", ylabel="g(r) (no unit)")
 
@@ -97,8 +119,7 @@ def _draw_coefficients(ax: Axes, result: Transport) -> None:
     by_theory = all(value.theory for *_, value in curves)
     for (name, times, running, error, value), colour in zip(curves, COLOURS * len(curves), strict=False):
         one = (by_theory and value.theory) or value.value
-        ax.plot(times, running / one, color=colour, label=name)
-        ax.fill_between(times, (running - error) / one, (running + error) / one, color=colour, alpha=0.2, linewidth=0)
+        _band(ax, times, running / one, error / one, colour, name)
     if result.collective:
         first, last = result.collective.plateau
     else:

@@ -148,3 +148,13 @@ def test_enskogs_coefficients_have_their_parts(phi):
     assert hard_discs.enskog_viscosity(*state) == pytest.approx(viscosity, rel=1e-4)
     conductivity = 2 * 1.029 * unit / mass / chi * (1 + 3 / 4 * y * chi) ** 2 + bulk / mass
     assert hard_discs.enskog_conductivity(*state) == pytest.approx(conductivity, rel=1e-4)
+
+
+def test_pairs_in_a_thin_gas():
+    """At contact the second virial coefficient's derivative: χ = 1 + φ b, b = (B₃/B₂² of discs) · 2 = 1.5640."""
+    density, diameter = 0.03, 0.7
+    phi = density * math.pi * diameter**2 / 4
+    at_contact, far = hard_discs.thin_pair_distribution(np.array([diameter, 2 * diameter]), diameter, density)
+    assert at_contact == pytest.approx(1 + 1.5640 * phi, rel=1e-4 * phi)
+    assert far == 1
+    assert at_contact == pytest.approx(float(hard_discs.fluid_contact_value(phi)), abs=3 * phi**2)
