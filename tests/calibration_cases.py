@@ -1,0 +1,211 @@
+"""Gases of the calibration of error bars, and the estimates that are taken of each."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from idealgas import Log
+from idealgas.analysis.cooling.measure import cooling
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.effusion.measure import effusion
+from idealgas.analysis.heat_capacity.measure import heat_capacity
+from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.order.measure import order
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.profile.measure import profile
+from idealgas.analysis.relaxation.measure import relaxation
+from idealgas.analysis.sound.measure import sound
+from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.transport.measure import transport
+
+Named = Iterator[tuple[str, Estimate]]
+
+
+class Case(NamedTuple):
+    """Gas of a calibration: text of its scene, run lengths as text for [run], and what is measured of a log.
+
+    more: text for [log]. steady: whether the gas is in equilibrium from early on.
+    """
+
+    scene: str
+    runs: tuple[str, ...]
+    measured: Callable[[Log], Named]
+    more: str = ""
+    steady: bool = True
+
+
+def box(log: Log) -> Named:
+    """Pressure, rates, flights, temperature and the heat capacity of a closed box."""
+    found = pressure(log)
+    for route in found.routes:
+        yield route.name, route.compressibility
+    yield "collision rate", found.collision_rates[0].rate
+    (free,) = found.free_paths
+    yield from (("free path", free.path), ("free time", free.time), ("mean speed", free.speed))
+    yield "temperature along x", temperature(log).species[0].x
+    yield "heat capacity E/T", heat_capacity(log).routes["E/T"]
+    for quantity in ("vx", "free-path", "wait"):
+        yield f"mean {quantity} (histogram)", histogram(log, quantity).distributions[0].mean
+
+
+def strips(log: Log) -> Named:
+    """Density and temperature in strips of a closed box."""
+    (strips,) = profile(log, "x", 4).species
+    for k, place in enumerate(("at the side", "in the middle")):
+        yield f"density {place}", strips.density[k]
+        yield f"temperature {place}", strips.temperature[k]
+    assert strips.gradient is not None
+    yield "temperature gradient", strips.gradient
+
+
+def periodic(log: Log) -> Named:
+    """Transport in a periodic box."""
+    found = transport(log)
+    yield "pairs, virial", pressure(log).routes[-1].compressibility
+    yield "contact value", found.contacts[0].value
+    yield "diffusion coefficient", found.diffusion[0].coefficient
+    yield "velocity correlation time", found.diffusion[0].velocity_correlation_time
+
+
+def currents(log: Log) -> Named:
+    """Coefficients and pressure by the currents of a periodic box."""
+    found = transport(log)
+    assert found.collective is not None
+    for name, one in found.collective.coefficients.items():
+        yield name.replace("_", " "), one.value
+        if one.difference is not None:
+            yield f"{name.replace('_', ' ')}, difference of routes", one.difference
+    for name in ("xx", "xy"):
+        yield f"pressure tensor, {name}", found.collective.pressure[name]
+
+
+def in_each_other(log: Log) -> Named:
+    """Diffusion of two species."""
+    found = transport(log)
+    assert found.collective is not None
+    mutual = found.collective.coefficients["mutual_diffusion"]
+    assert mutual.difference is not None
+    yield from (("mutual diffusion", mutual.value), ("mutual diffusion, difference of routes", mutual.difference))
+    for entry in found.diffusion:
+        yield f"diffusion coefficient, {entry.species}", entry.coefficient
+
+
+def cools(log: Log) -> Named:
+    """A gas that loses energy in its collisions."""
+    found = cooling(log)
+    yield from (("part of T lost per collision", found.loss), ("Haff's time", found.haff), ("a₂", found.fourth))
+
+
+def ordered(log: Log) -> Named:
+    """Hexagonal order in a periodic box."""
+    found = order(log)
+    yield from (("ψ₆ of a disc", found.local), ("Ψ₆ of all discs", found.whole), ("six neighbours", found.hexagons))
+
+
+def bath(log: Log) -> Named:
+    """A gas between thermal walls: fluctuations of its energy, and heat."""
+    yield "heat capacity Var(E)/T²", heat_capacity(log).routes["Var(E)/T²"]
+    yield "temperature", temperature(log).species[0].both
+    yield "heat of a wall", profile(log, "x", 2).heat["left"]
+
+
+def rough(log: Log) -> Named:
+    """Discs with spin: fluctuations of the kinetic energy of motion."""
+    found = heat_capacity(log)
+    yield "heat capacity, fluctuations", found.routes["fluctuations of the kinetic energy"]
+    yield "temperature by kinetic energy", found.temperature
+
+
+def waves(log: Log) -> Named:
+    """Sound in a periodic box."""
+    (wave,) = sound(log).waves
+    yield from (("speed of sound", wave.speed), ("damping of sound", wave.damping))
+    yield from (("thermal diffusivity", wave.spreading), ("adiabatic exponent", wave.exponent))
+
+
+def mixture(log: Log) -> Named:
+    """Two species that start at two temperatures."""
+    for entry in temperature(log).species[:2]:
+        yield f"temperature, {entry.species}", entry.both
+    for rate in pressure(log).collision_rates:
+        yield f"rate, {rate.species} {rate.other}", rate.rate
+
+
+def slit(log: Log) -> Named:
+    """Two chambers and a slit."""
+    yield "flow through a slit", effusion(log).speed
+
+
+def equal_speeds(log: Log) -> Named:
+    """Relaxation from equal speeds."""
+    found = relaxation(log)
+    assert found.in_time is not None
+    assert found.in_collisions is not None
+    yield from (("relaxation time", found.in_time), ("relaxation, collisions per disc", found.in_collisions))
+
+
+FIFTY = f"count = 50\nradius = {math.sqrt(0.2 / (50 * math.pi))!r}\n"
+GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "temperature = 1\n"
+PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+THERMAL = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
+SHORT_AND_LONG = ("collisions_per_disc = 1000", "collisions_per_disc = 4000")
+OFTEN, SELDOM = "snapshot_every = 0.2\n", "snapshot_every = 1\n"
+"""Samples of the energy: some in the time for which it fluctuates."""
+
+SLOW = ("collisions_per_disc = 3000", "collisions_per_disc = 6000")
+"""Runs for what follows the slow exchange of discs and heat across the box: the shorter ones have some 60 times it."""
+
+CURRENTS = ("collisions_per_disc = 4000", "collisions_per_disc = 12000")
+"""Runs for the spread of currents: the shorter ones have 200 times the longest lag."""
+
+SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 12000")
+"""Runs for the energy of a gas that only its walls change."""
+
+CASES = {
+    "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),
+    "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
+    "periodic box": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, periodic),
+    "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT_AND_LONG, ordered),
+    "periodic box, currents": Case(GAS.format(sides=PERIODIC), CURRENTS, currents),
+    "periodic mixture": Case(
+        f"[box]\nsize = [1, 1]\n{PERIODIC}[[species]]\nname = 'light'\ncount = 25\nradius = 0.03\ntemperature = 1\n"
+        "[[species]]\nname = 'heavy'\ncount = 25\nradius = 0.04\nmass = 4\ntemperature = 1\n",
+        CURRENTS,
+        in_each_other,
+    ),
+    "cooling gas": Case(
+        GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n",
+        ("collisions_per_disc = 100", "collisions_per_disc = 200"),
+        cools,
+        steady=False,
+    ),
+    "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, bath, SELDOM),
+    "rough discs": Case(
+        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN
+    ),
+    "waves": Case(
+        f"[box]\nsize = [16, 16]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 100\nradius = 0.5\ntemperature = 1\n",
+        ("until = 400", "until = 1600"),
+        waves,
+    ),
+    "mixture": Case(
+        "[box]\nsize = [1, 1]\n[[species]]\nname = 'light'\ncount = 30\nradius = 0.03\ntemperature = 1.3\n"
+        "[[species]]\nname = 'heavy'\ncount = 20\nradius = 0.045\nmass = 4\ntemperature = 0.5\n",
+        SLOW,
+        mixture,
+    ),
+    "two chambers": Case(
+        "[box]\nsize = [2, 1]\n[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n"
+        "[[wall]]\nname = 'gate'\nfrom = [1, 0.47]\nto = [1, 0.53]\nopens_at = 1\n[[species]]\nname = 'gas'\n"
+        "count = 100\nradius = 0.002\ntemperature = 1\nregion = [0, 0, 1, 1]\n",
+        ("until = 11", "until = 41"),
+        slit,
+        steady=False,
+    ),
+    "equal speeds": Case(
+        "[box]\nsize = [1, 1]\n[[species]]\nname = 'gas'\ncount = 200\nradius = 0.0178\nspeed = 1\n",
+        ("collisions_per_disc = 45",),
+        equal_speeds,
+        steady=False,
+    ),
+}
