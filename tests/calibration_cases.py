@@ -184,8 +184,8 @@ CASES = {
         GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN
     ),
     "waves": Case(
-        f"[box]\nsize = [16, 16]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 100\nradius = 0.5\ntemperature = 1\n",
-        ("until = 400", "until = 1600"),
+        f"[box]\nsize = [12, 12]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 56\nradius = 0.5\ntemperature = 1\n",
+        ("until = 4000", "until = 8000"),
         waves,
     ),
     "mixture": Case(

@@ -21,6 +21,7 @@ def heat_capacity_figure(result: HeatCapacity) -> Figure:
     ax.plot([], [], "o", color=COLOURS[0], label="measured")
     ax.plot([], [], color=COLOURS[1], label="theory")
     ax.set_xlabel("C/N, and γ (no unit, k_B = 1)")
+    ax.set_ylabel("by every route")
     ax.legend()
     figure.set_figheight(1.5 + 0.3 * len(routes))
     return figure

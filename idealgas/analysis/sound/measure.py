@@ -27,6 +27,9 @@ DECAYS, PERIODS = 3.0, 6.0
 SEGMENTS = 32
 """Parts of the window; the spread over them gives the error bars."""
 
+ROUGH = 0.025
+"""Largest relative error of the speed with which error bars do not depend on what was found."""
+
 FEWEST_DECAYS = 100
 """Number of decay times of sound that an estimate takes."""
 
@@ -192,6 +195,11 @@ def _premises(log: Log, window: Window, wave: Wave) -> Iterator[str]:
         )
     if fluid.damping * k > fluid.speed:
         yield f"The waves along {wave.axes} die out within a period: they hardly are sound."
+    if (part := wave.speed.standard_error / wave.speed.value) > ROUGH:
+        yield (
+            f"The speed of sound along {wave.axes} is known to {100 * part:.2g} %; above {100 * ROUGH:g} % error bars "
+            "of it and of γ are up to a fifth too small."
+        )
     if (number := window.duration * fluid.damping * k**2) < FEWEST_DECAYS:
         yield (
             f"The window has {number:.2g} decay times of the waves along {wave.axes}; error bars take {FEWEST_DECAYS}."
