@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from idealgas.log.hdf5.superblock import lookup3
 from log_fuzz.damages import Damaged
 from log_fuzz.sound import LIVE, hold
 
 SIZES = {b"EAHD": 72, b"FAHD": 28, b"BTHD": 38, b"\x89HDF\r\n\x1a\n": 48}
 """Lengths of headers, bytes, with the check sum in the last four: HDF5 File Format Specification 3.0."""
-
-M = 2**32 - 1
 
 
 def spoil(case: int, path: Path, sound: dict[str, bytes], names: Sequence[str]) -> Damaged:
@@ -58,32 +57,3 @@ def _object_header(data: bytes, start: int) -> int:
     wide = 1 << (flags & 3)
     at = start + 6 + 16 * bool(flags & 32) + 4 * bool(flags & 16)
     return at + wide + int.from_bytes(data[at : at + wide], "little") + 4 - start
-
-
-def lookup3(data: bytes) -> int:
-    """The check sum of HDF5's structures: Jenkins, hashlittle of lookup3.c, public domain (2006)."""
-    a = b = c = (0xDEADBEEF + len(data)) & M
-    rest = bytes(data)
-    while len(rest) > 12:
-        a, b, c = _mix(*((x + int.from_bytes(rest[k : k + 4], "little")) & M for x, k in ((a, 0), (b, 4), (c, 8))))
-        rest = rest[12:]
-    if not rest:
-        return c
-    rest = rest.ljust(12, b"\0")
-    a, b, c = ((x + int.from_bytes(rest[k : k + 4], "little")) & M for x, k in ((a, 0), (b, 4), (c, 8)))
-    for r1, r2, r3 in ((14, 11, 25), (16, 4, 14)):
-        c = ((c ^ b) - _turn(b, r1)) & M
-        a = ((a ^ c) - _turn(c, r2)) & M
-        b = ((b ^ a) - _turn(a, r3)) & M
-    return ((c ^ b) - _turn(b, 24)) & M
-
-
-def _turn(x: int, bits: int) -> int:
-    return (x << bits | x >> (32 - bits)) & M
-
-
-def _mix(a: int, b: int, c: int) -> tuple[int, int, int]:
-    for bits in (4, 6, 8, 16, 19, 4):
-        a, c = ((a - c) & M) ^ _turn(c, bits), (c + b) & M
-        a, b, c = b, c, a
-    return a, b, c
