@@ -94,12 +94,21 @@ def cools(log: Log) -> Named:
     """A gas that loses energy in its collisions."""
     found = cooling(log)
     yield from (("part of T lost per collision", found.loss), ("Haff's time", found.haff), ("a₂", found.fourth))
+    yield from (("scatter of numbers", found.last_scatter), ("flow", found.last_flow))
+    if found.temperature_ratio is not None:
+        yield "temperature of spin over that of motion", found.temperature_ratio
 
 
 def ordered(log: Log) -> Named:
     """Hexagonal order in a periodic box."""
     found = order(log)
     yield from (("ψ₆ of a disc", found.local), ("Ψ₆ of all discs", found.whole), ("six neighbours", found.hexagons))
+    assert found.structure is not None
+    for name, value, error in (
+        ("g₆ of neighbours", found.correlation, found.correlation_error),
+        ("S of the longest waves", found.structure.value, found.structure.error),
+    ):
+        yield name, Estimate(float(value[0]), float(error[0]), found.frames)
 
 
 def bath(log: Log) -> Named:
@@ -175,6 +184,12 @@ CASES = {
     ),
     "cooling gas": Case(
         GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n",
+        ("collisions_per_disc = 100", "collisions_per_disc = 200"),
+        cools,
+        steady=False,
+    ),
+    "cooling rough gas": Case(
+        GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n[rotation]\ninertia = 0.5\nroughness = 0.5\n",
         ("collisions_per_disc = 100", "collisions_per_disc = 200"),
         cools,
         steady=False,

@@ -115,6 +115,7 @@ def test_a_gate_counts_while_it_is_there(run):
     assert found["gate, right"].value == 0.0
 
 
+@pytest.mark.slow
 def test_heat_flows_but_forces_balance(run):
     """Between walls of two temperatures the steady gas presses alike on both."""
     sides = "left = { thermal = 2 }, right = { thermal = 1 }, top = 'periodic', bottom = 'periodic'"
@@ -178,6 +179,7 @@ def test_maxwell_holds_at_all_heights(quantity, run):
     assert [test.p_value > LEAST_P for test in gas.tests] == [True]
 
 
+@pytest.mark.slow
 def test_a_cooling_gas_has_no_law_and_would_fail_one(run):
     """What would be tested: speeds of the whole cooling are not Maxwell's at any one temperature."""
     log = run(species(200, 0.1), "restitution.normal=0.9", "run.until=60")

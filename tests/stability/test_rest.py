@@ -38,6 +38,7 @@ def test_five_discs_at_rest_make_few_events(overrides, tmp_path):
 
 
 @pytest.mark.parametrize("wall", [0.9, 0.5, 0.1])
+@pytest.mark.slow
 def test_a_disc_at_rest_bounces_as_the_theory_says(wall, tmp_path):
     """In flights of e t to t, t the contact duration, to a height of g t²/8 at most; the energy is then constant."""
     one = [
@@ -64,6 +65,7 @@ def test_a_disc_at_rest_bounces_as_the_theory_says(wall, tmp_path):
     assert summary.events < 200 * rest.hits[1]
 
 
+@pytest.mark.slow
 def test_a_pressed_piston_comes_to_rest_on_discs(tmp_path):
     text = """
         box.size = [10, 3]

@@ -26,6 +26,7 @@ thermostat = { temperature = 2, rate = 0.5 }
 """
 
 
+@pytest.mark.slow
 def test_kicks_hit_no_wall(make):
     """Sums over the rows of walls alone, and over the samples of a run that counts as it goes."""
     log = make()
@@ -69,6 +70,7 @@ def test_the_energy_that_kicks_give_is_on_the_account(make):
     assert evolution_figure(found).axes
 
 
+@pytest.mark.slow
 def test_what_has_no_law(make):
     log = make()
     assert histogram(log).no_law == ""

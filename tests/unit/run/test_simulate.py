@@ -51,6 +51,7 @@ def test_walls_are_in_the_log_by_their_numbers(tmp_path):
         assert {-1, -3, -4, -5, -6, -7} <= set(partners.tolist())
 
 
+@pytest.mark.slow
 def test_an_effect_adds_its_columns_and_no_others(tmp_path):
     plain = {"time", "disc", "partner", "kind", "position", "velocity"}
     for name, event, arrays, values in (
@@ -121,6 +122,7 @@ species = [{ name = "gas", count = 12, radius = 0.4, temperature = 1, region = [
 
 
 @pytest.mark.parametrize("override", ["rotation.wall_roughness=0", "restitution.wall=0.8"])
+@pytest.mark.slow
 def test_what_is_lost_at_walls_is_accounted_for(override, tmp_path):
     scene = parse_scene(GAS, overrides=[override, "run.method=brute_force"])
     summary, log = run(tmp_path / "run.h5", scene)
@@ -171,6 +173,7 @@ def test_a_bouncing_disc(tmp_path):
     assert summary.energy_drift == 0
 
 
+@pytest.mark.slow
 def test_a_disc_in_a_wedge_bounces_on_each_wall_as_if_there_were_no_other(tmp_path):
     _, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "wedge.toml"))
     with log:

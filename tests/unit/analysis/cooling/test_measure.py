@@ -35,6 +35,7 @@ def test_a_uniform_gas_cools_as_theory_says(make):
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False)) == found.as_dict()
 
 
+@pytest.mark.slow
 def test_spins_come_to_a_ratio_of_their_own(make):
     log = make("rotation={ inertia = 0.5, roughness = 0.5 }", "species.0.spin_temperature=0.2")
     found = cooling(log)

@@ -69,6 +69,7 @@ def test_every_hit_counts_for_its_wall_and_face(make):
     assert (tally.faces[:, :4, 1] == 0).all()
 
 
+@pytest.mark.slow
 def test_walls_and_gravity_account_for_all_momentum(make):
     """Exact: what the discs lose, less what gravity gave them, is what walls got."""
     log = make(SEGMENTS, "gravity.acceleration=[0.2, -0.5]")
@@ -82,6 +83,7 @@ def test_walls_and_gravity_account_for_all_momentum(make):
         assert tally.given[block].sum(axis=0) == pytest.approx(lost, rel=1e-11)
 
 
+@pytest.mark.slow
 def test_a_gate_is_exposed_while_it_is_there(make):
     log = make(SEGMENTS, "run.events=", "run.until=6")
     edges = np.linspace(0, 6, 5)  # 1.5 each, the gate open from 2 to 4

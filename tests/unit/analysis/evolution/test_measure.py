@@ -144,6 +144,7 @@ def test_without_hits_there_is_no_pressure(make):
         (("piston={ velocity = -0.1 }", "species.radius=0.7"), False, False),  # above freezing at the end
     ],
 )
+@pytest.mark.slow
 def test_lines_of_state_where_theory_has_them(overrides, isotherm, adiabat, make):
     lines = evolution(make(*overrides)).pressure.lines
     assert (lines is not None) == isotherm

@@ -179,6 +179,7 @@ def test_without_an_end_it_is_twenty_seconds_of_film(path, tmp_path):
     assert made.frames == 41
 
 
+@pytest.mark.slow
 def test_a_video_has_all_frames(path, tmp_path):
     program("ffmpeg")
     with open_log(path) as log:

@@ -83,6 +83,15 @@ def test_long_waves_know_the_compressibility(make):
     assert found.structure.error[0] < 0.25 * limit
 
 
+def test_a_fluid_has_no_order_of_all_discs(make):
+    """√N |Ψ₆| of 100 states of a gas at φ = 0.3, each 20 collisions a disc after the last: of the order of 1."""
+    log = make("species.gas.count=100", "species.gas.radius=0.0339", "run.collisions_per_disc=2020")
+    states = log.frames(np.linspace(0, log.end_time, 102)[1:-1])
+    whole = [abs(bond_order(state.position, log.box, log.periodic).value.mean()) for state in states]
+    assert len(whole) == 100
+    assert 0.5 < 10 * np.mean(whole) < 4
+
+
 def test_walls_have_neighbours_but_no_structure_factor(make):
     found = order(make(*WALLS))
     assert found.structure is None
