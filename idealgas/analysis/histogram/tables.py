@@ -1,5 +1,7 @@
 """Tables of distributions: means, Kolmogorov-Smirnov tests and, in CSV, the bins."""
 
+import numpy as np
+
 from idealgas.analysis.core.tables import Cell, Number, Table, describe, estimates
 from idealgas.analysis.histogram.measure import Distribution, Histogram
 
@@ -34,9 +36,8 @@ def histogram_tables(result: Histogram) -> list[Table]:
 
 def _bins(found: Distribution) -> list[tuple[Cell, ...]]:
     """Rows of the bins, with the first of the laws as theory, as its mean over a bin."""
-    law = found.tests[0].law if found.tests else None
-    edges, rows = found.edges.tolist(), list[tuple[Cell, ...]]()
-    for low, high, density, error in zip(edges, edges[1:], found.density.tolist(), found.error.tolist(), strict=False):
-        theory = None if law is None else float(law.cdf(high) - law.cdf(low)) / (high - low)
-        rows.append((found.name, *(Number(value) for value in (low, high, density, error, theory))))
-    return rows
+    edges = found.edges
+    expected = np.diff(found.tests[0].law.cdf(edges)) / np.diff(edges) if found.tests else None
+    theory = [None] * len(found.density) if expected is None else expected.tolist()
+    columns = (edges[:-1].tolist(), edges[1:].tolist(), found.density.tolist(), found.error.tolist(), theory)
+    return [(found.name, *map(Number, row)) for row in zip(*columns, strict=True)]

@@ -30,7 +30,8 @@ MOST_ROWS = 600_000
 MOST_DISCS = 100_000
 SHADES = 16
 MOST_INSTANTS, FEWEST_INSTANTS, MOST_NEIGHBOURHOODS = 64, 8, 2**15
-"""Limits of the number of instants at which the page knows the order of discs, and of discs times instants."""
+"""Limits of the number of instants at which the page knows the order of discs, and of discs times instants (but for
+the fewest instants); of more discs it knows none, as to find their neighbours would take longer than all the rest."""
 
 TICKS = 2.0**32 - 1
 """Number of steps in the time of the player; times of events are whole numbers of these steps."""
@@ -140,7 +141,7 @@ def _order_shades() -> np.ndarray:
 
 def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
     """Numbers (F, N) of the shades of all discs at F instants, evenly spaced; nothing where neighbours are not told."""
-    if not log.scene.properties.fixed_walls:
+    if not log.scene.properties.fixed_walls or len(log.discs) > MOST_NEIGHBOURHOODS:
         return {}
     number = min(max(MOST_NEIGHBOURHOODS // len(log.discs), FEWEST_INSTANTS), MOST_INSTANTS)
     try:
