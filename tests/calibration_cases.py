@@ -94,7 +94,8 @@ def cools(log: Log) -> Named:
     """A gas that loses energy in its collisions."""
     found = cooling(log)
     yield from (("part of T lost per collision", found.loss), ("Haff's time", found.haff), ("a₂", found.fourth))
-    yield from (("scatter of numbers", found.last_scatter), ("flow", found.last_flow))
+    yield from (("scatter of numbers, first tenth", found.first_scatter), ("flow, last tenth", found.last_flow))
+    yield "scatter of numbers, last tenth", found.last_scatter
     if found.temperature_ratio is not None:
         yield "temperature of spin over that of motion", found.temperature_ratio
 

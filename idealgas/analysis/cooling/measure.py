@@ -19,7 +19,7 @@ from idealgas.analysis.cooling.theory import (
 )
 from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
+from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
 from idealgas.analysis.core.window import span
 from idealgas.analysis.theory import granular
 from idealgas.analysis.theory.granular import Grains
@@ -125,8 +125,8 @@ def cooling(
         raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions a disc ({needs})")
     law = expected_course(grains, rate, t0, s0, time)
     tenths = collisions / collisions[-1]
-    early, late = mean(scatter[tenths <= 0.1]), mean(scatter[tenths >= 0.9])
-    together = mean(flow[tenths >= 0.9])
+    early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
+    together = mean_of_part(flow, tenths >= 0.9)
     everything = time, collisions, temperature, spin, cumulant
     return Cooling(
         time,
@@ -141,7 +141,7 @@ def cooling(
         None if law is None or log.inertia is None else law[1],
         float(time[window[0]]),
         float(time[-1]),
-        *_averages(grains, rate, t0, Course(*(series[window] for series in everything))),
+        *_averages(grains, rate, t0, Course(*(series[window] for series in everything)), len(log.discs) / dof),
         early,
         late,
         together,
@@ -160,12 +160,17 @@ class Course(NamedTuple):
 
 
 def _averages(
-    grains: Grains, rate: float | None, t0: float, course: Course
+    grains: Grains, rate: float | None, t0: float, course: Course, spin_weight: float
 ) -> tuple[Estimate, Estimate, Estimate, Estimate | None]:
-    """Loss per collision, Haff's time, a₂ and the temperature ratio; t0: temperature at time 0."""
-    lost, apart = -np.diff(np.log(course.temperature)), np.diff(course.collisions)
+    """Loss per collision, Haff's time, a₂ and the temperature ratio.
+
+    t0: temperature at time 0. spin_weight: degrees of freedom of spin over those of motion.
+    """
+    energy = course.temperature + spin_weight * course.spin
+    temperature = energy * (course.temperature / energy).mean()  # without what goes to and fro between motion and spin
+    lost, apart = -np.diff(np.log(temperature)), np.diff(course.collisions)
     loss = ratio(lost, apart, _theory(granular.cooling_per_collision(grains), LOSS_ERROR))
-    slopes = np.diff(course.temperature**-0.5) / np.diff(course.time)  # the same at all times
+    slopes = np.diff(temperature**-0.5) / np.diff(course.time)  # the same at all times
     tau = None if rate is None else granular.cooling_time(grains, rate)
     haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(tau, TIME_ERROR))
     if not grains.rough:

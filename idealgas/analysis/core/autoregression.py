@@ -69,13 +69,13 @@ class Process:
         """Autocovariances (length,) from lag 0 on, averaged over the models."""
         return np.asarray(sum(w * m.covariances(length) for m, w in zip(self.models, self.weights, strict=True)))
 
-    def spread(self) -> Spread:
-        """Standard error of the mean of the series.
+    def spread(self, number: int | None = None) -> Spread:
+        """Standard error of the mean of so many successive samples, by default of all of the series.
 
         If the spectrum at frequency 0 is known as well as from ν independent samples, the mean, which was subtracted,
         has taken one of them: Bessel's correction has ν in place of n.
         """
-        found = [variance_of_mean(model.covariances(self.length))[-1] for model in self.models]
+        found = [variance_of_mean(model.covariances(number or self.length))[-1] for model in self.models]
         logs = np.log(found)
         middle = float(self.weights @ logs)
         doubt = np.array([model.variance_of_log for model in self.models]) + (logs - middle) ** 2
@@ -89,8 +89,10 @@ def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
     return np.asarray((2 * np.cumsum(np.cumsum(covariance)) - n * covariance[0]) / n**2)
 
 
-def error_of_mean(series: np.ndarray) -> Spread:
+def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
     """Standard error of the mean of a stationary series (n,); not a number for fewer than two samples.
+
+    number: of successive samples, if not all are averaged; the whole series tells how they fluctuate.
 
     A long series is averaged in blocks first: what matters are the slow fluctuations, which may be too small to be seen
     beside the fast ones.
@@ -102,7 +104,7 @@ def error_of_mean(series: np.ndarray) -> Spread:
         return Spread(0.0, float(n))
     block = max(n // BLOCKS, 1)
     coarse = series[n % block :].reshape(-1, block).mean(axis=1)
-    return process_of(coarse - coarse.mean()).spread()
+    return process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
 
 
 def is_constant(series: np.ndarray) -> bool:

@@ -174,6 +174,15 @@ def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     return estimate(lambda a: a, series, theory=theory)
 
 
+def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
+    """Estimate of the mean of a few successive samples of a series, whose fluctuations the whole series tells.
+
+    series: (n,). part: (n,), whether a sample belongs to the part.
+    """
+    error, samples = error_of_mean(series, int(part.sum()))
+    return Estimate(float(series[part].mean()), error, samples)
+
+
 def mean_of_flux(flux: np.ndarray, bulk: np.ndarray, theory: Theory | float | None = None) -> Estimate:
     """Estimate of the mean of a flux through a boundary, such as the force on a wall.
 

@@ -47,6 +47,17 @@ def test_intervals_of_short_series_hold(name, length):
     assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
 
 
+@pytest.mark.parametrize("name", PROCESSES)
+def test_intervals_of_a_tenth_of_a_series_hold(name):
+    rng = np.random.default_rng(4)
+    held = 0
+    for _ in range(300):
+        series = series_of(PROCESSES[name][0], 250, rng)
+        error, samples = autoregression.error_of_mean(series, 25)
+        held += abs(series[-25:].mean()) < stats.t.ppf(0.975, samples - 1) * error
+    assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
+
+
 def test_variance_of_mean_sums_all_covariances():
     covariance = np.array([2.0, 0.7, -0.3, 0.1])
     found = autoregression.variance_of_mean(covariance)
