@@ -11,6 +11,7 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.trajectories import sample_trajectories
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.sound.law import Decay, Fluid, fit
 from idealgas.analysis.sound.theory import Expected, expected_sound
@@ -18,7 +19,7 @@ from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 from idealgas.log import Log
 
-STEPS = 24
+STEPS = 12
 """Instants in a period of the sound that is expected."""
 
 DECAYS, PERIODS = 3.0, 6.0
@@ -34,6 +35,8 @@ FEWEST_DECAYS = 100
 """Number of decay times of sound that an estimate takes."""
 
 MOST_FRAMES = 2**17
+AT_ONCE = 2**20
+"""Number of places that are in memory together."""
 
 HYDRODYNAMIC = 0.5
 """Largest k times the mean free path, and k times the diameter, at which waves are those of a fluid."""
@@ -135,13 +138,17 @@ def _amplitudes(
     log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Callable[[int, int], None] | None
 ) -> np.ndarray:
     """Σ exp(-ikx) over all discs (A, G) at G times, complex, of the longest waves along the axes."""
-    drift, found = ensemble(log).drift, np.empty((len(axes), len(times)), complex)
-    for g, state in enumerate(log.frames(times)):
+    drift, discs = ensemble(log).drift, np.arange(len(log.discs))
+    found = np.empty((len(axes), len(times)), complex)
+    some = max(AT_ONCE // len(discs), 1)
+    for first in range(0, len(times), some):
+        now = times[first : first + some]
+        places, _ = sample_trajectories(log, now, discs)
         for a, axis in enumerate(axes):
-            phase = (state.position[:, axis] - drift[axis] * times[g]) * (2 * math.pi / log.box[axis])
-            found[a, g] = complex(np.cos(phase).sum(), -np.sin(phase).sum())
+            phase = (places[:, :, axis] - drift[axis] * now[:, None]) * (2 * math.pi / log.box[axis])
+            found[a, first : first + some] = np.cos(phase).sum(axis=1) - 1j * np.sin(phase).sum(axis=1)
         if progress is not None:
-            progress(g + 1, len(times))
+            progress(min(first + some, len(times)), len(times))
     return found
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy import fft
 
 from idealgas.analysis.core.collisions import (
     CollisionRate,
@@ -26,13 +27,13 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.trajectories import sample_trajectories
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
 from idealgas.analysis.transport.enskog import Enskog, enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
-from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 
@@ -328,8 +329,10 @@ def autocorrelation(velocities: np.ndarray) -> np.ndarray:
     velocities: (segments, L, discs, 2), at equal steps.
     """
     length = velocities.shape[1]
-    spectrum = np.fft.rfft(velocities, 2 * length, axis=1)
-    raw = np.fft.irfft((np.abs(spectrum) ** 2).sum(axis=3).mean(axis=2), 2 * length, axis=1)[:, :length]
+    padded = fft.next_fast_len(2 * length - 1, real=True)
+    spectrum = np.fft.rfft(velocities, padded, axis=1)
+    power = (spectrum.real**2 + spectrum.imag**2).sum(axis=3).mean(axis=2)
+    raw = np.fft.irfft(power, padded, axis=1)[:, :length]
     return raw / np.arange(length, 0, -1)
 
 

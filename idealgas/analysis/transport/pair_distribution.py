@@ -77,6 +77,8 @@ def _normalised(
 
 def chance_within(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
     """Probability that two random points in concentric rectangles of sides `reach` are closer than the distances r."""
+    if all(periodic):
+        return np.asarray(math.pi * r**2 / math.prod(a for a, _ in reach))
     angle = (np.arange(720) + 0.5) / 720 * math.pi / 2
     steps = np.linspace(0.0, 1.0, 65)
     rho = (r[:, None] * steps)[:, :, None]

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from idealgas.analysis.core.trajectories import sample_trajectories
 from idealgas.analysis.transport.measure import autocorrelation, mean_square_displacement, transport
 from idealgas.analysis.transport.pair_distribution import chance_within
-from idealgas.analysis.transport.trajectories import sample_trajectories
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
