@@ -176,7 +176,7 @@ SLOW = ("collisions_per_disc = 3000", "collisions_per_disc = 6000")
 CURRENTS = ("collisions_per_disc = 4000", "collisions_per_disc = 8000")
 """Runs for the spread of currents: the shorter ones have 200 times the longest lag."""
 
-SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 8000")
+SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 12000")
 """Runs for the energy of a gas that only its walls change."""
 
 CASES = {
@@ -192,18 +192,20 @@ CASES = {
     ),
     "cooling gas": Case(
         GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n",
-        ("collisions_per_disc = 100", "collisions_per_disc = 200"),
+        ("collisions_per_disc = 400", "collisions_per_disc = 800"),
         cools,
         steady=False,
     ),
     "cooling rough gas": Case(
         GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n[rotation]\ninertia = 0.5\nroughness = 0.5\n",
-        ("collisions_per_disc = 100", "collisions_per_disc = 200"),
+        ("collisions_per_disc = 400", "collisions_per_disc = 800"),
         cools,
         steady=False,
     ),
     "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, bath, SELDOM),
-    "rough discs": Case(GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT, rough, OFTEN),
+    "rough discs": Case(
+        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN
+    ),
     "waves": Case(
         f"[box]\nsize = [12, 12]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 56\nradius = 0.5\ntemperature = 1\n",
         ("until = 4000", "until = 6000"),
