@@ -4,6 +4,7 @@ import faulthandler
 import os
 import signal
 import warnings
+from functools import lru_cache
 from pathlib import Path
 from typing import NoReturn
 
@@ -33,21 +34,30 @@ def try_reading(path: str | os.PathLike[str]) -> None:
     such trial. Raises DamageError if HDF5 crashes, does not end, or asks for far too much memory. Other faults are left
     to those who read the log then, and say them better.
     """
-    if not hasattr(os, "fork"):
+    try:
+        status = os.stat(path)
+    except OSError:
         return
+    if hasattr(os, "fork"):
+        _try(Path(path), (status.st_ino, status.st_size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=1)  # commands that open a log twice fork once, before they have threads
+def _try(path: Path, version: tuple[int, ...]) -> None:
+    """Fork and wait; version: of the file, which is not tried again while it is the same."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # threads of numpy's libraries, which are not used here
         child = os.fork()
     if not child:
-        _read(Path(path))
+        _read(path)
     _, status = os.waitpid(child, 0)
     code = os.waitstatus_to_exitcode(status)
     if code == -signal.SIGXCPU:
-        raise DamageError(Path(path), f"HDF5 does not come to an end in reading it ({SECONDS} s)")
+        raise DamageError(path, f"HDF5 does not come to an end in reading it ({SECONDS} s)")
     if code == OUT_OF_MEMORY:
-        raise DamageError(Path(path), f"HDF5 asks for more than {MEMORY:,} bytes to read its structure")
+        raise DamageError(path, f"HDF5 asks for more than {MEMORY:,} bytes to read its structure")
     if code < 0 and code not in (-signal.SIGKILL, -signal.SIGTERM):
-        raise DamageError(Path(path), f"HDF5 crashes in reading it ({signal.Signals(-code).name})")
+        raise DamageError(path, f"HDF5 crashes in reading it ({signal.Signals(-code).name})")
 
 
 def _read(path: Path) -> NoReturn:
