@@ -198,7 +198,7 @@ CASES = {
     ),
     "cooling rough gas": Case(
         GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n[rotation]\ninertia = 0.5\nroughness = 0.5\n",
-        ("collisions_per_disc = 400", "collisions_per_disc = 800"),
+        ("collisions_per_disc = 200", "collisions_per_disc = 400"),
         cools,
         steady=False,
     ),
