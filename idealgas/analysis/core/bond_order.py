@@ -23,6 +23,9 @@ SHORTEST = 1e-6
 """Shortest shared edge of two neighbours that are counted, in mean distances: shorter ones come from rounding, where
 four discs or more stand on a circle."""
 
+ROUNDING = 1e-9
+"""How far outside the box a position may be, in box lengths."""
+
 
 class BondOrder(NamedTuple):
     """Order around each of N discs.
@@ -43,8 +46,11 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
     neighbour, and its edges do not count.
 
     Raises:
-        UserError: if the positions have no Voronoi diagram, as those of several discs are the same.
+        UserError: if the positions have no Voronoi diagram, as those of several discs are the same, or if a disc is not
+            in the box.
     """
+    if (np.abs(position / box - 0.5) > 0.5 + ROUNDING).any():
+        raise UserError("no neighbours can be told: a disc is outside the box")
     number, spacing = len(position), math.sqrt(box[0] * box[1] / len(position))
     margin = MARGIN * spacing
     while True:

@@ -108,3 +108,10 @@ def test_100_states_of_a_fluid_have_no_common_direction():
 def test_discs_at_one_place_are_refused():
     with pytest.raises(UserError, match="at one place"):
         bond_order(np.full((3, 2), math.nan), (1, 1), (True, True))
+
+
+def test_discs_outside_the_box_are_refused():
+    inside = np.random.default_rng(1).random((20, 2))
+    for beyond in ((0.5, 3.0), (-0.2, 0.5)):
+        with pytest.raises(UserError, match="outside the box"):
+            bond_order(np.vstack((inside, beyond)), (1, 1), (False, False))
