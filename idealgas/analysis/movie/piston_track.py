@@ -41,6 +41,8 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
     if piston is None:
         return None
     sampled, places = log.observables["piston_position"]
+    if not len(sampled):
+        return None
     first = max(int(sampled.searchsorted(start, "right")) - 1, 0)
     some = slice(first, int(sampled.searchsorted(end)) + 1)
     times, knots = [sampled[some]], [places[some]]
