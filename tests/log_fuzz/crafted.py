@@ -50,4 +50,11 @@ def craft(case: int, path: Path, sound: dict[str, bytes], names: Sequence[str]) 
                 effects.append(effect)
             if len(effects) == wanted:
                 break
-    return Crafted(name, tuple(effects))
+        rows = dict(editor.rows)
+    return Crafted(name, tuple(_unseen(effect, rows) for effect in effects))
+
+
+def _unseen(effect: Effect, rows: dict[str, int]) -> Effect:
+    """The effect, which is none on a table that was left without rows."""
+    gone = effect.paths and all(rows.get(path.partition("/")[0]) == 0 for path in effect.paths)
+    return orderly(effect.what) if gone else effect

@@ -5,7 +5,6 @@ Samples are stored at the starts of epochs, whose length depends on the speed of
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -53,10 +52,10 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         step = np.diff(time).max()
         grid = np.arange(first_time, last + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid, "right") - 1)
-    series: dict[str, Any] = {name: values[at] for name, (_, values) in observed.items()}
-    kinetic, energy, position = series["kinetic_energy"], series["energy"], None
+    kinetic, energy = (observed[name][1][at] for name in ("kinetic_energy", "energy"))
+    position = None
     if scene.piston and scene.piston.mass:
-        position, velocity = series["piston_position"], series["piston_velocity"]
+        position, velocity = (observed[name][1][at] for name in ("piston_position", "piston_velocity"))
         pull = scene.piston.acceleration(scene.box.size, scene.gravity)
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
     first = 0 if start is not None else first_steady(log, (kinetic, energy))

@@ -155,7 +155,7 @@ def _run(log: Log, found: dict) -> str:
     summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
     if "trial" not in log.columns:
         summary = [row for row in summary if row[0] != SUMMARY["trials"]]
-    state = [("state", found["file"]["state"]), ("created", found["file"]["created"]), *summary]
+    state = [(name, found["file"][name]) for name in ("state", "created") if name in found["file"]] + summary
     tables = (
         Table("Discs", ("species", "N", "radius (length)", "mass (mass)"), species),
         Table("Run", ("", ""), state),
