@@ -287,7 +287,7 @@ class Log(LogHeader):
                 replay, base = self._replay(nearest), nearest
             for block in self.chunks(("time", "disc", *replay.state), replay.row, self.row_at(time, "right")):
                 replay.follow(block)
-            yield replay.at(time)
+            yield self._source.checked(partial(replay.at, time), f"the state at time {time:g}")
 
     def to_pandas(
         self,

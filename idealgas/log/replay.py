@@ -10,6 +10,9 @@ from idealgas.log.source import Entries, Source
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
+MOST_BOXES = 2.0**30
+"""Box lengths of a free flight; images are counted in 32 bits."""
+
 
 class LogState(NamedTuple):
     """All discs at one time, in order of id.
@@ -112,7 +115,10 @@ class Replay:
         self.row += len(block.time)
 
     def at(self, time: float) -> LogState:
-        """All discs in free flight to a time between this row and the next."""
+        """All discs in free flight to a time between this row and the next.
+
+        ValueError if a disc flies through more boxes than an image can count.
+        """
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]
         delay = time - self._time
@@ -123,6 +129,10 @@ class Replay:
                 velocity[:, axis] = velocity_after(velocity[:, axis], pull, delay)
             if self._periodic[axis]:
                 place, boxes = wrapped(place, self._box[axis])
+                if not (np.abs(boxes) < MOST_BOXES).all():
+                    raise ValueError(
+                        f"a disc flies through {np.abs(boxes).max():g} boxes (allowed up to {MOST_BOXES:g})"
+                    )
                 now["image"][:, axis] += boxes.astype(np.int32)
             position[:, axis] = place
         return LogState(time, **now)

@@ -28,6 +28,9 @@ BLOCKS = 256
 NOISE = 1e-12
 """Share of the variance below which what a model leaves unexplained is rounding."""
 
+LEAST = 1e-150
+"""Change of a series below which its square is no number any more, in any unit."""
+
 
 class Model(NamedTuple):
     """Autoregressive model of order p of a series of n samples.
@@ -108,8 +111,8 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
 
 
 def is_constant(series: np.ndarray) -> bool:
-    """Whether a series changes by rounding only."""
-    return not np.ptp(series) > NOISE * np.abs(series).max()
+    """Whether a series changes by rounding only, or so little that squares of the changes are 0."""
+    return not np.ptp(series) > max(NOISE * np.abs(series).max(), LEAST)
 
 
 def process_of(series: np.ndarray) -> Process:
