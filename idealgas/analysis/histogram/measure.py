@@ -245,7 +245,7 @@ def _free_flight_rates(
             return known.ensemble.temperature, rates, ""
         why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
     time, collisions = log.observables["disc_collisions"]
-    if not len(time) or not collisions[-1] > collisions[0]:
+    if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
         raise UserError(f"{log.path}: too few collisions of discs for a distribution")
     rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
     return known.scale, np.diag(np.full(len(discs.name), rate)), why_not
