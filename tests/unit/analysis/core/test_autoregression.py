@@ -58,6 +58,11 @@ def test_intervals_of_a_tenth_of_a_series_hold(name):
     assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
 
 
+def test_a_series_whose_squares_are_zero_is_constant():
+    found = autoregression.error_of_mean(1e-302 * np.random.default_rng(5).normal(size=300))
+    assert found == (0.0, 300.0)
+
+
 def test_variance_of_mean_sums_all_covariances():
     covariance = np.array([2.0, 0.7, -0.3, 0.1])
     found = autoregression.variance_of_mean(covariance)
