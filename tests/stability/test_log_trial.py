@@ -14,6 +14,7 @@ from idealgas.log.trial import try_reading
 ENDLESS, GREEDY = "HDF5 does not come to an end", "HDF5 asks for more than 1,073,741,824 bytes"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "command", "what"), [(80, "resume", ENDLESS), (113, "resume", GREEDY), (113, "info", GREEDY)]
 )
