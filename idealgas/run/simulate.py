@@ -175,7 +175,7 @@ class LoggedRun:
         while not simulation.finished(stop):
             before = time.perf_counter()
             self._slice(slice_events)
-            if simulation.paused:
+            if simulation.paused and self._scene.log.snapshot_every:  # not where time has no more numbers
                 self._snapshot()
             if simulation.epoch_over and not simulation.finished(stop):
                 self._watch.end_epoch()

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from idealgas.analysis.core.autoregression import error_of_mean
+from idealgas.analysis.core.autoregression import error_of_mean, is_constant
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
@@ -128,7 +128,7 @@ def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
 
 def inefficiency(series: np.ndarray) -> float:
     """Statistical inefficiency g ≥ 1 of a series: samples per independent sample; 1 if it is too short or constant."""
-    if len(series) < 4 or not np.ptp(series) > 1e-12 * np.abs(series).max():
+    if len(series) < 4 or is_constant(series):
         return 1.0
     return float(timeseries.statistical_inefficiency(series))
 
@@ -138,7 +138,7 @@ def ensemble_inefficiency(series: np.ndarray) -> float:
 
     series: array of shape (samples, members).
     """
-    if len(series) < 4 or np.ptp(series) == 0:
+    if len(series) < 4 or is_constant(series):
         return 1.0
     return float(timeseries.statistical_inefficiency_multiple(list(series.T)))
 
