@@ -29,10 +29,12 @@ LIVE = "live"
 """The one that was killed, while another process holds it as its writer would."""
 MADE = {
     "sums": ("mixture", "run.events=3000", "log.pressure=true", "log.snapshot_every=0.5"),
+    "waves": ("sound", "species.0.count=56", "box.size=[12, 12]", "run.until=60"),
+    "grains": ("cooling", "species.0.count=60", "run.until=100"),
     "chunks": ("quickstart", "run.events=40000", 'log.compression="none"'),
 }
 """Scenes of those that are made."""
-CRAFTED = (*OLD, "sums")
+CRAFTED = (*OLD, "sums", "waves", "grains")
 DAMAGED = (*OLD, LIVE, *MADE)
 
 
