@@ -54,7 +54,7 @@ def documents(draw):
             {"position": [10 * k + draw(st.floats(3, 7)), draw(st.floats(3, 497))], "radius": draw(st.floats(1e-5, 1))}
             for k in range(draw(st.integers(1, 5)))
         ],
-        "run": {"until": draw(st.floats(SMALLEST, 1e-15)), "events": draw(st.integers(1, 2**63 - 1))},
+        "run": {"until": draw(st.floats(SMALLEST, 1e-45)), "events": draw(st.integers(1, 2**63 - 1))},
         "log": {"events": draw(st.booleans()), "compression": draw(st.sampled_from(["gzip", "none"]))},
     }
 
