@@ -3,6 +3,7 @@
 import faulthandler
 import os
 import signal
+import sys
 import warnings
 from functools import lru_cache
 from pathlib import Path
@@ -30,15 +31,15 @@ OUT_OF_MEMORY = 3
 def try_reading(path: str | os.PathLike[str]) -> None:
     """Open a log and read the indexes of its columns in a forked process, which bears what HDF5 may do.
 
-    For commands, before they open it themselves: a program with threads must not fork. Systems without fork have no
-    such trial. Raises DamageError if HDF5 crashes, does not end, or asks for far too much memory. Other faults are left
-    to those who read the log then, and say them better.
+    For commands, before they open it themselves: a program with threads must not fork. Only Linux has the trial, as a
+    fork is not safe beside the libraries of other systems. Raises DamageError if HDF5 crashes, does not end, or asks
+    for far too much memory. Other faults are left to those who read the log then, and say them better.
     """
     try:
         status = os.stat(path)
     except OSError:
         return
-    if hasattr(os, "fork"):
+    if sys.platform == "linux":
         _try(Path(path), (status.st_ino, status.st_size, status.st_mtime_ns))
 
 
@@ -98,11 +99,9 @@ def _walk(group: h5py.h5g.GroupID, depth: int) -> None:
 def _limit() -> None:
     import resource  # not on every system
 
-    with open("/dev/null", "w") as nowhere:
+    with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
-    mapped = Path("/proc/self/statm")
-    if mapped.exists():
-        limit = int(mapped.read_text().split()[0]) * resource.getpagesize() + MEMORY
-        resource.setrlimit(resource.RLIMIT_AS, (limit, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    mapped = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (mapped + MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))

@@ -29,7 +29,7 @@ NOISE = 1e-12
 """Share of the variance below which what a model leaves unexplained is rounding."""
 
 LEAST = 1e-150
-"""Change of a series below which its square is no number any more, in any unit."""
+"""Change of a series, in its own unit, whose square may be rounded to 0."""
 
 
 class Model(NamedTuple):
@@ -93,7 +93,9 @@ def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
 
 
 def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
-    """Standard error of the mean of a stationary series (n,); not a number for fewer than two samples.
+    """Standard error of the mean of a stationary series (n,).
+
+    Not a number for fewer than two samples, or where the series is not constant but its squares are 0.
 
     number: of successive samples, if not all are averaged; the whole series tells how they fluctuate.
 
@@ -104,7 +106,7 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
     if n < 2:
         return Spread(math.nan, float(n))
     if is_constant(series):
-        return Spread(0.0, float(n))
+        return Spread(math.nan if _changes(series) else 0.0, float(n))
     block = max(n // BLOCKS, 1)
     coarse = series[n % block :].reshape(-1, block).mean(axis=1)
     return process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
@@ -112,7 +114,12 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
 
 def is_constant(series: np.ndarray) -> bool:
     """Whether a series changes by rounding only, or so little that squares of the changes are 0."""
-    return not np.ptp(series) > max(NOISE * np.abs(series).max(), LEAST)
+    return not (_changes(series) and np.ptp(series) > LEAST)
+
+
+def _changes(series: np.ndarray) -> bool:
+    """Whether a series changes by more than rounding."""
+    return bool(np.ptp(series) > NOISE * np.abs(series).max())
 
 
 def process_of(series: np.ndarray) -> Process:

@@ -154,7 +154,7 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory |
     influence = np.zeros(columns.shape[1])
     with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives not a number
         for k, column in enumerate(columns):
-            if (step := 1e-3 * column.std()) > 0:
+            if (step := 1e-3 * (column.std() or np.ptp(column))) > 0:  # squares of tiny numbers are 0
                 shift = np.zeros(len(means))
                 shift[k] = step
                 slope = (function(*(means + shift)) - function(*(means - shift))) / (2 * step)

@@ -56,7 +56,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         grid = np.arange(first_time, last + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid, "right") - 1)
     kinetic, energy = (observed[name][1][at] for name in ("kinetic_energy", "energy"))
-    if np.abs(energy).max(initial=0.0) > MOST:
+    if np.abs((kinetic, energy)).max(initial=0.0) > MOST:
         raise UserError(f"{log.path}: energies beyond {MOST:g}, whose squares are no numbers")
     position = None
     if scene.piston and scene.piston.mass:

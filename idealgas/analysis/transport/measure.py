@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import fft
 
 from idealgas.analysis.core.collisions import (
     CollisionRate,
@@ -32,6 +31,7 @@ from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
+from idealgas.analysis.transport.correlations import autocorrelation, mean_square_displacement
 from idealgas.analysis.transport.enskog import Enskog, enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.errors import NotApplicableError, UserError
@@ -321,31 +321,3 @@ def _of_species(
 
 def _tail(lag: np.ndarray, expected: Enskog) -> np.ndarray:
     return hard_discs.long_time_tail(lag, expected.density, expected.diffusion.value, expected.kinematic_viscosity)
-
-
-def autocorrelation(velocities: np.ndarray) -> np.ndarray:
-    """Velocity autocorrelation ⟨v(t)·v(t + lag)⟩ (segments, L), averaged over discs and the times t of each segment.
-
-    velocities: (segments, L, discs, 2), at equal steps.
-    """
-    length = velocities.shape[1]
-    padded = fft.next_fast_len(2 * length - 1, real=True)
-    spectrum = np.fft.rfft(velocities, padded, axis=1)
-    power = (spectrum.real**2 + spectrum.imag**2).sum(axis=3).mean(axis=2)
-    raw = np.fft.irfft(power, padded, axis=1)[:, :length]
-    return raw / np.arange(length, 0, -1)
-
-
-def mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """Mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and times t of a segment, length².
-
-    places: (segments, L, discs, 2), at equal steps. It is computed from Σ r² and the autocorrelation of the
-    positions: Calandrini et al., Collection SFN 12, 201 (2011).
-    """
-    length = places.shape[1]
-    places = places - places[:, :1]  # smaller numbers keep more digits
-    square = (places**2).sum(axis=3).mean(axis=2)
-    both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
-    steps = np.arange(length)
-    first, last = both[:, length - steps], both[:, -1:] - both[:, steps]
-    return (first + last) / (length - steps) - 2 * autocorrelation(places)

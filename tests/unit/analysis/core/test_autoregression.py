@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -58,9 +60,11 @@ def test_intervals_of_a_tenth_of_a_series_hold(name):
     assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
 
 
-def test_a_series_whose_squares_are_zero_is_constant():
-    found = autoregression.error_of_mean(1e-302 * np.random.default_rng(5).normal(size=300))
-    assert found == (0.0, 300.0)
+def test_a_series_whose_squares_are_zero_has_no_error():
+    tiny = 1e-302 * np.random.default_rng(5).normal(size=300)
+    assert autoregression.is_constant(tiny)
+    assert math.isnan(autoregression.error_of_mean(tiny).error)
+    assert autoregression.error_of_mean(np.full(300, 1e-302)) == (0.0, 300.0)
 
 
 def test_variance_of_mean_sums_all_covariances():

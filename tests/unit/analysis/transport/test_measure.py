@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.trajectories import sample_trajectories
-from idealgas.analysis.transport.measure import autocorrelation, mean_square_displacement, transport
+from idealgas.analysis.transport.correlations import autocorrelation, mean_square_displacement
+from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.pair_distribution import chance_within
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
