@@ -84,7 +84,7 @@ class LogHeader:
         """The discs at the start of the run: constants of each disc, and position and velocity at time 0."""
         columns = {column.name: self._source.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         names = tuple(self._source.texts("discs/species_name"))
-        self._source.checked(lambda: check_species(columns["species"], len(names)), "discs/species")
+        self._source.checked(lambda: check_species(columns["species"], names), "discs/species")
         return Gas(box=self.box, species_names=names, **columns)
 
     def stored(self, table: str) -> list[Column]:

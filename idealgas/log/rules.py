@@ -46,7 +46,8 @@ MOST_PACKED = 1100
 
 LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST = 1e-100, 1e50, 1e150
-"""Bounds on masses and radii, on these and speeds, and on times and spins: their products are finite numbers too."""
+"""Bounds on masses and radii, on these and speeds, and on times, spins and observables: their products, and sums of
+their squares, are finite numbers too."""
 
 Range = tuple[float, float]
 
@@ -159,8 +160,7 @@ class Rules:
             return
         if name == "partner" and self._kicks:
             data = np.where(data == BATH, 0, data)
-        unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
-        low, high = self._ranges.get(name, (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST))
+        low, high = self._ranges.get(name, self._range_of_others(path))
         in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())
         if name == "position":
             self._check_places(path, data, start)
@@ -171,6 +171,15 @@ class Rules:
             self._check_order(path, data, start, in_order)
         if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:
             raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0, or from {LEAST:g} on)")
+        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < LEAST:  # whose squares are no numbers
+            raise ValueError(f"no component beyond {largest:g} (allowed from {LEAST:g} on, or all 0)")
+
+    def _range_of_others(self, path: str) -> Range:
+        """What values of a column may be that has no rule of its own."""
+        if path.startswith("observables/"):
+            return -LONGEST, LONGEST
+        unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
+        return (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST)
 
     def _check_places(self, path: str, data: np.ndarray, start: int) -> None:
         """Positions: in the box at the start, and later too unless steps of time carry discs beyond it."""
@@ -241,10 +250,12 @@ def check_names(names: Mapping[str, Sequence[str]]) -> None:
             raise ValueError(f"{table}: no times")
 
 
-def check_species(species: np.ndarray, kinds: int) -> None:
-    """That there is a disc of each of `kinds` species."""
-    if missing := set(range(kinds)) - set(np.unique(species).tolist()):
+def check_species(species: np.ndarray, names: Sequence[str]) -> None:
+    """That each species has a disc and a name of its own."""
+    if missing := set(range(len(names))) - set(np.unique(species).tolist()):
         raise ValueError(f"no disc of species {min(missing)}")
+    if not all(names) or len(set(names)) != len(names):
+        raise ValueError(f"names {', '.join(map(repr, names))} (allowed one for each species, and none twice)")
 
 
 def check_boundary(words: object) -> None:

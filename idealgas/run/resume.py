@@ -150,10 +150,11 @@ def _history_of(log: Log, last: Checkpoint | None, scene: Scene) -> RunHistory:
     if last is None:
         return RunHistory(energy_of(log.discs, make_effects(scene, log.discs)))
     gas, effects = restore(log.discs, make_effects(scene, log.discs), log.checkpoints[0])
-    deepest = {
-        name: float(values[times <= last.time].max())
-        for name, (times, values) in log.observables.items()
-        if name in ("overlap", "outside")
-    }
+    deepest = {}
+    for name in {"overlap", "outside"} & log.observables.keys():
+        times, values = log.observables[name]
+        if not (so_far := values[times <= last.time]).size:
+            raise DamageError(log.path, f"observables/{name}: no sample up to the last checkpoint")
+        deepest[name] = float(so_far.max())
     snapshots = int(log.snapshot_times.searchsorted(last.time, "right"))
     return RunHistory(energy_of(gas, effects), **deepest, snapshots=snapshots, begun=True)

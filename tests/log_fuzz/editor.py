@@ -97,7 +97,9 @@ class Editor:
     def raw(self, path: str, stored: bytes, mask: int = chunks.COMPRESSED) -> None:
         """Other bytes in the first chunk of a dataset, as they are."""
         dataset = open_dataset(self.file, path)
-        dataset.write_direct_chunk((0,) * dataset.rank, stored, mask)
+        origin = (0,) * dataset.rank
+        dataset.write_direct_chunk(origin, stored + b"\0", mask)  # HDF5 keeps the mask of a chunk that keeps its size
+        dataset.write_direct_chunk(origin, stored, mask)
 
     def drop(self, path: str) -> None:
         """Take the dataset away, and off the list."""

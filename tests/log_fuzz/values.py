@@ -242,7 +242,10 @@ def sample_order(editor: Editor, random: Generator) -> Effect | None:
     path = some(random, [path for path in found if editor.length(path) > 2])
     if path is None:
         return None
-    editor.store(path, editor.values(path)[::-1].copy())
+    values = editor.values(path)
+    if values[0] > values[-1]:  # backwards already, and sound if turned round again
+        return None
+    editor.store(path, values[::-1].copy())
     return broken("backwards:", path) if path.endswith("time") else orderly(f"backwards: {path}")
 
 

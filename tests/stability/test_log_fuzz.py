@@ -23,6 +23,7 @@ REST = [form for form in FORMS if form[0] in SLOW]
 
 FOUND = [
     (121, "kicks", "order", "events/velocity in another order"),  # discs outside the box: neighbours without end
+    (388, "waves", "sound", "discs/velocity all 1e-200"),
     (806, "effects", "profile", "checkpoints/velocity times 1.15292e+18"),  # more boxes than an image counts
     (1157, "effects", "pressure", "events/velocity times 9.33264e-302"),  # squares are 0
     (2267, "killed", "resume", "checkpoints/velocity times 9.33264e-302"),  # nothing happens in all time
@@ -31,6 +32,8 @@ FOUND = [
     (2634, "plain", "report", "/ created gone"),
     (2830, "rough", "heat-capacity", "never had observables/energy/value"),
     (2877, "kicks", "info", "no rows of checkpoints"),  # that were broken before
+    (3303, "interrupted", "resume", "no rows of observables"),
+    (3761, "thermal", "evolution", "-1.7e+308 in observables/wall_energy/value"),
     (4015, "thermal", "histogram", "observables/kinetic_energy/time all -0.0"),  # free times without time
 ]
 """Crafted logs that commands once did not bear: number, sound log, command, and a part of what was done."""

@@ -35,22 +35,24 @@ BY_HAND = [(case, list(SCENES)[case % len(SCENES)]) for case in range(1, 83)]
 TEN = 10
 
 
-def command(kind: str) -> list[str]:
+def command(kind: str, *more: str) -> list[str]:
+    """Arguments of the run of a kind, with more overrides."""
     name, *overrides = SCENES[kind]
-    settings = [argument for override in (*NO_END, *overrides) for argument in ("--set", override)]
+    settings = [argument for override in (*NO_END, *overrides, *more) for argument in ("--set", override)]
     return ["run", str(ROOT / f"{name}.toml"), *settings]
 
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
-    """Log and duration of the run of a kind."""
+    """Log and duration of the run of a kind, by one thread."""
     folder = tmp_path_factory.mktemp("undisturbed")
+    one = "run.threads=1"
 
     @cache
     def of(kind: str) -> tuple[Path, float]:
-        idealgas(*command(kind), "-o", folder / f"{kind}-first.h5")  # compiles
+        idealgas(*command(kind, one), "-o", folder / f"{kind}-first.h5")  # compiles
         started = time.monotonic()
-        result = idealgas(*command(kind), "-o", folder / f"{kind}.h5")
+        result = idealgas(*command(kind, one), "-o", folder / f"{kind}.h5")
         assert result.returncode == 0, result.stderr
         return folder / f"{kind}.h5", time.monotonic() - started
 

@@ -95,11 +95,16 @@ VALUES = {
     "left of the box": (put("events/position", (17, 0), -1e-3), "events/position .*-0.001 in row 17"),
     "species S": (put("discs/species", 3, 2), r"discs/species: 2 in row 3 \(allowed 0 to 1"),
     "species of none": (put("discs/species", slice(None), 0), "discs/species: no disc of species 1"),
+    "species without a name": (texts("discs/species_name", 0, b""), "discs/species: names '', .* .allowed one for each"),
     "radius 0": (put("discs/radius", 3, 0.0), "discs/radius: 0 in row 3"),
     "radius nan": (put("discs/radius", 3, NAN), "discs/radius: nan in row 3"),
     "mass negative": (put("discs/mass", 3, -1.0), "discs/mass: -1 in row 3"),
     "disc outside": (put("discs/position", (3, 0), 11.0), "discs/position: 11 in row 3"),
     "disc velocity": (put("discs/velocity", (3, 0), INF), "discs/velocity: inf in row 3"),
+    "no speed": (
+        put("discs/velocity", slice(None), 1e-200),
+        "discs/velocity: no component beyond 1e-200 .allowed from 1e-100 on, or all 0",
+    ),
     "too few masses": (cut("discs/mass", 24), r"discs/mass: of shape \(24,\) .allowed \(25,\)"),
     "no ids": (
         swap("discs/id", data=None, shape=(0,), dtype="u4", chunks=(25,), maxshape=(None,)),
@@ -137,6 +142,10 @@ VALUES = {
     "checkpoint position": (put("checkpoints/position", (0, 3, 1), 5.5), "checkpoints/position .*5.5 in row 0"),
     "checkpoint velocity": (put("checkpoints/velocity", (0, 3, 1), NAN), "checkpoints/velocity .*nan in row 0"),
     "sample": (put("observables/kinetic_energy/value", 1, NAN), "observables/kinetic_energy/value .*nan in row 1"),
+    "sample huge": (
+        put("observables/kinetic_energy/value", 1, 1e151),
+        "observables/kinetic_energy/value .*1e.151 in row 1 .allowed -1e.150 to 1e.150",
+    ),
     "sample time": (put("observables/kinetic_energy/time", 0, 99.0), "observables/kinetic_energy/time .*decreases"),
     "summary": (texts("summary/value", 0, b"{"), "summary/value"),
     "summary nan": (texts("summary/value", 0, b"NaN"), "summary/value: end_time: NaN"),

@@ -1,0 +1,61 @@
+"""Scenes of every kind by several threads, in strips as low as can be: the log of one thread, dataset by dataset."""
+
+import pytest
+from log_compare import differences, scene_of
+from support import ROOT
+from thread_samples import EAGER, SMALLEST_CELLS
+
+from idealgas.engine.event_driven.border import LEAST_ROWS
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.run.simulate import simulate
+from idealgas.scene import load_scene
+from idealgas.study.bench.bench import bench_scene
+
+pytestmark = pytest.mark.long
+
+EVENTS = 6000
+THREADS = (2, 3, 4, 7)
+
+
+def is_shared(scene) -> bool:
+    """Whether several threads may run a scene at all."""
+    rows = scene.box.size[1] / (2.001 * max((kind.radius for kind in scene.species), default=scene.box.size[1]))
+    return scene.run.method == "event_driven" and scene.piston is None and rows >= 2 * LEAST_ROWS
+
+
+SHIPPED = [path.stem for path in sorted((ROOT / "configs").glob("*.toml")) if is_shared(load_scene(path))]
+
+
+@pytest.fixture
+def low_strips(monkeypatch):
+    """Strips as low as can be, whose threads lose time at random."""
+
+    def eager(threads: int) -> EventDriven:
+        return EventDriven(SMALLEST_CELLS, threads, EAGER._replace(delay=100))
+
+    monkeypatch.setattr("idealgas.engine.methods.EventDriven", eager)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_scene_has_the_log_of_one_thread(name, low_strips, tmp_path):
+    one = tmp_path / "one.h5"
+    simulate(scene_of(name, f"run.events={EVENTS}", "run.threads=1"), one)
+    for number in THREADS:
+        several = tmp_path / f"{number}.h5"
+        done = simulate(scene_of(name, f"run.events={EVENTS}", f"run.threads={number}"), several)
+        print(name, number, done.threads, done.shared_slices, done.given_up_slices)
+        assert 2 <= done.threads <= number
+        assert done.shared_slices > done.given_up_slices
+        assert differences(one, several) == []
+
+
+def test_many_discs_have_the_log_of_one_thread(tmp_path):
+    """10⁵ discs, cells and slices as they are for everybody."""
+    one = tmp_path / "one.h5"
+    simulate(bench_scene(100_000, 0.1, 400_000, True, 1), one)
+    for number in THREADS:
+        several = tmp_path / f"{number}.h5"
+        done = simulate(bench_scene(100_000, 0.1, 400_000, True, number), several)
+        print(number, done.threads, done.shared_slices, done.given_up_slices)
+        assert done.threads == number
+        assert differences(one, several) == []
