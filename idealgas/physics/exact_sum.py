@@ -66,8 +66,12 @@ def add_large(total, units):
         raise SumRangeError("a term of a sum is too large or not a number")
     if abs(total.high) > FULL:
         raise SumRangeError("a sum is too large")
-    high = math.floor(units * 2.0**-64)
-    add_words(total, np.int64(high), np.uint64(units - high * 2.0**64))
+    size = abs(units)  # below 0 the difference to a multiple of 2^64 may need more digits than a float has
+    upper = math.floor(size * 2.0**-64)
+    high, low = np.int64(upper), np.uint64(size - upper * 2.0**64)
+    if units < 0.0:
+        high, low = -high - np.int64(low > 0), np.uint64(0) - low
+    add_words(total, high, low)
 
 
 @njit
@@ -123,17 +127,28 @@ def stored(sums: np.ndarray) -> np.ndarray:
 
 
 def restore(sums: np.ndarray, entry: np.ndarray) -> None:
-    """Set sums to what `stored` gave, units included; or to floats (n,), rounded to their own units."""
+    """Set sums to what `stored` gave, units included; or to floats (n,), rounded to their own units.
+
+    Raises SumRangeError where that is more than a sum may be.
+    """
     if entry.dtype.kind == "f":
         exponents = [k for _, k in _numbers(sums)]
-        numbers: Iterable[int] = [
-            round(math.ldexp(value, -k)) for value, k in zip(entry.tolist(), exponents, strict=True)
-        ]
+        numbers: Iterable[int] = [_units(value, k) for value, k in zip(entry.tolist(), exponents, strict=True)]
     else:
         high, low, exponents = entry.T.tolist()
         numbers = [(upper << WORD) + lower for upper, lower in zip(high, low, strict=True)]
     for one, number, k in zip(sums, numbers, exponents, strict=True):
+        if abs(number >> 64) > 2 * FULL or abs(k) > FARTHEST:
+            raise SumRangeError("a sum is too large, or its unit")
         one["high"], one["low"], one["per_unit"] = number >> 64, number & (1 << 64) - 1, math.ldexp(1.0, -k)
+
+
+def _units(value: float, k: int) -> int:
+    """A value in units 2^k, rounded to a whole number."""
+    number, exponent = math.frexp(value)
+    if exponent - k > 128:
+        raise SumRangeError("a sum is too large, or its unit")
+    return round(math.ldexp(number, exponent - k))
 
 
 def _numbers(sums: np.ndarray) -> list[tuple[int, int]]:

@@ -8,9 +8,12 @@ from idealgas.document.dump import dump_document
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
+from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
+from idealgas.physics.effects import Effects
+from idealgas.physics.exact_sum import SumRangeError
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
 from idealgas.run.layout import layout_of, restore, row_columns, totals
@@ -110,9 +113,17 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     _check_columns(log, layout_of(scene, start, effects, method.without_positions, method.kept))
     if checkpoint is None:
         return Simulation(start, method, effects)
-    gas, effects = restore(start, effects, checkpoint)
+    gas, effects = _restored(log, effects, checkpoint)
     done = Totals(**{column.name: int(checkpoint.values[column.name]) for column in totals(effects)})
     return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, done)
+
+
+def _restored(log: Log, effects: Effects, checkpoint: Checkpoint) -> tuple[Gas, Effects]:
+    """The gas and the effects at a checkpoint, of which the state is written into these."""
+    try:
+        return restore(log.discs, effects, checkpoint)
+    except SumRangeError as error:
+        raise DamageError(log.path, f"checkpoints at t = {checkpoint.time:g}: {error}") from error
 
 
 def _check_columns(log: Log, layout: LogLayout) -> None:
@@ -149,7 +160,7 @@ def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> No
 def _history_of(log: Log, last: Checkpoint | None, scene: Scene) -> RunHistory:
     if last is None:
         return RunHistory(energy_of(log.discs, make_effects(scene, log.discs)))
-    gas, effects = restore(log.discs, make_effects(scene, log.discs), log.checkpoints[0])
+    gas, effects = _restored(log, make_effects(scene, log.discs), log.checkpoints[0])
     deepest = {}
     for name in {"overlap", "outside"} & log.observables.keys():
         times, values = log.observables[name]

@@ -34,6 +34,7 @@ FOUND = [
     (2877, "kicks", "info", "no rows of checkpoints"),  # that were broken before
     (3303, "interrupted", "resume", "no rows of observables"),
     (3761, "thermal", "evolution", "-1.7e+308 in observables/wall_energy/value"),
+    (4053, "interrupted", "resume", "checkpoints/wall_energy times 8.45271e+270"),
     (4015, "thermal", "histogram", "observables/kinetic_energy/time all -0.0"),  # free times without time
 ]
 """Crafted logs that commands once did not bear: number, sound log, command, and a part of what was done."""

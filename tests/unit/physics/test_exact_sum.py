@@ -53,6 +53,7 @@ def summed(terms, typical=2.0**52, way=add_each):
 
 @settings(deadline=None, max_examples=300)
 @example([2.0**62, 2.0**62 - 512, -(2.0**62)])
+@example([-(2.0**62) - 1024])
 @example([0.5, 1.5, -0.5, -2.5])
 @example([-1.0] * 3)
 @example([2.0**64, 2.0**64 - 2048, -(2.0**64), 2.0**63, -(2.0**63)])
@@ -133,3 +134,9 @@ def test_a_sum_of_floats_goes_on():
     assert whole(sums) == [round(Fraction(0.1) * 2**52), -3 * 10**20 * 2**52]
     add_each(sums[0], np.array([0.2]))
     assert values(sums)[0] == pytest.approx(0.3, rel=1e-15)
+
+
+@pytest.mark.parametrize("entry", [[1e300], [-1e50], [[1, 2, 1001]], [[1, 2, -(2**62)]]])
+def test_what_is_beyond_all_sums_is_not_restored(entry):
+    with pytest.raises(SumRangeError, match="too large"):
+        restore(make_sums([1.0]), np.array(entry))
