@@ -12,6 +12,7 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.gas.build import make_gas
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.physics.periodic import Periodic
 from idealgas.run.effects.bundle import make_effects
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
@@ -92,6 +93,19 @@ def lattice(seed: int) -> tuple[Gas, Effects]:
     moves = np.array([(0, 1), (0, -1), (1, 0), (-1, 0), (0, 0)], float)[: draw.choice([2, 5])]
     velocity = moves[draw.integers(len(moves), size=len(position))]
     return gas_of((width, height), position, velocity, draw.choice([0.25, 0.5])), Effects()
+
+
+def wind(seed: int) -> tuple[Gas, Effects]:
+    """Columns of discs that fly upwards round a box, all but one without a collision: all go from strip to strip."""
+    draw = np.random.default_rng(seed)
+    width, height, columns, each = 8.0, 100.0, 7, 20
+    x = np.repeat(np.linspace(0.6, 7.4, columns), each)
+    y = (np.tile(np.arange(each) * height / each, columns) + np.repeat(height * draw.random(columns), each)) % height
+    up = np.repeat(draw.uniform(1.0, 3.0, columns), each)
+    up[:each] += draw.normal(0.0, 2.0, each)
+    none = np.zeros((len(x), 2), np.int32)
+    gas = gas_of((width, height), np.column_stack((x, y)), np.column_stack((0 * up, up)), 0.4)
+    return gas, Effects(periodic=Periodic(False, True, width, height, none, none.copy()))
 
 
 def stop_of(draw: np.random.Generator) -> Stop:

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from log_compare import differences
 from support import batch_for
-from thread_samples import EAGER, EFFECTS, compare, lattice, log_with, tall_scene
+from thread_samples import EAGER, EFFECTS, SMALLEST_CELLS, compare, lattice, log_with, tall_scene, wind
 
 from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.merge import Pending, TiedRowsError, merged
@@ -272,3 +272,19 @@ def test_many_lattices_have_the_log_of_one_thread():
         total += compare(lambda s=seed: lattice(s), seed)
     print(dict(total))
     assert total["tie"] >= 100
+
+
+@pytest.mark.long
+def test_discs_that_go_from_strip_to_strip_all_the_time_have_the_log_of_one_thread():
+    """Pasts that have changed, clocks that are set back, and discs taken in while one's own is handed over."""
+    stop, total = Stop(time=400.0), Counter()
+    for seed in range(6):
+        expected = log_with(*wind(seed), stop, 100, EventDriven(SMALLEST_CELLS))
+        for number in (3, 7):
+            method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=1e9))
+            found = log_with(*wind(seed), stop, 100, method)
+            assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), (seed, number)
+            assert method.threads.number == number
+            total += method.crew.facts
+    print(dict(total))
+    assert min(total[name] for name in ("past", "set_back", "while_posting")) >= 100
