@@ -254,8 +254,10 @@ def check_species(species: np.ndarray, names: Sequence[str]) -> None:
     """That each species has a disc and a name of its own."""
     if missing := set(range(len(names))) - set(np.unique(species).tolist()):
         raise ValueError(f"no disc of species {min(missing)}")
-    if not all(names) or len(set(names)) != len(names):
-        raise ValueError(f"names {', '.join(map(repr, names))} (allowed one for each species, and none twice)")
+    if not all(names):
+        raise ValueError("a species without a name")
+    if len(set(names)) != len(names):
+        raise ValueError("two species of one name")
 
 
 def check_boundary(words: object) -> None:
