@@ -96,7 +96,7 @@ VALUES = {
     "species S": (put("discs/species", 3, 2), r"discs/species: 2 in row 3 \(allowed 0 to 1"),
     "species of none": (put("discs/species", slice(None), 0), "discs/species: no disc of species 1"),
     "species without a name": (texts("discs/species_name", 0, b""), "discs/species: a species without a name"),
-    "two species of one name": (texts("discs/species_name", slice(None), b"a"), "discs/species: two species of one name"),
+    "two species of one name": (texts("discs/species_name", slice(None), b"a"), "discs/species: two species of one"),
     "radius 0": (put("discs/radius", 3, 0.0), "discs/radius: 0 in row 3"),
     "radius nan": (put("discs/radius", 3, NAN), "discs/radius: nan in row 3"),
     "mass negative": (put("discs/mass", 3, -1.0), "discs/mass: -1 in row 3"),
