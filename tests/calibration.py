@@ -22,6 +22,7 @@ from scipy import stats
 
 from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.core import window
+from idealgas.errors import NotApplicableError
 
 PART = 50
 """Number of seeds that are stored together."""
@@ -44,19 +45,25 @@ class Row(NamedTuple):
 
 
 def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
-    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4); of KEPT only the value is known."""
+    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4); of KEPT only the value is known.
+
+    A log in which chance looks like no equilibrium has no estimates, and a share of 0.
+    """
     found: dict[str, list[tuple[float, ...]]] = {}
     for seed in seeds:
         text = f"[scene]\nseed = {seed}\n{case.scene}\n[log]\ncompression = 'none'\n{case.more}[run]\n{run}\n"
         simulate(parse_scene(text), path, force=True)
         with open_log(path) as log:
-            for name, one in case.measured(log):
-                exact = one.theory if one.theory is not None and one.theory_error == 0 else math.nan
-                row = (one.value, one.standard_error, one.independent_samples, exact)
-                found.setdefault(name, []).append(row)
-            if case.steady:
-                share = window.measure(log, []).duration / (log.end_time - log.start_time)
-                found.setdefault(KEPT, []).append((share, math.nan, math.nan, math.nan))
+            try:
+                estimates = list(case.measured(log))
+                share = window.measure(log, []).duration / (log.end_time - log.start_time) if case.steady else None
+            except NotApplicableError:
+                estimates, share = [], 0.0
+        for name, one in estimates:
+            exact = one.theory if one.theory is not None and one.theory_error == 0 else math.nan
+            found.setdefault(name, []).append((one.value, one.standard_error, one.independent_samples, exact))
+        if share is not None:
+            found.setdefault(KEPT, []).append((share, math.nan, math.nan, math.nan))
     return {name: np.array(rows) for name, rows in found.items()}
 
 
@@ -148,7 +155,8 @@ def main() -> None:
     if not (shares := kept(collected)).size:
         return
     print(f"share of {len(shares)} steady logs that is used: median {np.median(shares):.3f},", end=" ")
-    print(f"{100 * (shares < 0.9).mean():.1f} % keep less than 0.9, {100 * (shares < 0.5).mean():.1f} % less than 0.5")
+    print(f"{100 * (shares < 0.9).mean():.1f} % keep less than 0.9, {100 * (shares < 0.5).mean():.1f} % less than 0.5,")
+    print(f"{(shares == 0).sum()} look as if there were no equilibrium, and are left out")
 
 
 if __name__ == "__main__":
