@@ -113,18 +113,18 @@ def test_a_scene_is_not_replaced_by_its_log(tmp_path):
     assert scene.read_bytes() == Path(CORNER).read_bytes()
 
 
+TOO_LONG = 300 * "a"
+
+
 @pytest.mark.parametrize(
     ("output", "code", "message"),
     [
         ("missing/run.h5", 2, "missing/run.h5: no folder missing\n"),
         ("folder", 2, "folder: is a folder\n"),
         ("file/run.h5", 2, "file/run.h5: no folder file\n"),
-        pytest.param(
-            "/proc/run.h5", 1, "/proc/run.h5: cannot be written: ",
-            marks=pytest.mark.skipif(not Path("/proc/self").exists(), reason="no other folder is closed to root"),
-        ),
+        (TOO_LONG, 1, f"{TOO_LONG}: cannot be written: File name too long"),
     ],
-)  # fmt: skip
+)
 def test_outputs_that_cannot_be(output, code, message, tmp_path):
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").touch()
