@@ -34,6 +34,9 @@ SMALL = 2.0**62  # terms that are one word
 FITS = SMALL / TOGETHER  # terms of which TOGETHER are one word
 LARGEST = 2.0**100
 FULL = 1 << 61  # of the upper word of a sum, so that it can be stored
+HALF = 2.0**32  # terms are rounded in two parts, each a whole number far below 2^51
+ROUNDER = 1.5 * 2.0**52  # added to a number below 2^51, it rounds it: the bits then are its own plus the whole number
+ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 
 class SumRangeError(Exception):
@@ -77,18 +80,32 @@ def add_large(total, units):
 @njit
 def add_all(total, terms):
     """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most TOGETHER."""
-    whole = np.int64(0)
     large = 0
     for i in range(terms.shape[0]):
-        units = terms[U(i)] * total.per_unit
-        fits = abs(units) < FITS
-        whole += np.int64(round(units if fits else 0.0))
-        large += not fits
+        large += not abs(terms[U(i)] * total.per_unit) < FITS
     if large == 0:
-        add_words(total, whole >> np.int64(63), np.uint64(whole))
+        add_together(total, terms)
     else:
         for i in range(terms.shape[0]):
             add(total, terms[U(i)])
+
+
+@inline
+def add_together(total, terms):
+    """Add terms (n,) of less than FITS units to a SUM; n at most TOGETHER.
+
+    Few processors turn several floats at a time into whole numbers; rounded by a sum, their bits are read as such.
+    """
+    upper = np.int64(0)
+    lower = np.int64(0)
+    for i in range(terms.shape[0]):
+        units = terms[U(i)] * total.per_unit
+        high = np.float64(units / HALF + ROUNDER)
+        low = np.float64((units - (high - ROUNDER) * HALF) + ROUNDER)
+        upper += high.view(np.int64) - ROUNDER_BITS
+        lower += low.view(np.int64) - ROUNDER_BITS
+    whole = (upper << np.int64(32)) + lower
+    add_words(total, whole >> np.int64(63), np.uint64(whole))
 
 
 def unit_exponent(typical: float) -> int:

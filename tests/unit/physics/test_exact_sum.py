@@ -101,6 +101,20 @@ def test_the_error_of_a_term_is_half_a_unit():
     assert 0 < abs(number * unit - exact) <= len(terms) * unit / 2
 
 
+@given(terms=st.lists(st.floats(-FITS, FITS) | st.integers(-(2**53), 2**53).map(lambda n: n / 2), max_size=TOGETHER))
+@settings(max_examples=300)
+def test_a_group_is_rounded_as_one_by_one(terms):
+    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, TOGETHER))
+    assert whole(sums) == [sum(map(round, terms))]
+
+
+@pytest.mark.parametrize("part", [2.0**31, 2.0**31 - 0.5, 2.0**31 + 0.5, 3 * 2.0**31, 2.0**50 + 2.0**31 - 0.5])
+def test_a_group_between_two_upper_parts(part):
+    terms = [part, -part, part + 1.0, 0.5 - part, part]
+    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, TOGETHER))
+    assert whole(sums) == [sum(map(round, terms))]
+
+
 @pytest.mark.parametrize("term", [FITS - 8, -(FITS - 8), FITS, -FITS, 0.5, 1.5])
 def test_the_largest_group(term):
     terms = [term] * TOGETHER
