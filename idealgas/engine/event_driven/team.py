@@ -14,7 +14,7 @@ import numpy as np
 
 from idealgas.engine.event_driven.border import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION
 from idealgas.engine.event_driven.kernel import advance_events
-from idealgas.engine.event_driven.merge import Pending, TiedRowsError, merged
+from idealgas.engine.event_driven.merge import Pending, TiedRowsError, order_of
 from idealgas.engine.event_driven.scheduler import make_tree, plant
 from idealgas.engine.event_driven.state import EventDrivenState
 from idealgas.engine.event_driven.strips import FAST, Tuning, cut, make_borders, reset
@@ -87,11 +87,19 @@ class Crew:
         self.facts: Counter[str] = Counter()
         self.rate: tuple[float, float] | None = None
         self._pool: ThreadPoolExecutor | None = None
+        self._rows: EventBatch | None = None
 
     @property
     def given_up(self) -> int:
         """Number of slices of the run so far that were given up."""
         return sum(self.facts[why] for why in (*REASONS.values(), STOP))
+
+    def memory(self, batch: EventBatch | None, strips: int) -> EventBatch | None:
+        """Memory for the rows of all strips, a part for each, with columns as those of a batch; None without a log."""
+        rows = self.tuning.buffer * strips
+        if batch is not None and (self._rows is None or len(self._rows.time) != rows):
+            self._rows = EventBatch(*(_longer(column, rows) for column in batch))  # type: ignore[arg-type]
+        return self._rows
 
     def run(self, work: Callable[[int], None], number: int, give_up: Callable[[], None]) -> None:
         """Call work(0) to work(number - 1) at once, each in a thread of its own, the first in this one."""
@@ -127,6 +135,7 @@ class Team:
         self._arrives = False
         self._done = 0.0  # local time up to which all has happened, after the last event too
         self._strips: list[_Strip] = []
+        self._rows: EventBatch | None = None
 
     @property
     def pending(self) -> bool:
@@ -205,8 +214,9 @@ class Team:
             done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}
             if not why and (done["events"] >= limits.events or done["disc_collisions"] >= limits.collisions):
                 why = STOP
-            if not why and batch is not None:
-                self._pending = Pending(merged([strip.filled() for strip in strips]), epoch_start)
+            if not why and self._rows is not None:
+                order = order_of(self._rows.time, [strip.filled for strip in strips])
+                self._pending = Pending(self._rows, order, epoch_start)
         except TiedRowsError:
             why = REASONS[TIE]
         except BaseException:
@@ -239,7 +249,8 @@ class Team:
         """Let all threads work up to a local time, with a flag; return why that was given up, or nothing."""
         record, ids, _ = self._discs
         if not self._strips:
-            self._strips = [_Strip(self._state, self._effects, len(record), self._crew.tuning) for _ in self._borders]
+            self._strips = [_Strip(self._state, self._effects, len(record)) for _ in self._borders]
+        self._rows, room = self._crew.memory(batch, len(self._borders)), self._crew.tuning.buffer
         words, limits = self._borders[0].words, Limits(until, UNLIMITED, UNLIMITED, UNLIMITED)
         reset(self._borders)
         words[FLAG] = flag
@@ -249,7 +260,8 @@ class Team:
 
         def work(k: int) -> None:
             try:
-                self._strips[k].run(record, ids, limits, batch, self._borders[k])
+                own = self._rows.rows(k * room, (k + 1) * room) if self._rows is not None else None
+                self._strips[k].run(record, ids, limits, own, self._borders[k])
             except Exception:  # raised by a kernel: one thread will come to it, and raise it again
                 give_up()
 
@@ -285,35 +297,28 @@ class Team:
 
 
 class _Strip:
-    """What one thread has for itself: schedule, scratch memory, sums, counters and rows."""
+    """What one thread has for itself: schedule, scratch memory, sums, counters and the number of its rows."""
 
-    def __init__(self, state: EventDrivenState, effects: Effects, n: int, tuning: Tuning) -> None:
+    def __init__(self, state: EventDrivenState, effects: Effects, n: int) -> None:
         self._state = state._replace(
             tree=make_tree(n),
             candidates=np.empty_like(state.candidates),
             images=None if state.images is None else np.empty_like(state.images),
         )
         self._effects = with_own_sums(effects)
-        self._tuning = tuning
-        self._batch: EventBatch | None = None
+        self.filled = 0
         self.counters = np.zeros(1, COUNTERS).view(np.recarray)
 
-    def run(self, record: Any, ids: Any, limits: Limits, batch: EventBatch | None, border: Any) -> None:
-        """Process the strip's events up to a limit of time; batch: as that of the log, None for none."""
-        if batch is not None and self._batch is None:
-            self._batch = EventBatch(*(_longer(column, self._tuning.buffer) for column in batch))  # type: ignore
+    def run(self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, border: Any) -> None:
+        """Process the strip's events up to a limit of time; rows: memory for them, with local times; None for none."""
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self._effects)
         plant(self._state.tree, self._state.prediction, ids, record, border.low, border.high)
-        own = self._batch if batch is not None else None
-        self._rows, _ = advance_events(record, ids, self._state, self._effects, limits, 0.0, own, self.counters, border)
+        self.filled, _ = advance_events(
+            record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
+        )
         if self._effects.flow is not None:
             momentum_flow.settle(self._effects.flow)
-
-    def filled(self) -> EventBatch:
-        """The rows of the slice, with local times."""
-        assert self._batch is not None
-        return self._batch.rows(0, self._rows)
 
     def add_to(self, effects: Effects) -> None:
         """Add the sums of the slice to those of the run."""
