@@ -20,6 +20,9 @@ from idealgas.plain import plain
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
 
+LINES, MARKERS = ("-", "--", "-.", ":"), ("o", "s", "^", "D")
+"""What curves of one colour differ in."""
+
 BLACK, GREY = "#000000", "#767676"
 GRID = "#dddddd"
 
@@ -38,6 +41,12 @@ LABEL_CHARACTERS = 48
 DPI = 200
 TITLE_CHARACTERS, TITLE_LINES = 10, 2
 """Characters of a title on an inch, and largest number of its lines."""
+
+
+def look(k: int) -> tuple[str, str, str]:
+    """Colour, line and marker of curve k of several: where a colour comes again, its line and marker are others."""
+    again, colour = divmod(k, len(COLOURS))
+    return COLOURS[colour], LINES[again % len(LINES)], MARKERS[again % len(MARKERS)]
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from idealgas.analysis.core.style import BLACK, COLOURS, Panel, panels
+from idealgas.analysis.core.style import BLACK, Panel, look, panels
 from idealgas.analysis.relaxation.combine import Relaxations
 
-STYLES = ("-", "--", "-.", ":")
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 """Ticks of the axis of distances, which has both small and large values."""
 
@@ -34,19 +33,19 @@ def _draw(axes: Sequence[Panel], found: Relaxations, in_time: bool) -> None:
     """Draw three panels against time, or against collisions per disc."""
     kurtosis, distance, entropy = axes
     for k, result in enumerate(found.logs):
-        colour, style = COLOURS[k % len(COLOURS)], STYLES[k // len(COLOURS) % len(STYLES)]
+        colour, line, _ = look(k)
         name = f"{Path(result.path).stem}, N = {result.number}"
         x, fit = (result.time, result.in_time) if in_time else (result.collisions, result.in_collisions)
-        kurtosis.plot(x, result.kurtosis, style, color=colour, linewidth=1.2, label=name)
+        kurtosis.plot(x, result.kurtosis, line, color=colour, linewidth=1.2, label=name)
         if fit is not None:
             start, target = result.kurtosis[0], result.equilibrium_kurtosis
             model = target + (start - target) * np.exp(-(x - x[0]) / fit.value)
             kurtosis.plot(x, model, color=colour, linewidth=2.5, alpha=0.35, label="fitted exponential")
-        distance.plot(x, result.distance, style, color=colour, linewidth=1.2, label=name)
+        distance.plot(x, result.distance, line, color=colour, linewidth=1.2, label=name)
         distance.axhline(
             result.critical_distance, color=colour, linestyle=":", linewidth=1, label="1 in 20 gases is beyond it"
         )
-        entropy.plot(x, result.entropy, style, color=colour, linewidth=1.2, label=name)
+        entropy.plot(x, result.entropy, line, color=colour, linewidth=1.2, label=name)
         for ax in axes:
             ax.set_xlim(x[0], x[-1])
             ax.time_axis() if in_time else ax.set_xlabel("collisions per disc (no unit)")

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.declaration import unknown
-from idealgas.analysis.core.style import COLOURS, panels
+from idealgas.analysis.core.style import look, panels
 from idealgas.errors import UserError
 from idealgas.study.sweep.results import RESULT, result_rows
 
@@ -39,11 +39,11 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     for k, (label, points) in enumerate(curves.items()):
         places = sorted(points)
         values, errors = zip(*(_average(points[place]) for place in places), strict=True)
-        colour = COLOURS[k % len(COLOURS)]
-        ax.errorbar(places, values, yerr=errors, fmt="o", color=colour, capsize=3, label=label or "measured")
+        colour, line, marker = look(k)
+        ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         theory = [(x, found) for x in places if (found := points[x][0].get("theory")) is not None]
         if theory:
-            ax.plot(*zip(*theory, strict=True), color=colour, label=f"{label}: theory" if label else "theory")
+            ax.plot(*zip(*theory, strict=True), line, color=colour, label=f"{label}: theory" if label else "theory")
     ax.set_xlabel(axis)
     ax.set_ylabel(quantity)
     ax.legend()
