@@ -13,12 +13,10 @@ from support import batch_for
 from thread_samples import EAGER, EFFECTS, SMALLEST_CELLS, compare, lattice, log_with, tall_scene, wind
 
 from idealgas.engine.event_driven.border import LEAST_ROWS
-from idealgas.engine.event_driven.merge import Pending, TiedRowsError, order_of
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.event_driven.strips import cut, share_out
 from idealgas.engine.event_driven.team import STOP, Crew, Race, Team, _Strip
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import Kind, empty_batch
 from idealgas.physics.exact_sum import TOGETHER, add_all, add_sums, make_sums, values
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
@@ -75,51 +73,7 @@ def test_slices_beyond_the_events_foretold_do_not_keep_threads_from_sharing(monk
     assert len(tried) > 10
 
 
-# ── rows and sums are put together ──
-
-
-def rows_of(times, discs):
-    batch = empty_batch(len(times))
-    batch.time[:], batch.disc[:], batch.partner[:], batch.kind[:] = times, discs, -1, Kind.WALL
-    return batch
-
-
-def order_of_strips(times, room=4):
-    memory = np.full(room * len(times), -1.0)
-    for k, part in enumerate(times):
-        memory[k * room : k * room + len(part)] = part
-    return order_of(memory, [len(part) for part in times]).tolist()
-
-
-def test_rows_are_merged_by_time():
-    assert order_of_strips([[1.0, 3.0, 3.0, 2.5], [0.5, 4.0]]) == [4, 0, 3, 1, 2, 5]
-    assert order_of_strips([[], [2.0, 5.0], [3.0]]) == [4, 8, 5]
-    assert order_of_strips([[], []]) == []
-
-
-@pytest.mark.parametrize("times", [([1.0, 2.0], [2.0]), ([2.0], [2.0, 3.0]), ([2.0, 3.0, 2.0], [1.0])])
-@pytest.mark.parametrize("room", [3, 4])
-def test_rows_of_one_time_that_nobody_has_put_in_order_are_not_merged(times, room):
-    with pytest.raises(TiedRowsError):
-        order_of_strips(times, room)
-
-
-def test_rows_of_one_time_in_two_strips_are_tied_where_one_begins_as_the_other_ends():
-    with pytest.raises(TiedRowsError):
-        order_of_strips([[1.0, 2.0], [2.0, 3.0]], room=2)
-
-
-def test_rows_are_handed_on_as_batches_have_room_and_pairs_stay_together():
-    rows = rows_of([3.0, 3.0, 1.0, 2.0, 2.0], [1, 3, 7, 1, 2])
-    rows.partner[:], rows.kind[:] = [3, 1, -1, 2, 1], [Kind.DISC, Kind.DISC, Kind.WALL, Kind.DISC, Kind.DISC]
-    pending, sizes, discs = Pending(rows, np.array([2, 3, 4, 0, 1]), 100.0), [], []
-    while len(pending):
-        batch = empty_batch(3)
-        sizes.append(pending.fill(batch))
-        discs += batch.disc[: sizes[-1]].tolist()
-    assert sizes == [3, 2]
-    assert discs == [7, 1, 2, 1, 3]
-    assert batch.time[0] == 103.0
+# ── sums are put together ──
 
 
 def test_parts_of_sums_add_up_to_the_bit():
