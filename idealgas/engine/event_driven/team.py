@@ -34,6 +34,12 @@ SHARE = 0.8
 """Part of the events up to a limit that a slice is made for: one that comes to more is in vain."""
 
 
+TRIAL = 2
+"""Times the least events of a slice: as many has the first one that is shared, or one a disc, if that is more.
+
+On a busy machine it may take ten times as long as on one thread. What a slice costs besides its events is by the disc.
+"""
+
 FEW = 64
 """Events that say nothing of a rate."""
 
@@ -54,14 +60,19 @@ class Race:
 
     def shares(self) -> bool:
         """Whether several threads are to go on. The slower way is tried now and then, at a small part of the time."""
-        if len(self._cost) < 2:
+        if self.open:
             return False in self._cost
         return self._faster if time.perf_counter() < self._again else not self._faster
+
+    @property
+    def open(self) -> bool:
+        """Whether one of the ways was not taken yet."""
+        return len(self._cost) < 2
 
     def note(self, shared: bool, events: int, seconds: float) -> None:
         """Take note of a slice."""
         if events > 0:
-            if len(self._cost) < 2 or shared != self._faster:
+            if self.open or shared != self._faster:
                 self._again = time.perf_counter() + PATIENCE * seconds
             self._cost[shared] = seconds / events
 
@@ -171,6 +182,8 @@ class Team:
         most = float(min(limits.events, tuning.buffer * len(self._borders) // 2))
         if collisions > 0:
             most = min(most, limits.collisions * events / collisions)
+        if self._crew.race is not None and self._crew.race.open:
+            most = min(most, max(TRIAL * tuning.events, len(self._discs.record)))
         now = max(float(counter["time"]), self._done)
         until = min(now + SHARE * most / events, limits.until)
         return until if (until - now) * events >= tuning.events else 0.0

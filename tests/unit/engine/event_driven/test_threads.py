@@ -64,6 +64,22 @@ def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
     assert race.shares()
 
 
+def test_the_first_shared_slice_is_a_short_one(monkeypatch):
+    foretold = {True: [], False: []}
+
+    def shared(team, goal, limits, epoch_start, batch, counters):
+        foretold[team._crew.race.open].append((goal - counters[0].time) * team._crew.rate[0])
+        return "tie"  # done again by one thread, and noted as what the threads took
+
+    monkeypatch.setattr(Team, "_given_up", shared)
+    monkeypatch.setattr(Race, "shares", lambda race: True)
+    method = EventDriven(SMALLEST_CELLS, 2, EAGER._replace(race=True, events=20))
+    gas, effects = tall_scene("plain", 1)
+    log_with(gas, effects, Stop(events=5000), 300, method)
+    assert len(foretold[True]) == 1
+    assert foretold[True][0] <= max(40, len(gas)) < min(foretold[False])
+
+
 def test_slices_beyond_the_events_foretold_do_not_keep_threads_from_sharing(monkeypatch):
     """They come where the rate rises, as in a lattice that melts, and take their time in vain."""
     tried = []
