@@ -30,7 +30,7 @@ MEMORY = 2**30
 """Bytes that a command may map beyond what is mapped before it."""
 ALL_MEMORY = 3 * 2**30
 """Bytes that a process of its own may map: a third of it are the libraries."""
-SECONDS = 30.0
+SECONDS = 10.0
 """Of the processor's time for a command; a command that waits has three times as many by the clock."""
 COMMANDS_A_PROCESS = 400
 UNSEEN = (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning)

@@ -33,11 +33,10 @@ STOP = "stop"
 SHARE = 0.8
 """Part of the events up to a limit that a slice is made for: one that comes to more is in vain."""
 
-
 TRIAL = 2
 """Times the least events of a slice: as many has the first one that is shared, or one a disc, if that is more.
 
-On a busy machine it may take ten times as long as on one thread. What a slice costs besides its events is by the disc.
+On a busy machine it may take forty times as long as on one thread. What a slice costs besides its events is by the disc.
 """
 
 FEW = 64
