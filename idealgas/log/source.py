@@ -1,5 +1,6 @@
 """The file under a log being read: how it is opened, and its columns by chunks. Every failure is a LogError."""
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
@@ -21,7 +22,9 @@ from idealgas.log.hdf5.gate import open_dataset, open_object
 from idealgas.log.hdf5.superblock import Unmarked, is_marked
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
-_CACHED_CHUNKS = 8
+_KEPT = 8
+"""Chunks that are kept: so many of events, and twice as many small ones of other tables, which would drive them out."""
+_SMALL = 2**20  # bytes
 ATTEMPTS = 10
 PAUSE = 0.02  # seconds
 
@@ -45,7 +48,8 @@ class Source:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: Any = None
-        self.chunk = lru_cache(_CACHED_CHUNKS)(self._chunk)
+        self._events = lru_cache(_KEPT)(self._chunk)
+        self._others = lru_cache(2 * _KEPT)(self._chunk)
         keep_freed_memory()
         try:
             self._read(self._open)
@@ -56,7 +60,8 @@ class Source:
     def refresh(self) -> None:
         """See what the writer has committed meanwhile."""
         self._read(self._open)
-        self.chunk.cache_clear()
+        self._events.cache_clear()
+        self._others.cache_clear()
 
     def close(self) -> None:
         """Close the file."""
@@ -85,6 +90,14 @@ class Source:
     def chunk_rows(self, path: str) -> int:
         """Rows of a chunk of a column."""
         return self._columns[path].chunk[0]
+
+    def chunk(self, path: str, start: int) -> np.ndarray:
+        """Rows of a column from `start` on, where a chunk begins, to the chunk's end or the last row; read-only."""
+        if path.startswith("events/"):
+            return self._events(path, start)
+        column = self._columns[path]
+        small = math.prod(column.chunk) * column.dtype.itemsize <= _SMALL
+        return self._others(path, start) if small else self._chunk(path, start)
 
     def column(self, path: str) -> np.ndarray:
         """All rows of a column of a short table."""
