@@ -36,7 +36,7 @@ SHARE = 0.8
 TRIAL = 2
 """Times the least events of a slice: as many has the first one that is shared, or one a disc, if that is more.
 
-On a busy machine it may take forty times as long as on one thread. What a slice costs besides its events is by the disc.
+On a busy machine it may take forty times as long as on one thread. What a slice costs beside its events is by the disc.
 """
 
 FEW = 64

@@ -10,10 +10,22 @@ from log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, w
 import idealgas.log.reader as log_reader
 from idealgas.events import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
+from idealgas.log.hdf5 import chunks
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 STOP = 2 * BLOCK + 300
+SMALL = """
+[box]
+size = [10, 10]
+[[species]]
+name = "gas"
+count = 30
+radius = 0.3
+temperature = 1.0
+[run]
+collisions_per_disc = 700
+"""
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +119,21 @@ def test_states_start_at_the_nearest_checkpoint(log):
     flown = expected["position"] + expected["velocity"] * (STEP / 2)
     assert np.array_equal(state.position[others], flown[others])
     assert np.array_equal(state.velocity[met], rows(checkpoint.row, checkpoint.row + 1).velocity[0])
+
+
+def test_states_at_many_times_decode_each_chunk_once(tmp_path, monkeypatch):
+    decode, decoded = chunks.decode, []
+    monkeypatch.setattr(chunks, "decode", lambda *given: decoded.append(given) or decode(*given))
+    simulate(parse_scene(SMALL), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert len(log.checkpoints) > 10
+        assert len(log) < BLOCK
+        times = np.linspace(0, log.end_time, 100)
+        assert len(list(log.frames(times))) == 100
+        once = len(decoded)
+        list(log.frames(times))
+    assert once < 30  # each column of events and of checkpoints, and a few of the run
+    assert len(decoded) == once
 
 
 @pytest.mark.parametrize("times", [[-1.0], [1e9], [2.0, 1.0], [float("nan")]])
