@@ -327,6 +327,6 @@ def compile_timer() -> AbstractContextManager[TimingListener]:
 def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
     """Array of n zeros that begins on a cache-line boundary; a record array if the dtype is structured."""
     raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
-    start = -raw.ctypes.data % boundary
-    array = raw[start : start + n * dtype.itemsize].view(dtype)
-    return array.view(np.recarray) if dtype.names else array
+    start = -raw.__array_interface__["data"][0] % boundary
+    kind: Any = np.recarray if dtype.names else np.ndarray
+    return kind(n, dtype, raw, start)

@@ -99,9 +99,9 @@ class Discs(NamedTuple):
 def make_discs(gas: Gas, order: np.ndarray) -> Discs:
     """Records of a gas at local time 0; order: (N,) the ids in their order in memory."""
     record = aligned(len(gas), DISC)
-    record.x, record.y = gas.position[order].T
-    record.vx, record.vy = gas.velocity[order].T
-    record.r, record.m = gas.radius[order], gas.mass[order]
+    record["x"], record["y"] = gas.position[order].T
+    record["vx"], record["vy"] = gas.velocity[order].T
+    record["r"], record["m"] = gas.radius[order], gas.mass[order]
     ids = aligned(len(gas), np.dtype("u4"))
     ids[:] = order
     return Discs(record, ids, gas.box)

@@ -3,7 +3,7 @@
 import copy
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -98,8 +98,7 @@ class Stop(NamedTuple):
 NO_STOP = Stop()
 
 
-@dataclass
-class Totals:
+class Totals(NamedTuple):
     """Numbers of events of a run since time 0.
 
     Attributes:
@@ -154,7 +153,7 @@ class Simulation:
         self.method.start(self.gas, self.effects)
         self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
-        self._counters[0].trials = self.totals.trials
+        self._counters["trials"] = self.totals.trials
         self.epoch_over = self.paused = False
         self._local_now = 0.0
 
@@ -181,7 +180,7 @@ class Simulation:
         except (EventCascadeError, SumRangeError) as error:  # raised by a kernel, which cannot tell the time
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
-        self._local_now = limits.until if arrived else float(self._counters[0]["time"])
+        self._local_now = limits.until if arrived else self._counted()["time"]
         return rows
 
     def slices(
@@ -215,19 +214,23 @@ class Simulation:
     @property
     def counters(self) -> Totals:
         """Numbers of events from time 0 until now."""
-        counter = self._counters[0]
+        counted = self._counted()
         return Totals(
-            self.totals.events + int(counter["events"]),
-            self.totals.disc_collisions + int(counter["disc_collisions"]),
-            self.totals.wall_hits + int(counter["wall_hits"]),
-            self.totals.kicks + int(counter["kicks"]),
-            int(counter["trials"]),
+            self.totals.events + counted["events"],
+            self.totals.disc_collisions + counted["disc_collisions"],
+            self.totals.wall_hits + counted["wall_hits"],
+            self.totals.kicks + counted["kicks"],
+            counted["trials"],
         )
+
+    def _counted(self) -> dict[str, Any]:
+        """The counters of this epoch by name."""
+        return dict(zip(COUNTERS.names or (), self._counters.item(), strict=True))
 
     @property
     def last_event_time(self) -> float:
         """Time of the last event, or the epoch's start if there was none in it."""
-        return self.time + float(self._counters[0]["time"])
+        return self.time + self._counted()["time"]
 
     @property
     def reached(self) -> float:
@@ -248,12 +251,12 @@ class Simulation:
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
         """The gas at a local time; the records do not change."""
-        record, ids, _ = self.method.discs
-        record = record.copy()
+        ids = self.method.discs.id
+        record = np.array(self.method.discs.record)  # not a record array, whose fields take numpy far longer to find
         synchronise(record, ids, local_time, self.effects.gravity, periodic)
         position, velocity = np.empty((2, len(record), 2))
-        position[ids] = np.column_stack((record.x, record.y))
-        velocity[ids] = np.column_stack((record.vx, record.vy))
+        position[ids, 0], position[ids, 1] = record["x"], record["y"]
+        velocity[ids, 0], velocity[ids, 1] = record["vx"], record["vy"]
         if self.method.without_positions:
             position = self.gas.position
         return replace(self.gas, position=position, velocity=velocity)

@@ -4,7 +4,7 @@ import math
 import os
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -246,14 +246,14 @@ class LoggedRun:
         effects = simulation.effects
         state = by_name(disc_state(simulation.gas, effects, simulation.method.without_positions))
         whole = kept_before(effects) | by_name(whole_state(effects)) | by_name(simulation.method.kept)
-        self._log.checkpoint(simulation.time, simulation.epoch, state, asdict(simulation.totals) | whole)
+        self._log.checkpoint(simulation.time, simulation.epoch, state, simulation.totals._asdict() | whole)
 
     def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:
         self._overlap = max(self._overlap, audit.overlap)
         self._outside = max(self._outside, audit.outside)
         simulation = self._simulation
         sample = by_name(observed(gas, effects, time - simulation.time)) | by_name(self._kept)
-        self._log.observe(time, simulation.epoch, audit._asdict() | asdict(simulation.counters) | sample)
+        self._log.observe(time, simulation.epoch, audit._asdict() | simulation.counters._asdict() | sample)
 
     def _finish(self, seconds: float) -> Summary:
         """Audit the state at the end; the run may be continued from its last checkpoint as if it had not ended."""
@@ -268,7 +268,7 @@ class LoggedRun:
         return Summary(
             completed=simulation.finished(stop),
             end_time=end_time,
-            **asdict(totals),
+            **totals._asdict(),
             rows=totals.events + totals.disc_collisions,
             epochs=simulation.epoch + 1,
             energy_change=end.gas - start.gas,
