@@ -32,7 +32,7 @@ def html_pictures(figure: Figure, caption: str, key: str) -> str:
     """A figure as HTML: an SVG for each panel and the caption below; key: a name of its own on the page."""
     show_names(figure)
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]
     pictures = [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
     return f"<figure>{''.join(pictures)}<figcaption>{escape(caption)}</figcaption></figure>"
