@@ -23,7 +23,7 @@ from idealgas.log.hdf5.superblock import Unmarked, is_marked
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
 _KEPT = 8
-"""Chunks that are kept: so many of events, and twice as many small ones of other tables, which would drive them out."""
+"""Chunks of events that are kept; apart from them, twice as many small ones of other tables, each of many columns."""
 _SMALL = 2**20  # bytes
 ATTEMPTS = 10
 PAUSE = 0.02  # seconds
@@ -93,7 +93,7 @@ class Source:
 
     def chunk(self, path: str, start: int) -> np.ndarray:
         """Rows of a column from `start` on, where a chunk begins, to the chunk's end or the last row; read-only."""
-        if path.startswith("events/"):
+        if table_of(path) == "events":
             return self._events(path, start)
         column = self._columns[path]
         small = math.prod(column.chunk) * column.dtype.itemsize <= _SMALL

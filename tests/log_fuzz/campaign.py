@@ -6,13 +6,14 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from log_fuzz.commands import NAME, Form
 from log_fuzz.crafted import Crafted, craft
 from log_fuzz.damages import Damaged
 from log_fuzz.judge import Reference, Verdict, judge, judge_damage, reference
 from log_fuzz.sound import LIVE, held, states, unpacked
-from log_fuzz.workers import Outcome, Task, outcomes, run_command
+from log_fuzz.workers import Task, outcomes, run_command
 
 Choice = Callable[[int], Sequence[Form]]
 """The commands for a case."""
@@ -37,12 +38,11 @@ def crafted_outcomes(cases: range, choice: Choice, names: Sequence[str]) -> Foun
     """Crafted logs of these numbers, each with the commands that are chosen for it."""
     sound = {name: unpacked(name) for name in names}
     chosen = {case: choice(case) for case in cases}
-    known = {name: references(sound[name], forms) for name, forms in _wanted(chosen, names).items()}
+    known = {name: [references(sound[name], forms)] for name, forms in _wanted(chosen, names).items()}
     _freeze()
-    tasks = [Task(case, partial(craft, case, sound=sound, names=names), forms) for case, forms in chosen.items()]
     made: Crafted
-    for number, made, form, outcome in outcomes(tasks):
-        verdict = judge(form, outcome, made.effects, known[made.sound][form])
+    for number, made, form, outcome in outcomes(_tasks(chosen, names, known, partial(craft, sound=sound, names=names))):
+        verdict = judge(form, outcome, made.effects, known[made.sound][0][form])
         yield number, (made.sound, _words(made)), form, verdict
 
 
@@ -51,17 +51,12 @@ def damaged_outcomes(cases: range, choice: Choice, names: Sequence[str], harm: C
     whole = {name: states(name) for name in names}
     chosen = {case: choice(case) for case in cases}
     wanted = _wanted(chosen, names)
-    known: dict[tuple[str, Form], list[Outcome]] = {}
-    for name, logs in whole.items():
-        for data in logs:
-            for form, found in references(data, wanted[name], live=name == LIVE).items():
-                known.setdefault((name, form), []).append(found.outcome)
+    known = {name: [references(data, wanted[name], name == LIVE) for data in logs] for name, logs in whole.items()}
     _freeze()
     first = {name: logs[0] for name, logs in whole.items()}
-    tasks = [Task(case, partial(harm, case, sound=first, names=names), forms) for case, forms in chosen.items()]
     made: Damaged
-    for number, made, form, outcome in outcomes(tasks):
-        verdict = judge_damage(form, outcome, known[made.sound, form])
+    for number, made, form, outcome in outcomes(_tasks(chosen, names, known, partial(harm, sound=first, names=names))):
+        verdict = judge_damage(form, outcome, [each[form].outcome for each in known[made.sound]])
         yield number, (made.sound, made.what), form, verdict
 
 
@@ -71,6 +66,18 @@ def _wanted(chosen: Mapping[int, Sequence[Form]], names: Sequence[str]) -> dict[
     for case, forms in chosen.items():
         wanted[names[case % len(names)]].update(dict.fromkeys(forms))
     return {name: list(forms) for name, forms in wanted.items()}
+
+
+def _tasks(
+    chosen: Mapping[int, Sequence[Form]],
+    names: Sequence[str],
+    known: Mapping[str, Sequence[Mapping[Form, Reference]]],
+    make: Callable[..., Any],
+) -> Iterator[Task]:
+    """The task of each case, with what its commands take on whole states of the sound log."""
+    for case, forms in chosen.items():
+        sounds = known[names[case % len(names)]]
+        yield Task(case, partial(make, case), forms, {f: max(each[f].seconds for each in sounds) for f in forms})
 
 
 def _freeze() -> None:

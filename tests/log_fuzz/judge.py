@@ -3,6 +3,7 @@
 import hashlib
 import io
 import re
+import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -31,10 +32,11 @@ FINE = ("same", "numbers", "refused")
 
 
 class Reference(NamedTuple):
-    """A command on the sound log: its outcome, and the datasets that it reads."""
+    """A command on the sound log: its outcome, the datasets that it reads, and seconds of the processor's time."""
 
     outcome: Outcome
     reads: frozenset[str]
+    seconds: float = 0.0
 
 
 class Verdict(NamedTuple):
@@ -72,9 +74,10 @@ def readings() -> Iterator[set[str]]:
 
 def reference(form: Form, keep: frozenset[str]) -> Reference:
     """A command on the sound log in the current folder."""
+    begun = time.process_time()
     with readings() as seen:
         outcome = run_form(form, keep)
-    return Reference(outcome, frozenset(seen))
+    return Reference(outcome, frozenset(seen), time.process_time() - begun)
 
 
 def judge(form: Form, outcome: Outcome, effects: Sequence[Effect], sound: Reference) -> Verdict:

@@ -31,7 +31,10 @@ MEMORY = 2**30
 ALL_MEMORY = 3 * 2**30
 """Bytes that a process of its own may map: a third of it are the libraries."""
 SECONDS = 10.0
-"""Of the processor's time for a command; a command that waits has three times as many by the clock."""
+"""Of the processor's time for a command; a command that waits has three times as many by the clock.
+
+Where the sound log takes more than half of them, as on a slow machine, a command has twice what the sound log takes.
+"""
 COMMANDS_A_PROCESS = 400
 UNSEEN = (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning)
 """Warnings that users are not shown."""
@@ -53,11 +56,19 @@ class Outcome(NamedTuple):
 
 
 class Task(NamedTuple):
-    """A log that `make` puts at a path, which returns what it did, and commands for it."""
+    """A log that `make` puts at a path, which returns what it did, and commands for it.
+
+    sound: seconds of the processor's time that each command takes on the sound log, with its imports.
+    """
 
     number: int
     make: Callable[[Path], Any]
     forms: Sequence[Form]
+    sound: Mapping[Form, float] = MappingProxyType({})
+
+    def seconds(self, form: Form) -> float:
+        """Of the processor's time for a command."""
+        return max(SECONDS, 2 * self.sound.get(form, 0.0))
 
 
 def run_form(form: Form, keep: frozenset[str]) -> Outcome:
@@ -104,7 +115,7 @@ def _one_process(batch: list[tuple[Task, int]], waiting: list) -> Iterator[tuple
     try:
         last: tuple[int, Any, Form] | None = None
         for place, (task, first) in enumerate(batch):
-            end, made = _answer(here, child)
+            end, made = _answer(here, child, SECONDS)
             if end != "exit":
                 if last is None or not end.startswith("SIG"):
                     raise RuntimeError(f"log {task.number} could not be made: {end}\n{_last_words(folder)}")
@@ -112,8 +123,9 @@ def _one_process(batch: list[tuple[Task, int]], waiting: list) -> Iterator[tuple
                 waiting[:0] = [(task, first), *batch[place + 1 :]]
                 return
             for at in range(first, len(task.forms)):
-                end, answer = _answer(here, child)
-                last = task.number, made, task.forms[at]
+                form = task.forms[at]
+                end, answer = _answer(here, child, task.seconds(form))
+                last = task.number, made, form
                 yield *last, answer if end == "exit" else Outcome(end, err=_last_words(folder))
                 if end != "exit":
                     waiting[:0] = [*([(task, at + 1)] if at + 1 < len(task.forms) else []), *batch[place + 1 :]]
@@ -125,12 +137,12 @@ def _one_process(batch: list[tuple[Task, int]], waiting: list) -> Iterator[tuple
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _answer(pipe: Connection, child: int) -> tuple[str, Any]:
-    """How the child's present work ended, and what came out."""
+def _answer(pipe: Connection, child: int, seconds: float) -> tuple[str, Any]:
+    """How the child's present work ended, and what came out; seconds: of the processor's time that it has for it."""
     begun, (used, _) = time.monotonic(), _processor_time(child)
     while not pipe.poll(0.5):
         busy, waits = _processor_time(child)
-        if busy - used > SECONDS or (waits and time.monotonic() - begun > 3 * SECONDS):
+        if busy - used > seconds or (waits and time.monotonic() - begun > 3 * seconds):
             os.kill(child, signal.SIGABRT)  # its fault handler says where it is
             pipe.poll(1)
             return "timeout", None

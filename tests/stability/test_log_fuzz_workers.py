@@ -70,6 +70,11 @@ def test_what_goes_wrong_is_seen(monkeypatch):
     assert found == [(number, way, name) for number in range(2) for way, name in EXPECTED.items()]
 
 
+def test_what_takes_long_of_the_sound_log_may_take_long():
+    task = Task(0, lambda path: None, [("info",), ("report",)], {("info",): 0.1, ("report",): 8.0})
+    assert [task.seconds(form) for form in task.forms] == [10.0, 16.0]
+
+
 @pytest.mark.parametrize(
     ("effects", "out", "verdict"),
     [

@@ -152,6 +152,8 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
         ax.grid(color=GRID, linewidth=0.6)
         ax.set_axisbelow(True)
         ax.spines[["top", "right"]].set_visible(False)
+        ax.spines[["bottom", "left"]].set_in_layout(False)  # numbers of the axes reach farther
+        ax.yaxis.set_label_coords(0, 0)  # of no label, whose place would be sought again and again
     return figure, axes
 
 

@@ -31,10 +31,12 @@ NAMES = {colour.lower(): f"--c{k}" for k, colour in enumerate(COLOURS)} | {
 def html_pictures(figure: Figure, caption: str, key: str) -> str:
     """A figure as HTML: an SVG for each panel and the caption below; key: a name of its own on the page."""
     show_names(figure)
-    figure.draw_without_rendering()
-    figure.set_layout_engine(None)
+    if (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]
-    pictures = [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
+    with rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)  # "none" leaves one in its place, for which every picture is drawn twice
+        pictures = [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
     return f"<figure>{''.join(pictures)}<figcaption>{escape(caption)}</figcaption></figure>"
 
 

@@ -15,17 +15,6 @@ from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 STOP = 2 * BLOCK + 300
-SMALL = """
-[box]
-size = [10, 10]
-[[species]]
-name = "gas"
-count = 30
-radius = 0.3
-temperature = 1.0
-[run]
-collisions_per_disc = 700
-"""
 
 
 @pytest.fixture(scope="module")
@@ -122,9 +111,14 @@ def test_states_start_at_the_nearest_checkpoint(log):
 
 
 def test_states_at_many_times_decode_each_chunk_once(tmp_path, monkeypatch):
+    text = """
+    box.size = [10, 10]
+    species = [{name = "gas", count = 30, radius = 0.3, temperature = 1.0}]
+    run.collisions_per_disc = 700
+    """
     decode, decoded = chunks.decode, []
     monkeypatch.setattr(chunks, "decode", lambda *given: decoded.append(given) or decode(*given))
-    simulate(parse_scene(SMALL), tmp_path / "run.h5")
+    simulate(parse_scene(text), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         assert len(log.checkpoints) > 10
         assert len(log) < BLOCK
