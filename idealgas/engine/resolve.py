@@ -6,7 +6,7 @@ from idealgas._jit import inline
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.exact_sum import add
-from idealgas.physics.momentum_flow import record_collision_flow, record_flight, record_flights, record_hit
+from idealgas.physics.momentum_flow import flights_to, record_collision_flow, record_flight, record_hit
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston
@@ -79,7 +79,7 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
     images: numbers of box lengths (x, y) between their records, where sides are periodic.
     """
-    record_flights(effects.flow, a, b, time, effects.gravity)
+    flights = flights_to(effects.flow, a, b, time)
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
     energy = energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
@@ -87,7 +87,7 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
     collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
     energy -= energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
     record_pair_loss(effects.dissipated, energy)
-    record_collision_flow(effects.flow, a, b, a_id, b_id, before, effects.periodic, images, effects.rotation)
+    record_collision_flow(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
     finish(a, a_id, time, effects)
     finish(b, b_id, time, effects)
 

@@ -176,7 +176,7 @@ class Simulation:
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
             if self.effects.flow is not None:
-                momentum_flow.settle(self.effects.flow)
+                momentum_flow.settle(self.effects.flow, self.effects.gravity)
         except (EventCascadeError, SumRangeError) as error:  # raised by a kernel, which cannot tell the time
             raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas._jit import aligned, inline, njit
 from idealgas.physics.exact_sum import TOGETHER, add, add_all
 from idealgas.physics.periodic import shift_by_images
 
@@ -24,8 +24,39 @@ U = np.uintp
 KINETIC, COLLISION = slice(0, 3), slice(3, None)
 """Which of the sums of the tensor are the two flows: their components xx, xy, yy, and of the collision flow yx."""
 
+NOTED = np.dtype([
+    (name, "f8", (TOGETHER,)) for name in (
+        "a_m", "b_m", "a_delay", "b_delay",  # masses, and durations of the flights
+        "a_vx", "a_vy", "b_vx", "b_vy",  # velocities at the start of the flights, only under gravity,
+        "a_vx_before", "a_vy_before", "b_vx_before", "b_vy_before",  # before the collision,
+        "a_vx_after", "a_vy_after", "b_vx_after", "b_vy_after",  # and after it
+        "x", "y",  # position of a relative to b at their contact
+    )
+])  # fmt: skip
+"""What is noted of the collisions of two discs a and b, by collision; a record, so that places in memory are constant.
+
+What follows from it is computed for many collisions at once, which takes less time than in the loop of events.
+"""
+
 TERMS = np.dtype([("column", "f8", (TOGETHER,))])
-"""Terms of one of the sums, by collision; a record, so that their place in memory is a constant."""
+"""Terms of one of the sums, by collision."""
+
+PARTS = 7
+"""Most sums of the tensor: those of rough discs."""
+
+
+class Notes(NamedTuple):
+    """Collisions that wait until `settle` adds what they carried and passed on.
+
+    Attributes:
+        waiting: (1,) i8, number of these collisions.
+        noted: (1,) NOTED.
+        terms: (PARTS,) TERMS, room for what follows.
+    """
+
+    waiting: np.ndarray
+    noted: np.recarray
+    terms: np.recarray
 
 
 class MomentumFlow(NamedTuple):
@@ -34,8 +65,7 @@ class MomentumFlow(NamedTuple):
     Attributes:
         tensor: (6,) SUM: the kinetic flow xx, xy and yy, and the collision flow xx, xy and yy, energy times time; where
             discs are rough (7,), also the collision flow yx, which smooth discs make equal to xy.
-        terms: TERMS by collision of each SUM of the tensor, to which `settle` is to add them.
-        waiting: (1,) i8, number of these collisions.
+        notes: of collisions that are not in these sums yet.
         walls: (1,) SUM, -Σ r·Δp over all wall hits, r from the middle of the box and Δp what the disc receives,
             energy times time.
         push: (F,) SUM, momentum given to each face along its normal, into the wall, mass length/time.
@@ -48,14 +78,12 @@ class MomentumFlow(NamedTuple):
         y: coordinate of the middle of the box, length.
         heat: (4,) SUM: heat carried along x and y, then passed on along x and y, energy times length; None where it is
             not recorded.
-        heat_terms: TERMS by collision of each of these; None where it is not recorded.
         vx: velocity of the whole gas, length/time; 0 where no heat is recorded.
         vy: the same along y.
     """
 
     tensor: np.recarray
-    terms: np.recarray
-    waiting: np.ndarray
+    notes: Notes
     walls: np.recarray
     push: np.recarray
     drag: np.recarray
@@ -65,127 +93,168 @@ class MomentumFlow(NamedTuple):
     x: float
     y: float
     heat: np.recarray | None = None
-    heat_terms: np.recarray | None = None
     vx: float = 0.0
     vy: float = 0.0
 
 
+def make_notes() -> Notes:
+    """Notes of no collision."""
+    return Notes(np.zeros(1, np.int64), aligned(1, NOTED), aligned(PARTS, TERMS))
+
+
 @inline
-def carried(disc, time, gravity):
-    """Momentum flow (xx, xy, yy), energy times time, of a disc in free flight from its record to a local time."""
-    delay = time - disc.t
-    vx = disc.vx
-    vy = disc.vy
-    mass = disc.m * delay
+def flow_carried(mass, vx, vy, delay, gravity):
+    """Momentum flow (xx, xy, yy), energy times time, of a disc in free flight, from its velocity at the start.
+
+    delay: duration of the flight, time.
+    """
+    carried = mass * delay
     if gravity is not None:  # v_a v_b of the middle of the flight, and what the change of the velocity adds
         vx += 0.5 * gravity.x * delay
         vy += 0.5 * gravity.y * delay
-        third = mass * delay * delay / 12.0
+        third = carried * delay * delay / 12.0
         return (
-            mass * vx * vx + third * gravity.x * gravity.x,
-            mass * vx * vy + third * gravity.x * gravity.y,
-            mass * vy * vy + third * gravity.y * gravity.y,
+            carried * vx * vx + third * gravity.x * gravity.x,
+            carried * vx * vy + third * gravity.x * gravity.y,
+            carried * vy * vy + third * gravity.y * gravity.y,
         )
-    return mass * vx * vx, mass * vx * vy, mass * vy * vy
+    return carried * vx * vx, carried * vx * vy, carried * vy * vy
+
+
+@inline
+def heat_carried(mass, vx, vy, delay):
+    """Flow of heat (x, y), energy times length, of a disc in free flight; velocity relative to the gas as a whole."""
+    energy = 0.5 * mass * (vx * vx + vy * vy) * delay
+    return energy * vx, energy * vy
+
+
+@inline
+def energy_gained(mass, vx, vy, vx_after, vy_after, frame_x, frame_y):
+    """Energy (mass length²/time²) that a disc gained as its velocity changed, seen from a frame that moves."""
+    along_x = (vx_after - vx) * (vx_after + vx - 2.0 * frame_x)
+    along_y = (vy_after - vy) * (vy_after + vy - 2.0 * frame_y)
+    return 0.5 * mass * (along_x + along_y)
 
 
 @inline
 def record_flight(flow, disc, time, gravity):
     """Add the flight of a disc, from its record to a local time, where momentum flow is recorded."""
     if flow is not None:
-        xx, xy, yy = carried(disc, time, gravity)
+        xx, xy, yy = flow_carried(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
         add(flow.tensor[U(0)], xx)
         add(flow.tensor[U(1)], xy)
         add(flow.tensor[U(2)], yy)
 
 
 @inline
-def record_flights(flow, a, b, time, gravity):
-    """Note the flights of two discs that meet at a local time, where momentum flow is recorded."""
-    if flow is not None:
-        a_xx, a_xy, a_yy = carried(a, time, gravity)
-        b_xx, b_xy, b_yy = carried(b, time, gravity)
-        k = U(flow.waiting[0])
-        flow.terms[U(0)].column[k] = a_xx + b_xx
-        flow.terms[U(1)].column[k] = a_xy + b_xy
-        flow.terms[U(2)].column[k] = a_yy + b_yy
-        record_heat_carried(flow.heat_terms, k, a, b, time, flow.vx, flow.vy)
+def flights_to(flow, a, b, time):
+    """Flights of two discs that meet at a local time; zeros where momentum flow is not recorded.
 
-
-@inline
-def heat_carried(disc, time, vx, vy):
-    """Flow of heat (x, y), energy times length, of a disc in free flight from its record to a local time."""
-    x = disc.vx - vx
-    y = disc.vy - vy
-    energy = 0.5 * disc.m * (x * x + y * y) * (time - disc.t)
-    return energy * x, energy * y
-
-
-@inline
-def record_heat_carried(terms, k, a, b, time, vx, vy):
-    """Note the heat that two discs carried to the collision that waits as number k, where it is recorded."""
-    if terms is not None:
-        a_x, a_y = heat_carried(a, time, vx, vy)
-        b_x, b_y = heat_carried(b, time, vx, vy)
-        terms[U(0)].column[k] = a_x + b_x
-        terms[U(1)].column[k] = a_y + b_y
-
-
-@inline
-def record_heat_passed_on(terms, k, a, b, before, x, y, vx, vy):
-    """Note the heat that a disc received in the collision that waits as number k, where it is recorded.
-
-    before: velocities (a_vx, a_vy, b_vx, b_vy) before it, length/time. x, y: position relative to the other disc.
-    """
-    if terms is not None:
-        a_vx, a_vy, b_vx, b_vy = before
-        a_gain = a.m * ((a.vx - a_vx) * (a.vx + a_vx - 2.0 * vx) + (a.vy - a_vy) * (a.vy + a_vy - 2.0 * vy))
-        b_gain = b.m * ((b.vx - b_vx) * (b.vx + b_vx - 2.0 * vx) + (b.vy - b_vy) * (b.vy + b_vy - 2.0 * vy))
-        gain = 0.25 * (a_gain - b_gain)
-        terms[U(2)].column[k] = gain * x
-        terms[U(3)].column[k] = gain * y
-
-
-@inline
-def record_collision_flow(flow, a, b, a_id, b_id, before, periodic, images, rotation):
-    """Note what two discs passed on, whose flights are noted, at their contact, where momentum flow is recorded.
-
-    before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time. images: numbers of box lengths (x, y)
-    between the records, where sides are periodic.
+    Returns their durations (a, b), time, and the velocities (a_vx, a_vy, b_vx, b_vy) at their start, length/time.
     """
     if flow is not None:
-        a_vx, a_vy, b_vx, b_vy = before
+        return (time - a.t, time - b.t), (a.vx, a.vy, b.vx, b.vy)
+    return (0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+
+
+@inline
+def record_collision_flow(flow, a, b, a_id, b_id, flights, before, periodic, images, gravity):
+    """Note the collision of two discs at their contact, where momentum flow is recorded.
+
+    flights: as `flights_to` gave them. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
+    images: numbers of box lengths (x, y) between the records, where sides are periodic.
+    """
+    if flow is not None:
+        k = U(flow.notes.waiting[0])
+        noted = flow.notes.noted[0]
         x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
-        px = 0.5 * (a.m * (a.vx - a_vx) - b.m * (b.vx - b_vx))
-        py = 0.5 * (a.m * (a.vy - a_vy) - b.m * (b.vy - b_vy))
-        k = U(flow.waiting[0])
-        flow.terms[U(3)].column[k] = px * x
-        flow.terms[U(4)].column[k] = px * y
-        flow.terms[U(5)].column[k] = py * y
-        if rotation is not None:
-            flow.terms[U(6)].column[k] = py * x
-        record_heat_passed_on(flow.heat_terms, k, a, b, before, x, y, flow.vx, flow.vy)
-        flow.waiting[0] += 1
-        if flow.waiting[0] == TOGETHER:
-            settle(flow)
+        delays, start = flights
+        noted.a_m[k] = a.m
+        noted.b_m[k] = b.m
+        noted.a_delay[k], noted.b_delay[k] = delays
+        note_velocities_before(noted, k, start, before, gravity)
+        noted.a_vx_after[k] = a.vx
+        noted.a_vy_after[k] = a.vy
+        noted.b_vx_after[k] = b.vx
+        noted.b_vy_after[k] = b.vy
+        noted.x[k] = x
+        noted.y[k] = y
+        flow.notes.waiting[0] += 1
+        if flow.notes.waiting[0] == TOGETHER:
+            settle(flow, gravity)
         count_pair(flow.pairs, flow.species, a_id, b_id)
 
 
-@njit
-def settle(flow):
-    """Add the terms of the collisions that were noted."""
-    for k in range(flow.tensor.shape[0]):
-        add_all(flow.tensor[U(k)], flow.terms[U(k)].column[: flow.waiting[0]])
-    add_heat(flow.heat, flow.heat_terms, 4, flow.waiting[0])
-    flow.waiting[0] = 0
+@inline
+def note_velocities_before(noted, k, start, before, gravity):
+    """Note velocities at the start of two flights and at their end, which are the same without gravity."""
+    noted.a_vx_before[k], noted.a_vy_before[k], noted.b_vx_before[k], noted.b_vy_before[k] = before
+    if gravity is not None:
+        noted.a_vx[k], noted.a_vy[k], noted.b_vx[k], noted.b_vy[k] = start
 
 
 @inline
-def add_heat(heat, terms, parts, number):
-    """Add a number of terms of each of the first sums of the heat, where it is recorded."""
+def velocities_at_start(noted, k, gravity):
+    """Velocities (a_vx, a_vy, b_vx, b_vy) at the start of the flights to the collision that was noted as number k."""
+    if gravity is not None:
+        return noted.a_vx[k], noted.a_vy[k], noted.b_vx[k], noted.b_vy[k]
+    return noted.a_vx_before[k], noted.a_vy_before[k], noted.b_vx_before[k], noted.b_vy_before[k]
+
+
+@njit
+def settle(flow, gravity):
+    """Add what the collisions that were noted have carried and passed on."""
+    number, noted, terms = flow.notes.waiting[0], flow.notes.noted[0], flow.notes.terms
+    for i in range(number):
+        k = U(i)
+        a_vx, a_vy, b_vx, b_vy = velocities_at_start(noted, k, gravity)
+        a_xx, a_xy, a_yy = flow_carried(noted.a_m[k], a_vx, a_vy, noted.a_delay[k], gravity)
+        b_xx, b_xy, b_yy = flow_carried(noted.b_m[k], b_vx, b_vy, noted.b_delay[k], gravity)
+        a_px = noted.a_m[k] * (noted.a_vx_after[k] - noted.a_vx_before[k])
+        a_py = noted.a_m[k] * (noted.a_vy_after[k] - noted.a_vy_before[k])
+        b_px = noted.b_m[k] * (noted.b_vx_after[k] - noted.b_vx_before[k])
+        b_py = noted.b_m[k] * (noted.b_vy_after[k] - noted.b_vy_before[k])
+        px, py = 0.5 * (a_px - b_px), 0.5 * (a_py - b_py)
+        terms[U(0)].column[k] = a_xx + b_xx
+        terms[U(1)].column[k] = a_xy + b_xy
+        terms[U(2)].column[k] = a_yy + b_yy
+        terms[U(3)].column[k] = px * noted.x[k]
+        terms[U(4)].column[k] = px * noted.y[k]
+        terms[U(5)].column[k] = py * noted.y[k]
+        terms[U(6)].column[k] = py * noted.x[k]
+    add_terms(flow.tensor, terms, flow.tensor.shape[0], number)
+    settle_heat(flow.heat, flow.notes, flow.vx, flow.vy)
+    flow.notes.waiting[0] = 0
+
+
+@inline
+def settle_heat(heat, notes, vx, vy):
+    """Add the heat that the collisions that were noted have carried and passed on, where it is recorded.
+
+    vx, vy: velocity of the gas as a whole, length/time.
+    """
     if heat is not None:
-        for k in range(parts):
-            add_all(heat[U(k)], terms[U(k)].column[:number])
+        number, noted, terms = notes.waiting[0], notes.noted[0], notes.terms
+        for i in range(number):
+            k = U(i)
+            a_vx, a_vy, b_vx, b_vy = velocities_at_start(noted, k, None)
+            a_x, a_y = heat_carried(noted.a_m[k], a_vx - vx, a_vy - vy, noted.a_delay[k])
+            b_x, b_y = heat_carried(noted.b_m[k], b_vx - vx, b_vy - vy, noted.b_delay[k])
+            a_gain = energy_gained(noted.a_m[k], a_vx, a_vy, noted.a_vx_after[k], noted.a_vy_after[k], vx, vy)
+            b_gain = energy_gained(noted.b_m[k], b_vx, b_vy, noted.b_vx_after[k], noted.b_vy_after[k], vx, vy)
+            gain = 0.5 * (a_gain - b_gain)
+            terms[U(0)].column[k] = a_x + b_x
+            terms[U(1)].column[k] = a_y + b_y
+            terms[U(2)].column[k] = gain * noted.x[k]
+            terms[U(3)].column[k] = gain * noted.y[k]
+        add_terms(heat, terms, 4, number)
+
+
+@inline
+def add_terms(sums, terms, parts, number):
+    """Add a number of terms to each of the first sums."""
+    for k in range(parts):
+        add_all(sums[U(k)], terms[U(k)].column[:number])
 
 
 @inline
@@ -215,27 +284,29 @@ def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
 @njit
 def complete_flights(record, time, gravity, flow):
     """Add the flights of all discs from their records to a local time; no collisions may wait to be added."""
+    terms = flow.notes.terms
     for first in range(0, record.shape[0], TOGETHER):
         number = min(TOGETHER, record.shape[0] - first)
         for k in range(number):
-            xx, xy, yy = carried(record[U(first + k)], time, gravity)
-            flow.terms[U(0)].column[U(k)] = xx
-            flow.terms[U(1)].column[U(k)] = xy
-            flow.terms[U(2)].column[U(k)] = yy
-        for k in range(3):
-            add_all(flow.tensor[U(k)], flow.terms[U(k)].column[:number])
-        note_heat_carried(flow.heat_terms, record, first, number, time, flow.vx, flow.vy)
-        add_heat(flow.heat, flow.heat_terms, 2, number)
+            disc = record[U(first + k)]
+            xx, xy, yy = flow_carried(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
+            terms[U(0)].column[U(k)] = xx
+            terms[U(1)].column[U(k)] = xy
+            terms[U(2)].column[U(k)] = yy
+        add_terms(flow.tensor, terms, 3, number)
+        complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy)
 
 
 @inline
-def note_heat_carried(terms, record, first, number, time, vx, vy):
-    """Note the heat that a number of discs carried from their records to a local time, where it is recorded."""
-    if terms is not None:
+def complete_heat(heat, terms, record, first, number, time, vx, vy):
+    """Add the heat that a number of discs carried from their records to a local time, where it is recorded."""
+    if heat is not None:
         for k in range(number):
-            x, y = heat_carried(record[U(first + k)], time, vx, vy)
+            disc = record[U(first + k)]
+            x, y = heat_carried(disc.m, disc.vx - vx, disc.vy - vy, time - disc.t)
             terms[U(0)].column[U(k)] = x
             terms[U(1)].column[U(k)] = y
+        add_terms(heat, terms, 2, number)
 
 
 def sums_of(flow: MomentumFlow) -> list[np.ndarray]:
@@ -249,8 +320,8 @@ def counts_of(flow: MomentumFlow) -> list[np.ndarray]:
 
 
 def copy_of(flow: MomentumFlow | None) -> MomentumFlow | None:
-    """Independent copy; None for none."""
+    """Independent copy of sums for which no collision waits; None for none."""
     if flow is None:
         return None
     copies: Any = {name: part.copy() for name, part in flow._asdict().items() if isinstance(part, np.ndarray)}
-    return flow._replace(**copies)
+    return flow._replace(notes=make_notes(), **copies)

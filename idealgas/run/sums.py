@@ -5,13 +5,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from idealgas._jit import aligned
 from idealgas.engine.epoch import encounters_per_length, energy_beyond, speed_beyond
 from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
-from idealgas.physics.momentum_flow import COLLISION, KINETIC, TERMS, MomentumFlow
+from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, make_notes
 from idealgas.run.effects.slice import Values
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
@@ -53,8 +52,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
     push, drag = (make_sums([momentum] * faces) for _ in range(2))
     return MomentumFlow(
         tensor=make_sums(tensor),
-        terms=aligned(len(tensor), TERMS),
-        waiting=np.zeros(1, np.int64),
+        notes=make_notes(),
         walls=make_sums([momentum * max(gas.box)]),
         push=push,
         drag=drag,
@@ -64,7 +62,6 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
         x=gas.box[0] / 2,
         y=gas.box[1] / 2,
         heat=make_sums(heat) if heat else None,
-        heat_terms=aligned(len(heat), TERMS) if heat else None,
         vx=float(frame[0]),
         vy=float(frame[1]),
     )

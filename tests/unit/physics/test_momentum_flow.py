@@ -15,9 +15,9 @@ from idealgas.physics.gravity import Gravity
 from idealgas.physics.momentum_flow import (
     COLLISION,
     KINETIC,
-    carried,
     complete_flights,
     copy_of,
+    flow_carried,
     settle,
 )
 from idealgas.physics.rotation import Rotation
@@ -40,9 +40,8 @@ def discs(*rows):
 
 @pytest.mark.parametrize("gravity", [None, Gravity(0.7, -1.3)])
 def test_a_flight_is_an_integral(gravity):
-    (disc,) = discs((0, 0, 1.1, -0.4, 0.3, 1, 2.5))
     g = gravity or (0.0, 0.0)
-    found = carried(disc, 2.0, gravity)
+    found = flow_carried(2.5, 1.1, -0.4, 1.7, gravity)
     for part, (a, b) in zip(found, ((0, 0), (0, 1), (1, 1)), strict=True):
         v = [lambda t, k=k: (1.1, -0.4)[k] + g[k] * t for k in (a, b)]
         expected = quad(lambda t: 2.5 * v[0](t) * v[1](t), 0, 1.7, epsabs=1e-14)[0]  # noqa: B023
@@ -64,7 +63,7 @@ def test_exchanged_discs_give_the_same_bits(rough):
             effects = Effects(flow=flow, rotation=rotation)
             before = [(disc.vx, disc.vy) for disc in pair]
             resolve_pair(*pair, *order, 0.2, (0, 0), effects)
-            settle(flow)
+            settle(flow, None)
             flows.append(stored(flow.tensor))
             impulse = pair[0].m * (np.array([pair[0].vx, pair[0].vy]) - before[0])
             apart = np.array([pair[0].x - pair[1].x, pair[0].y - pair[1].y])
@@ -74,15 +73,32 @@ def test_exchanged_discs_give_the_same_bits(rough):
         assert np.array_equal(*flows)
 
 
+@pytest.mark.parametrize("gravity", [None, Gravity(0.7, -1.3)])
+def test_what_a_collision_adds(gravity):
+    """What both discs carried up to their contact, and what one received there, times where it is from the other."""
+    flow, pull = flow_of(), np.array(gravity or (0.0, 0.0))
+    pair = discs((0, 0, 1.1, 0.3, 0.05, 1, 1), (1.9, 0.4, -0.6, 0.2, 0.15, 1, 3))
+    flights = [(disc.m.item(), disc.vx.item(), disc.vy.item(), 0.2 - disc.t.item()) for disc in pair]
+    resolve_pair(*pair, 0, 1, 0.2, (0, 0), Effects(flow=flow, gravity=gravity))
+    settle(flow, gravity)
+    carried = np.sum([flow_carried(*flight, gravity) for flight in flights], axis=0)
+    assert values(flow.tensor[KINETIC]) == pytest.approx(carried, rel=1e-14)
+    mass, vx, vy, delay = flights[0]
+    received = mass * (np.array([pair[0].vx, pair[0].vy]) - [vx, vy] - pull * delay)
+    (xx, xy), (_, yy) = np.outer(received, [pair[0].x - pair[1].x, pair[0].y - pair[1].y])
+    assert values(flow.tensor[COLLISION]) == pytest.approx([xx, xy, yy], rel=1e-13)
+    assert abs(xx) > 0.5
+
+
 def test_collisions_are_added_together_and_one_by_one():
     flow, other = flow_of(), flow_of()
     for _ in range(3 * TOGETHER + 5):
         for each in (flow, other):
             pair = discs((0, 0, 0.7, 0.1, 0, 1, 1), (2, 0.1, -0.3, 0.2, 0, 1, 2))
             resolve_pair(*pair, 0, 1, 0.05, (0, 0), Effects(flow=each))
-        settle(other)
-    assert flow.waiting[0] == 5
-    settle(flow)
+        settle(other, None)
+    assert flow.notes.waiting[0] == 5
+    settle(flow, None)
     assert stored(flow.tensor).tolist() == stored(other.tensor).tolist()
     assert values(flow.tensor).all()
 
