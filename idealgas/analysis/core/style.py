@@ -2,7 +2,7 @@
 
 import io
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
@@ -11,6 +11,7 @@ from typing import Any, cast
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import ScaledTranslation
 
@@ -34,6 +35,9 @@ BELOW = 30
 
 LONG_LABEL = 30
 """Number of characters from which on labels of a legend stand in one column."""
+
+LEGEND_ROWS = 8
+"""Most rows of a legend; with many more, nothing would be left for the panel above it."""
 
 LABEL_CHARACTERS = 48
 """Number of characters after which the text of a label goes on in the next line."""
@@ -82,12 +86,18 @@ class Panel(Axes):
         return self.get_title(loc="left")
 
     def legend(self, *args: Any, **options: Any) -> Legend:
-        """Say below the panel what its curves are."""
-        _, labels = self.get_legend_handles_labels()
+        """Say below the panel what its curves are, once for a label; of very many, what the first ones are."""
+        entries: dict[str, Any] = {}
+        for handle, label in zip(*self.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+        columns = 1 if max(map(len, entries), default=0) > LONG_LABEL else 2
+        if len(entries) > (most := LEGEND_ROWS * columns):
+            shown = list(entries.items())[: most - 1]
+            entries = dict(shown) | {f"and {len(entries) - most + 1} more": Line2D([], [], linestyle="none")}
         below = self.transAxes + ScaledTranslation(0, -BELOW / 72, self.figure.dpi_scale_trans)
-        columns = 1 if max(map(len, labels), default=0) > LONG_LABEL else 2
         place = {"loc": "upper left", "bbox_to_anchor": (-0.02, 0), "bbox_transform": below, "ncols": columns}
-        legend = super().legend(*args, **(options | place | {"frameon": False, "fontsize": 9}))
+        style = {"handles": list(entries.values()), "labels": list(entries), "frameon": False, "fontsize": 9}
+        legend = super().legend(*args, **(options | place | style))
         for text in legend.get_texts():
             text.set_text(fill(text.get_text(), LABEL_CHARACTERS))
         return legend
@@ -155,8 +165,3 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
         ax.spines[["bottom", "left"]].set_in_layout(False)  # numbers of the axes reach farther
         ax.yaxis.set_label_coords(0, 0)  # of no label, whose place would be sought again and again
     return figure, axes
-
-
-def _repeated(items: tuple[str, ...]) -> Iterable[str]:
-    while True:
-        yield from items

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import BLACK, COLOURS, GREY, Panel, panels
+from idealgas.analysis.core.style import BLACK, COLOURS, GREY, Panel, look, panels
 from idealgas.analysis.evolution.course import PressureCourse
 from idealgas.analysis.evolution.measure import Evolution
 from idealgas.analysis.evolution.theory import Law
@@ -24,8 +24,9 @@ def evolution_figure(result: Evolution) -> Figure:
     rest = iter(axes[1:])
     if result.beyond:
         ax = next(rest)
-        for (name, share), colour in zip(result.beyond.items(), COLOURS * len(result.beyond), strict=False):
-            ax.plot(result.time, share, color=colour, label=name)
+        for k, (name, share) in enumerate(result.beyond.items()):
+            colour, line, _ = look(k)
+            ax.plot(result.time, share, line, color=colour, label=name)
         ax.set_ylim(-0.05, 1.05)
         ax.set_ylabel("share beyond the gate (no unit)")
     if course:
@@ -39,8 +40,9 @@ def evolution_figure(result: Evolution) -> Figure:
         ax.set_ylabel("place of the piston (length)")
     if result.given:
         ax = next(rest)
-        for (name, energy), colour in zip(result.given.items(), COLOURS * len(result.given), strict=False):
-            ax.plot(result.samples, energy, "o-", ms=3, color=colour, label=f"given by {name}")
+        for k, (name, energy) in enumerate(result.given.items()):
+            colour, line, marker = look(k)
+            ax.plot(result.samples, energy, line, marker=marker, ms=3, color=colour, label=f"given by {name}")
         ax.set_ylabel("energy (k_B = 1)")
     for ax in axes:
         ax.time_axis()

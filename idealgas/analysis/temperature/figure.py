@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import BLACK, COLOURS, GREY, _repeated, panels
+from idealgas.analysis.core.style import BLACK, GREY, look, panels
 from idealgas.analysis.temperature.measure import Temperature
 
 LEAST_RANGE = 0.05
@@ -18,8 +18,9 @@ def temperature_figure(result: Temperature) -> Figure:
         courses = {"m vx²": x, "m vy²": y}
     else:
         courses = {f"{entry.species} (N = {entry.number})": entry.history for entry in result.apart}
-    for (name, values), colour in zip(courses.items(), _repeated(COLOURS), strict=False):
-        ax.stairs(values, edges, baseline=None, color=colour, linewidth=0.9, label=name)
+    for k, (name, values) in enumerate(courses.items()):
+        colour, line, _ = look(k)
+        ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
     if result.expected is not None:
         ax.axhline(result.expected, color=BLACK, linestyle="--", label="theory: E/N")
     if result.window.first:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, panels
+from idealgas.analysis.core.style import COLOURS, GREY, look, panels
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.combine import DIFFUSION, States
@@ -66,15 +66,15 @@ def _of_log(result: Transport) -> Figure:
 
 def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) -> None:
     """Draw velocity correlation and mean square displacement of each species."""
-    for entry, colour in zip(result.diffusion, COLOURS * len(result.diffusion), strict=False):
-        _band(correlation, entry.lag, entry.correlation, entry.correlation_error, colour, entry.species)
+    for k, entry in enumerate(result.diffusion):
+        _band(correlation, entry.lag, entry.correlation, entry.correlation_error, k, entry.species)
         if entry.coefficient.theory is not None and entry.tail is not None:
             rate = result.free_paths[0].time.value ** -1
             correlation.plot(entry.lag, np.exp(-rate * entry.lag), "--", color=GREY, label="Enskog: exp(-Γt)")
             late = rate * entry.lag > 5
             correlation.plot(entry.lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
         name = f"{entry.species}, measured"
-        _band(displacement, entry.lag, entry.displacement, entry.displacement_error, colour, name)
+        _band(displacement, entry.lag, entry.displacement, entry.displacement_error, k, name)
         d = entry.coefficient.value
         displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
     if all((entry.correlation > -3 * entry.correlation_error).all() for entry in result.diffusion):
@@ -83,18 +83,20 @@ def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) ->
     displacement.set(xlabel="t (time)", ylabel="mean square displacement (length²)")
 
 
-def _band(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, colour: str, label: str) -> None:
-    """Draw a curve with its standard error on both sides."""
-    ax.plot(lag, value, color=colour, label=label)
+def _band(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: int, label: str) -> None:
+    """Draw curve k of several with its standard error on both sides."""
+    colour, line, _ = look(k)
+    ax.plot(lag, value, line, color=colour, label=label)
     ax.fill_between(lag, value - error, value + error, color=colour, alpha=0.2, linewidth=0)
 
 
 def _draw_pairs(ax: Axes, result: Transport) -> None:
     """Draw the pair distribution of every two species, with its value at contact."""
-    for found, colour in zip(result.pair_distributions, COLOURS * len(result.pair_distributions), strict=False):
+    for k, found in enumerate(result.pair_distributions):
+        colour, _, marker = look(k)
         middle = (found.edges[1:] + found.edges[:-1]) / 2
         label = f"{found.species} and {found.other}"
-        ax.errorbar(middle, found.value, found.error, fmt=".", ms=3, color=colour, label=label)
+        ax.errorbar(middle, found.value, found.error, fmt=marker, ms=2, color=colour, label=label)
         for contact in result.contacts:
             if (contact.species, contact.other) == (found.species, found.other):
                 ax.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
@@ -117,9 +119,9 @@ def _draw_coefficients(ax: Axes, result: Transport) -> None:
         for entry in result.diffusion
     ] + [(SYMBOLS[name], one.times, one.running, one.running_error, one.value) for name, one in whole.items()]
     by_theory = all(value.theory for *_, value in curves)
-    for (name, times, running, error, value), colour in zip(curves, COLOURS * len(curves), strict=False):
+    for k, (name, times, running, error, value) in enumerate(curves):
         one = (by_theory and value.theory) or value.value
-        _band(ax, times, running / one, error / one, colour, name)
+        _band(ax, times, running / one, error / one, k, name)
     if result.collective:
         first, last = result.collective.plateau
     else:
