@@ -5,7 +5,7 @@ A column is declared once, here. Batches, the tables of a log, checkpoints, snap
 
 from collections.abc import Collection, Sequence
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -49,6 +49,12 @@ class Column(NamedTuple):
     when: str = ""
     parts: tuple[str, ...] = ()
 
+
+Arrays = dict[Column, np.ndarray]
+"""Columns with an entry for each disc."""
+
+Values = dict[Column, Any]
+"""Columns with one entry."""
 
 POSITIONS, SPINS, IMAGES, TRIALS = "positions", "spins", "images", "trials"
 """Properties that discs may have: positions, spins, images through periodic sides, and Monte Carlo trials."""

@@ -4,12 +4,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from idealgas.events import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Column, event_columns
+from idealgas.events import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Arrays, Column, Values, event_columns
 from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint, LogLayout, Wall
 from idealgas.physics.effects import Effects
 from idealgas.run.effects import bundle
-from idealgas.run.effects.slice import Arrays, Values
 from idealgas.run.energy import Energy, energy_of
 from idealgas.run.sums import kept_sums, observed_sums, restore_sums
 from idealgas.scene import Scene

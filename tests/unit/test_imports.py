@@ -87,8 +87,15 @@ def part(name: str, depth: int = 1) -> str:
     return parts[depth] if len(parts) > depth else ""
 
 
+def packages(name: str) -> set[str]:
+    """The packages that a module is in, which are imported before it."""
+    parts = name.split(".")
+    return {".".join(parts[:depth]) for depth in range(1, len(parts))}
+
+
 def test_no_file_imports_in_a_circle():
-    order = list(TopologicalSorter(GRAPH).static_order())  # CycleError names the circle
+    whole = {name: others.union(*map(packages, others)) - packages(name) - {name} for name, others in GRAPH.items()}
+    order = list(TopologicalSorter(whole).static_order())  # CycleError names the circle
     assert set(order) == set(MODULES)
 
 

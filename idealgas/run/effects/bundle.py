@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from typing import Any
 
-from idealgas.events import Column
+from idealgas.events import Arrays, Column, Values
 from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint
 from idealgas.physics.effects import Effects
 from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, thermostat, wall
-from idealgas.run.effects.slice import Arrays, Slice, Values
+from idealgas.run.effects.slice import Slice
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
 

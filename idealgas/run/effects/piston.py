@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from idealgas._jit import aligned
-from idealgas.events import Column
+from idealgas.events import Column, Values
 from idealgas.gas.state import Gas
 from idealgas.physics.piston import PISTON, piston_energy, piston_motion
-from idealgas.run.effects.slice import EnergyPart, Slice, Values
+from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
 from idealgas.sides import SIDES
 

@@ -4,15 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from idealgas.events import Column
+from idealgas.events import Arrays, Column, Values
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.scene import Scene
-
-Arrays = dict[Column, np.ndarray]
-Values = dict[Column, Any]
 
 
 class EnergyPart(NamedTuple):
