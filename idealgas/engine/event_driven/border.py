@@ -13,7 +13,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.atomics import LINE, add, exchange, load, store, wait
-from idealgas.engine.event_driven.scheduler import schedule, withdraw
+from idealgas.engine.event_driven.scheduler import UNSETTLED, reschedule, withdraw
 
 ZONE = 4
 """Rows at a border whose events are border events. An event at r reads the rows r - 2 to r + 2, and writes the next."""
@@ -153,7 +153,8 @@ def absorb(ids, state, until, b):
         if border < 0 or load(b.words, word) < 0:
             continue
         i = load(b.words, word)
-        schedule(state.tree, state.prediction, ids, i)
+        state.tree.settled[0] = UNSETTLED  # time may go back
+        reschedule(state.tree, state.prediction, ids, i)
         time = state.tree.time[U(i)]
         own.late_inside = own.inside
         own.late_at_border = own.at_border

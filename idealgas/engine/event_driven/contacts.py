@@ -4,7 +4,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.cells import cell_index
-from idealgas.engine.event_driven.scheduler import NO_CONTACT, images_of, partner_rank, segment_partner
+from idealgas.engine.event_driven.prediction import NO_CONTACT, images_of, partner_rank, segment_partner
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes

@@ -4,7 +4,7 @@ import numpy as np
 
 from idealgas._jit import inline
 from idealgas.engine.event_driven.cells import cell_index, enter, leave
-from idealgas.engine.event_driven.scheduler import KICK, SIDE_OF_BOX
+from idealgas.engine.event_driven.prediction import KICK, SIDE_OF_BOX
 from idealgas.physics.box_side import arrival_delay, centre_range
 from idealgas.physics.constants import NEVER
 from idealgas.physics.fall import time_to_plane

@@ -12,13 +12,8 @@ from idealgas.engine.event_driven.cells import cell_index, enter
 from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
-from idealgas.engine.event_driven.scheduler import (
-    SIDE_OF_BOX,
-    clear,
-    contact_is_next,
-    images_of,
-    segment_of,
-)
+from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
+from idealgas.engine.event_driven.scheduler import clear, is_tied, settle, withdraw
 from idealgas.engine.event_driven.turns import count_at_one_time, enter_in_schedule, leave, next_turn
 from idealgas.engine.records import add_to_counters
 from idealgas.engine.resolve import (
@@ -72,7 +67,7 @@ def rebuild(record, ids, state, effects):
     state.cells.head[:] = -1
     for i in range(record.shape[0]):
         enter(state.cells, i, cell_index(state.cells, record[U(i)]))
-    clear(state.tree.key)
+    clear(state.tree)
     predict_piston(record, ids, state, effects.piston, effects.gravity)
     for i in range(record.shape[0]):
         predict(record, ids, state, i, 0.0, effects, None)
@@ -97,17 +92,30 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     capacity = batch_capacity(batch)
     while events < limits.events and collisions < limits.collisions and rows < capacity:
         i = next_turn(record, ids, state, limits.until, border)
-        if border is not None and i < 0:
+        if i < 0:
             reached = i == OVER
             break
         prediction = state.prediction[U(i)]
         at_contact = contact_is_next(prediction, ids, i)
         time = prediction.contact if at_contact else prediction.crossing
-        if time > limits.until:
-            reached = True
-            break
+        withdraw(state.tree, state.prediction, ids, i)
+        if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
+            crossings += 1
+            enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)
+            continue
+        of_piston = is_piston(i, ids, effects.piston)
         other = np.int64(-1)
-        if is_piston(i, ids, effects.piston):
+        if at_contact and prediction.partner >= 0 and not of_piston:
+            other = np.int64(prediction.partner)
+            if record[U(other)].count != prediction.partner_count:
+                stale += 1
+                predict_contact_again(record, ids, state, i, time, effects, border)
+                continue
+            withdraw(state.tree, state.prediction, ids, other)
+        if is_tied(state.tree, time):
+            settle(state.tree, state.prediction, ids, i, other)
+            continue
+        if of_piston:
             i = np.int64(prediction.partner)
             if not at_contact:
                 resolve_stop(time, effects.piston)
@@ -115,15 +123,11 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 stale += at_contact
                 predict_piston(record, ids, state, effects.piston, effects.gravity)
                 continue
+            withdraw(state.tree, state.prediction, ids, i)
             resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
             predict_piston(record, ids, state, effects.piston, effects.gravity)
             rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
-        elif at_contact and prediction.partner >= 0:
-            other = np.int64(prediction.partner)
-            if record[U(other)].count != prediction.partner_count:
-                stale += 1
-                predict_contact_again(record, ids, state, i, time, effects, border)
-                continue
+        elif other >= 0:
             images = images_of(prediction)
             resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
             rows += write_pair(batch, rows, epoch_start + time, record, ids, i, other, effects)
@@ -134,10 +138,6 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
             )
             rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
-        elif prediction.crossing_code < SIDE_OF_BOX:
-            crossings += 1
-            enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)
-            continue
         elif is_kick(prediction.crossing_code, effects.thermostat):
             kicks += 1
             resolve_kick(record[U(i)], ids[U(i)], time, effects.thermostat, effects)

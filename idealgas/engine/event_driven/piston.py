@@ -3,7 +3,8 @@
 import numpy as np
 
 from idealgas._jit import inline
-from idealgas.engine.event_driven.scheduler import NO_CONTACT, SIDE_OF_BOX, schedule
+from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX
+from idealgas.engine.event_driven.scheduler import reschedule
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.physics.piston import piston_contact, stop_contact
 
@@ -45,7 +46,7 @@ def predict_piston(record, ids, state, piston, gravity):
             keep_if_earlier(record, ids, prediction, j, piston_contact(record[U(j)], p, gravity), p.side)
         prediction.crossing = stop_contact(p)
         prediction.crossing_code = SIDE_OF_BOX + p.side
-        schedule(state.tree, state.prediction, ids, leaf)
+        reschedule(state.tree, state.prediction, ids, leaf)
 
 
 @inline
@@ -56,4 +57,4 @@ def offer_to_piston(record, ids, state, i, piston, gravity):
         p = piston[0]
         prediction = state.prediction[U(leaf)]
         if keep_if_earlier(record, ids, prediction, i, piston_contact(record[U(i)], p, gravity), p.side):
-            schedule(state.tree, state.prediction, ids, leaf)
+            reschedule(state.tree, state.prediction, ids, leaf)

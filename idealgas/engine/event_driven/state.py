@@ -6,7 +6,8 @@ import numpy as np
 
 from idealgas._jit import aligned, inline
 from idealgas.engine.event_driven.cells import Cells
-from idealgas.engine.event_driven.scheduler import PREDICTION, Tree, make_tree
+from idealgas.engine.event_driven.prediction import PREDICTION
+from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES

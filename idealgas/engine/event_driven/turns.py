@@ -35,7 +35,8 @@ from idealgas.engine.event_driven.border import (
     try_lock,
     unlock,
 )
-from idealgas.engine.event_driven.scheduler import contact_is_next, next_disc, schedule
+from idealgas.engine.event_driven.prediction import contact_is_next
+from idealgas.engine.event_driven.scheduler import next_disc, root_of, schedule
 from idealgas.engine.records import check_clock
 
 U = np.uintp
@@ -43,9 +44,14 @@ U = np.uintp
 
 @inline
 def next_turn(record, ids, state, until, border):
-    """Index of the disc whose event is next; with a border, one that may happen now, or OVER or ABANDONED."""
+    """Index of the disc with the next event up to a time, or OVER.
+
+    With a border, it is one that may happen now, or ABANDONED.
+    """
     if border is not None:
         return wait_for_turn(record, ids, state, until, border)
+    if state.tree.time[U(root_of(state.tree))] > until:
+        return np.int64(OVER)
     return next_disc(state.tree)
 
 
@@ -224,6 +230,43 @@ def loiter(b):
 
 
 @inline
+def may_happen(record, ids, state, i, time, b):
+    """Whether disc i's event, which comes next in this strip, may happen now: 1, or 0, or ABANDONED.
+
+    If it may, the borders at which it is are locked.
+    """
+    own = b.own[0]
+    where = place_of(record, ids, state, i, b)
+    if where == 0:
+        announce(b, time)
+        if time > own.horizon:
+            own.horizon = least_clock(b) + b.lead
+            if time > own.horizon:
+                return 0
+    else:
+        store(b.words, clock_word(b.me) + 2, i)
+        store(b.times, clock_word(b.me) + 1, time)
+        announce(b, time)
+        if may_pass_all(state, i, time, where, b) == 0 or not try_lock(b, where):
+            return 0
+        passes = 0 if is_posted(b) or place_of(record, ids, state, i, b) != where else 1
+        if passes == 1:
+            passes = may_pass_all(state, i, time, where, b)
+        if passes == 2:
+            return abandon(b, TIE)
+        if passes == 0:
+            unlock(b)
+            return 0
+        if where & FOREIGN and is_misplaced(record, state, i, where, b):
+            return abandon(b, VIOLATION)
+    if not clock_runs(time, b):
+        return abandon(b, CLOCK)
+    if not is_in_order(record, ids, state, i, time, where, b):
+        return abandon(b, VIOLATION)
+    return 1
+
+
+@inline
 def wait_for_turn(record, ids, state, until, b):
     """Index of the disc with this strip's next event once it may happen, or OVER or ABANDONED."""
     own = b.own[0]
@@ -233,46 +276,18 @@ def wait_for_turn(record, ids, state, until, b):
     while load(b.words, FLAG) == 0:
         if is_posted(b):
             absorb(ids, state, until, b)
-        i = next_disc(state.tree)
-        time = state.tree.time[U(i)]
-        if time > until:
+        time = state.tree.time[U(root_of(state.tree))]
+        if time <= until:
+            i = next_disc(state.tree)
+            turn = may_happen(record, ids, state, i, time, b)
+            if turn != 0:
+                return i if turn == 1 else np.int64(ABANDONED)
+        else:
             announce(b, time)
             if not own.idle:
                 own.idle = 1
                 add(b.words, ACTIVE, np.int64(-1))
             if load(b.words, ACTIVE) == 0:
-                return OVER
-            rounds = wait(rounds)
-            continue
-        where = place_of(record, ids, state, i, b)
-        if where == 0:
-            announce(b, time)
-            if time > own.horizon:
-                own.horizon = least_clock(b) + b.lead
-                if time > own.horizon:
-                    rounds = wait(rounds)
-                    continue
-        else:
-            store(b.words, clock_word(b.me) + 2, i)
-            store(b.times, clock_word(b.me) + 1, time)
-            announce(b, time)
-            if may_pass_all(state, i, time, where, b) == 0 or not try_lock(b, where):
-                rounds = wait(rounds)
-                continue
-            passes = 0 if is_posted(b) or place_of(record, ids, state, i, b) != where else 1
-            if passes == 1:
-                passes = may_pass_all(state, i, time, where, b)
-            if passes == 2:
-                return abandon(b, TIE)
-            if passes == 0:
-                unlock(b)
-                rounds = wait(rounds)
-                continue
-            if where & FOREIGN and is_misplaced(record, state, i, where, b):
-                return abandon(b, VIOLATION)
-        if not clock_runs(time, b):
-            return abandon(b, CLOCK)
-        if not is_in_order(record, ids, state, i, time, where, b):
-            return abandon(b, VIOLATION)
-        return i
-    return ABANDONED
+                return np.int64(OVER)
+        rounds = wait(rounds)
+    return np.int64(ABANDONED)

@@ -6,7 +6,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from idealgas._jit import aligned, njit
-from idealgas.engine.event_driven.scheduler import PREDICTION, SIDE_OF_BOX, clear, make_tree, next_disc, schedule
+from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX
+from idealgas.engine.event_driven.scheduler import (
+    UNSETTLED,
+    clear,
+    is_tied,
+    make_tree,
+    next_disc,
+    reschedule,
+    schedule,
+    settle,
+    withdraw,
+)
 from idealgas.engine.order import precedes, wall_rank
 
 pytestmark = pytest.mark.interpreted
@@ -14,7 +25,18 @@ pytestmark = pytest.mark.interpreted
 
 @njit
 def enter(tree, predictions, ids, i):
-    schedule(tree, predictions, ids, i)
+    """The next disc after disc i's event was entered in place of another, found as the kernel and `absorb` do it."""
+    before = tree.time[next_disc(tree)]
+    reschedule(tree, predictions, ids, i)
+    first = next_disc(tree)
+    time = tree.time[first]
+    if time < before:
+        tree.settled[0] = UNSETTLED
+    withdraw(tree, predictions, ids, first)
+    if is_tied(tree, time):
+        settle(tree, predictions, ids, first, -1)
+    else:
+        schedule(tree, predictions, ids, first)
     return next_disc(tree)
 
 
@@ -44,7 +66,7 @@ def test_the_root_is_the_next_event(case):
     draw = np.random.default_rng(seed)
     ids = draw.permutation(n).astype(np.uint32)
     tree, predictions = make_tree(n), aligned(n, PREDICTION)
-    clear(tree.key)
+    clear(tree)
     entries = [(None, None, None)] * n
 
     def renew(i):
@@ -62,13 +84,15 @@ def test_the_root_is_the_next_event(case):
             entries[i] = (time, None, side)
         return enter(tree, predictions, ids, i)
 
+    def is_first(root):
+        """Whether the root has the event that comes first; both discs of a pair may have foretold it."""
+        found, i = entries[root], first_by_sorting(entries, ids)
+        expected = entries[i]
+        pair = {root, found[2] if found[1] is None else found[1]}
+        return found[0] == expected[0] and pair == {i, expected[2] if expected[1] is None else expected[1]}
+
     for i in range(n):
         root = renew(i)
-    assert root == first_by_sorting(entries, ids)
+    assert is_first(root)
     for _ in range(updates):
-        root = renew(int(draw.integers(n)))
-        found, expected = entries[root], entries[first_by_sorting(entries, ids)]
-        assert found[0] == expected[0]
-        pair = {root, found[1]} if found[1] is not None else {root, found[2]}
-        i = first_by_sorting(entries, ids)
-        assert pair == ({i, expected[1]} if expected[1] is not None else {i, expected[2]})
+        assert is_first(renew(int(draw.integers(n))))

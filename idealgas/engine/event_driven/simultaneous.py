@@ -1,0 +1,70 @@
+"""Events of one time in the schedule: which comes first.
+
+Discs of a gas hardly ever have events at one time, but for the two that foretell their own contact. So the tree finds
+some earliest event, and asks for the order only where the next one has the same time: it is then *settled* for it.
+"""
+
+import numpy as np
+
+from idealgas._jit import inline, njit
+from idealgas.engine.event_driven.prediction import event_ids
+from idealgas.engine.order import precedes
+
+U = np.uintp
+
+
+@njit
+def comes_first(predictions, ids, i, j):
+    """Whether disc i's next event comes before that of disc j at the same time."""
+    a, b = event_ids(predictions[U(i)], ids, np.int64(i))
+    c, d = event_ids(predictions[U(j)], ids, np.int64(j))
+    return precedes(a, b, c, d)
+
+
+@inline
+def settle_group(tree, predictions, ids, group, parent):
+    """Make the winner of a group of eight the one that comes first among those that share the earliest time."""
+    first = -1
+    for node in range(group, group + 8):
+        if tree.key[U(node)] == tree.key[U(parent)]:
+            i = tree.winner[U(node)]
+            if first < 0 or comes_first(predictions, ids, i, first):
+                first = i
+    tree.winner[U(parent)] = first
+
+
+@njit
+def settle_path(tree, predictions, ids, i, key):
+    """Settle the groups of disc i on all levels, as far as they have events of the time of a key."""
+    group = np.int64(i)
+    base = 0
+    for level in range(1, tree.start.shape[0]):
+        offset = (group - base) >> 3
+        group = base + (offset << 3)
+        base = tree.start[U(level)]
+        parent = base + offset
+        if tree.key[U(parent)] == key:
+            settle_group(tree, predictions, ids, group, parent)
+        group = parent
+
+
+@inline
+def first_below(tree, level, offset, key):
+    """First leaf below a node, given by its level and its number there, that has a key."""
+    for below in range(level - 1, -1, -1):
+        offset <<= 3
+        while tree.key[U(tree.start[U(below)] + offset)] != key:
+            offset += 1
+    return offset
+
+
+@inline
+def next_leaf(tree, i, key):
+    """First leaf after leaf i that has a key; -1 if there is none."""
+    offset = np.int64(i)
+    for level in range(tree.start.shape[0] - 1):
+        for sibling in range(offset + 1, (offset | 7) + 1):
+            if tree.key[U(tree.start[U(level)] + sibling)] == key:
+                return first_below(tree, level, sibling, key)
+        offset >>= 3
+    return np.int64(-1)
