@@ -8,7 +8,7 @@ from idealgas.engine.event_driven.prediction import NO_CONTACT, images_of, partn
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
-from idealgas.physics.disc_disc import contact_time, first_touch
+from idealgas.physics.disc_disc import contact_time, first_touch, will_touch
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.wall import segment_contact
 
@@ -88,18 +88,14 @@ def store_contact(state, record, ids, i, j, k, time, periodic):
 
 
 @inline
-def test_candidates(record, ids, state, count, i, now, effects):
-    """Store disc i's earliest contact among the candidates, extended by the further discs of their cells.
+def keep_those_in_the_way(record, ids, state, count, i, effects):
+    """Keep of the candidates, extended by the further discs of their cells, those that disc i will touch.
 
-    The fast loop has no branches. Simultaneous contacts and contacts at the present time are rare; `resolve_ties`
-    decides them.
+    Returns their number. Few are left, so that only few roots and quotients are computed; the loop has no branches.
     """
     candidates = state.candidates
     disc = record[U(i)]
-    best = state.prediction[U(i)].contact
-    partner = -1
-    chosen = -1
-    tied = False
+    kept = 0
     k = 0
     while k < count:
         j = candidates[U(k)]
@@ -108,17 +104,35 @@ def test_candidates(record, ids, state, count, i, now, effects):
         copy_image(state.images, count, k)
         count += 1 if behind >= 0 else 0
         images = images_to(state, k, ids, i, j, effects.periodic)
+        candidates[U(kept)] = j
+        copy_image(state.images, kept, k)
+        kept += 1 if will_touch(disc, record[U(j)], effects.gravity, effects.periodic, images) else 0
+        k += 1
+    return kept
+
+
+@inline
+def test_candidates(record, ids, state, count, i, now, effects):
+    """Store disc i's earliest contact among the candidates and the further discs of their cells.
+
+    Simultaneous contacts and contacts at the present time are rare; `resolve_ties` decides them.
+    """
+    count = keep_those_in_the_way(record, ids, state, count, i, effects)
+    disc = record[U(i)]
+    best = state.prediction[U(i)].contact
+    chosen = -1
+    tied = False
+    for k in range(count):
+        j = state.candidates[U(k)]
+        images = images_to(state, k, ids, i, j, effects.periodic)
         time = first_touch(disc, record[U(j)], effects.gravity, effects.periodic, images)
         tied |= time == best
-        hit = time < best
-        best = time if hit else best
-        partner = j if hit else partner
-        chosen = k if hit else chosen
-        k += 1
+        chosen = k if time < best else chosen
+        best = min(time, best)
     if tied | (best <= now):
         resolve_ties(record, ids, state, count, i, effects)
-    elif partner >= 0:
-        store_contact(state, record, ids, i, partner, chosen, best, effects.periodic)
+    elif chosen >= 0:
+        store_contact(state, record, ids, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
 
 
 @njit
