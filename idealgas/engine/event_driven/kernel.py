@@ -11,6 +11,7 @@ from idealgas.engine.event_driven.border import OVER
 from idealgas.engine.event_driven.cells import cell_index, enter
 from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
+from idealgas.engine.event_driven.lookahead import fetch_ahead
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
 from idealgas.engine.event_driven.scheduler import clear, is_tied, settle, withdraw
@@ -99,6 +100,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         at_contact = contact_is_next(prediction, ids, i)
         time = prediction.contact if at_contact else prediction.crossing
         withdraw(state.tree, state.prediction, ids, i)
+        fetch_ahead(state.lookahead, record, state, i)
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
             crossings += 1
             enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)

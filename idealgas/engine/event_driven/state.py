@@ -6,6 +6,7 @@ import numpy as np
 
 from idealgas._jit import aligned, inline
 from idealgas.engine.event_driven.cells import Cells
+from idealgas.engine.event_driven.lookahead import make_lookahead
 from idealgas.engine.event_driven.prediction import PREDICTION
 from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
@@ -24,6 +25,7 @@ class EventDrivenState(NamedTuple):
         candidates: i4 scratch memory for indices of discs that may be in contact.
         images: (…, 2) i4 scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
+        lookahead: discs whose memory is fetched; None for a gas that the caches hold.
     """
 
     cells: Cells
@@ -32,6 +34,7 @@ class EventDrivenState(NamedTuple):
     candidates: np.ndarray
     images: np.ndarray | None
     walls: WallCells | None
+    lookahead: np.ndarray | None
 
 
 def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) -> EventDrivenState:
@@ -45,6 +48,7 @@ def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) 
         np.empty(room if effects.periodic else n + 16, np.int32),
         np.empty((room, 2), np.int32) if effects.periodic else None,
         walls,
+        make_lookahead(n),
     )
 
 

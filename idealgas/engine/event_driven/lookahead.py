@@ -1,0 +1,95 @@
+"""Memory of discs whose events come soon, fetched while others happen: for a gas too large for the caches.
+
+The disc that becomes the first below the root of the schedule has one of the next events. Each step needs what the one
+before has fetched, so it is done an event later: first the disc's record, prediction and place in the schedule; then
+the cells around it, and its partner; then the discs in the cells that its event will ask.
+"""
+
+import numpy as np
+
+from idealgas._jit import fetch, inline
+from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
+
+FROM = 8_000
+"""Least number of discs at which that is faster."""
+
+U = np.uintp
+
+
+def make_lookahead(n: int) -> np.ndarray | None:
+    """Indices of the two discs for which memory is being fetched; None for a gas of few discs."""
+    return np.zeros(2, np.int64) if n >= FROM else None
+
+
+@inline
+def first_below_root(tree, i):
+    """Index of the disc with the next event in the part of the tree, below its root, that contains disc i."""
+    level = tree.start.shape[0] - 2
+    return np.int64(tree.winner[U(tree.start[U(level)] + (i >> (3 * level)))])
+
+
+@inline
+def fetch_disc(tree, record, state, i):
+    """Fetch disc i's record, prediction, link and place in the schedule."""
+    fetch(record, U(i))
+    fetch(state.prediction, U(i))
+    fetch(state.cells.link, U(i))
+    parent = U(tree.start[U(1)] + (i >> 3))
+    fetch(tree.key, U(i))
+    fetch(tree.winner, U(i))
+    fetch(tree.key, parent)
+    fetch(tree.winner, parent)
+
+
+@inline
+def cell_around(cells, disc):
+    """Index of a disc's cell, also while another thread moves it across a periodic side."""
+    row = min(max(np.int64(disc.row), np.int64(1)), cells.rows - 2)
+    return row * cells.columns + min(max(np.int64(disc.column), np.int64(1)), cells.columns - 2)
+
+
+@inline
+def fetch_cells(cells, disc):
+    """Fetch the cells around a disc, those that it may come within reach of included."""
+    cell = cell_around(cells, disc)
+    for row in range(-2, 3):
+        fetch(cells.head, U(cell + row * cells.columns))
+
+
+@inline
+def fetch_first_of_three(cells, record, cell, stride):
+    """Fetch the first discs of three cells in a row or column."""
+    last = cells.head.shape[0] - 1
+    for step in range(3):
+        j = U(max(cells.head[U(min(max(cell + step * stride, 0), last))], 0))
+        fetch(record, j)
+        fetch(cells.link, j)
+
+
+@inline
+def fetch_candidates(cells, record, disc, prediction):
+    """Fetch the first discs of the cells that a disc's next event will ask."""
+    cell = cell_around(cells, disc)
+    code = prediction.crossing_code
+    if prediction.crossing < prediction.contact and code < SIDE_OF_BOX:
+        ahead = 2 if code & 1 else -2  # cells that come within reach
+        if code >= 2:
+            fetch_first_of_three(cells, record, cell + ahead * cells.columns - 1, 1)
+        else:
+            fetch_first_of_three(cells, record, cell + ahead - cells.columns, cells.columns)
+    else:
+        for row in range(-1, 2):
+            fetch_first_of_three(cells, record, cell + row * cells.columns - 1, 1)
+
+
+@inline
+def fetch_ahead(lookahead, record, state, i):
+    """Fetch memory for the disc that comes first now that disc i's event was withdrawn, and for those before it."""
+    if lookahead is not None:
+        third, second = lookahead[0], lookahead[1]
+        first = min(first_below_root(state.tree, i), record.shape[0] - 1)  # a piston is no disc
+        lookahead[0], lookahead[1] = second, first
+        fetch_disc(state.tree, record, state, first)
+        fetch_cells(state.cells, record[U(second)])
+        fetch_disc(state.tree, record, state, max(np.int64(state.prediction[U(second)].partner), np.int64(0)))
+        fetch_candidates(state.cells, record, record[U(third)], state.prediction[U(third)])

@@ -1,0 +1,52 @@
+"""Memory that is fetched ahead changes no event."""
+
+import numpy as np
+import pytest
+from effect_samples import log_of, make_effects, make_gas
+from thread_samples import compare, lattice, tall_scene
+
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven.lookahead import FROM, make_lookahead
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.simulation import Stop
+
+pytestmark = pytest.mark.usefixtures("always")
+
+
+@pytest.fixture
+def always(monkeypatch):
+    """Look ahead in gases of any size."""
+    monkeypatch.setattr("idealgas.engine.event_driven.lookahead.FROM", 1)
+
+
+def test_only_large_gases_look_ahead(monkeypatch):
+    monkeypatch.setattr("idealgas.engine.event_driven.lookahead.FROM", FROM)
+    assert make_lookahead(FROM - 1) is None
+    assert make_lookahead(FROM).tolist() == [0, 0]
+
+
+def logs(names: set[str], events: int) -> list[list[np.ndarray]]:
+    """The log of the event-driven method, in cells of two sizes, and that of the oracle."""
+    gas = make_gas(5)
+    methods = (EventDriven(), EventDriven(1e-9), BruteForce())
+    return [log_of(gas, make_effects(names, gas), method, Stop(events=events), 1000) for method in methods]
+
+
+def assert_alike(found: list[list[np.ndarray]]) -> None:
+    assert all(np.array_equal(a, b) for log in found[:-1] for a, b in zip(log, found[-1], strict=True))
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize("names", [set(), {"periodic", "piston"}])
+def test_few_events(names):
+    assert_alike(logs(names, 60))
+
+
+@pytest.mark.parametrize("names", [set(), {"periodic", "piston"}])
+def test_many_events(names):
+    assert_alike(logs(names, 5000))
+
+
+@pytest.mark.parametrize("sample", [lambda: tall_scene("periodic", 3), lambda: lattice(4)])
+def test_several_threads(sample):
+    assert compare(sample, 7, (2, 3))["slices"] > 0
