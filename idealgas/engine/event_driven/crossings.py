@@ -147,9 +147,8 @@ def cross_cell(record, ids, state, i, crossing_code, periodic):
     disc = record[U(i)]
     leave(state.cells, i, cell_index(state.cells, disc))
     forward = 1 if crossing_code & 1 else -1
-    if crossing_code >= 2:
-        disc.row += forward
-    else:
-        disc.column += forward
+    upwards = forward if crossing_code >= 2 else 0
+    disc.row += upwards
+    disc.column += forward - upwards
     wrap_cell(disc, ids[U(i)], state.cells, crossing_code >= 2, periodic)
     enter(state.cells, i, cell_index(state.cells, disc))
