@@ -32,10 +32,10 @@ def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:
 
     There the direction of motion decides, so it follows from the velocities along that axis.
     """
-    rate = 0.0
+    rate, diameter = 0.0, 2.0 * float(gas.radius.max())
     for axis, (length, on) in enumerate(zip(gas.box, periodic, strict=True)):
-        room = length - 2.0 * gas.radius
-        if not on and 0.0 < room.min() <= 2.0 * gas.radius.max():
+        if not on and 0.0 < length - diameter <= diameter:
+            room = length - 2.0 * gas.radius
             rate += math.fsum((np.abs(gas.velocity[:, axis]) / room).tolist())
     return rate
 

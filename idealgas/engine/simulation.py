@@ -251,12 +251,10 @@ class Simulation:
 
     def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
         """The gas at a local time; the records do not change."""
-        ids = self.method.discs.id
-        record = np.array(self.method.discs.record)  # not a record array, whose fields take numpy far longer to find
-        synchronise(record, ids, local_time, self.effects.gravity, periodic)
+        discs = self.method.discs
+        record = np.array(discs.record)
         position, velocity = np.empty((2, len(record), 2))
-        position[ids, 0], position[ids, 1] = record["x"], record["y"]
-        velocity[ids, 0], velocity[ids, 1] = record["vx"], record["vy"]
+        synchronise(record, discs.id, local_time, self.effects.gravity, periodic, position, velocity)
         if self.method.without_positions:
             position = self.gas.position
         return replace(self.gas, position=position, velocity=velocity)

@@ -64,9 +64,8 @@ def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]
 
     A disc that rounding put outside the box belongs to the nearest cell.
     """
-    column = np.clip((position[:, 0] / cells.width).astype(np.int64) + 1, 1, cells.columns - 2)
-    row = np.clip((position[:, 1] / cells.height).astype(np.int64) + 1, 1, cells.rows - 2)
-    return column, row
+    column, row = (position / (cells.width, cells.height)).astype(np.int64).T + 1
+    return np.minimum(np.maximum(column, 1), cells.columns - 2), np.minimum(np.maximum(row, 1), cells.rows - 2)
 
 
 @inline

@@ -52,7 +52,8 @@ class EventDriven:
         column, row = cell_of(gas.position, cells)
         order = np.argsort(row * cells.columns + column, kind="stable")
         self.discs = make_discs(gas, order)
-        self.discs.record["column"], self.discs.record["row"] = column[order], row[order]
+        fields = self.discs.record.view(np.ndarray)
+        fields["column"], fields["row"] = column[order], row[order]
         self._effects = effects
         self._state = make_state(len(gas), cells, effects, self._wall_cells(effects, cells, largest_radius))
         rebuild(self.discs.record, self.discs.id, self._state, effects)
