@@ -42,7 +42,7 @@ class Cells(NamedTuple):
 
 
 def discs_per_cell(packing_fraction: float) -> float:
-    """Mean number of discs per cell that was fastest: 0.4 at packing fractions from 0.1 up, 0.8 at 0.01, 1.6 at 0.001."""
+    """Mean number of discs per cell that was fastest: 0.4 at a packing fraction of 0.1 and more, 0.8 at 0.01."""
     return min(max(0.4 * (0.1 / max(packing_fraction, 1e-9)) ** 0.3, 0.4), 4.0)
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas._jit import aligned, inline, njit
-from idealgas.engine.event_driven.simultaneous import comes_first, first_below, next_leaf, settle_path
+from idealgas.engine.event_driven.simultaneous import comes_first, settle_path
 from idealgas.physics.constants import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
@@ -102,7 +102,7 @@ def schedule(tree, predictions, ids, i):
         node = base + offset
         if own >= key[U(node)]:
             is_later = own > key[U(node)] or own != settled[0]
-            if is_later or not comes_first(predictions, ids, i, winner[U(node)]):
+            if is_later or not comes_first(predictions, ids, np.int64(i), np.int64(winner[U(node)])):
                 return
         key[U(node)] = own
         winner[U(node)] = i
@@ -160,17 +160,19 @@ def is_tied(tree, time):
 def settle(tree, predictions, ids, i, j):
     """Put back the next events of disc i and, unless it is -1, of disc j, and settle the tree for their time.
 
-    The time that this takes grows with the number of events that are simultaneous; there are hardly ever any.
+    There are hardly ever such events, so it may look through an eighth of the tree for them.
     """
     schedule(tree, predictions, ids, i)
     if j >= 0:
         schedule(tree, predictions, ids, j)
     key = tree.key[U(root_of(tree))]
     tree.settled[0] = key
-    leaf = first_below(tree, np.int64(tree.start.shape[0] - 1), np.int64(0), key)
-    while leaf >= 0:
-        settle_path(tree, predictions, ids, leaf, key)
-        leaf = next_leaf(tree, leaf, key)
+    parents = tree.start[1]
+    for offset in range(parents >> 3):
+        if tree.key[U(parents + offset)] == key:
+            for leaf in range(offset << 3, (offset << 3) + 8):
+                if tree.key[U(leaf)] == key:
+                    settle_path(tree, predictions, ids, leaf, key)
 
 
 @njit

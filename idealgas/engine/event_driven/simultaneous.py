@@ -16,18 +16,18 @@ U = np.uintp
 @njit
 def comes_first(predictions, ids, i, j):
     """Whether disc i's next event comes before that of disc j at the same time."""
-    a, b = event_ids(predictions[U(i)], ids, np.int64(i))
-    c, d = event_ids(predictions[U(j)], ids, np.int64(j))
+    a, b = event_ids(predictions[U(i)], ids, i)
+    c, d = event_ids(predictions[U(j)], ids, j)
     return precedes(a, b, c, d)
 
 
 @inline
 def settle_group(tree, predictions, ids, group, parent):
     """Make the winner of a group of eight the one that comes first among those that share the earliest time."""
-    first = -1
+    first = np.int64(-1)
     for node in range(group, group + 8):
         if tree.key[U(node)] == tree.key[U(parent)]:
-            i = tree.winner[U(node)]
+            i = np.int64(tree.winner[U(node)])
             if first < 0 or comes_first(predictions, ids, i, first):
                 first = i
     tree.winner[U(parent)] = first
@@ -46,25 +46,3 @@ def settle_path(tree, predictions, ids, i, key):
         if tree.key[U(parent)] == key:
             settle_group(tree, predictions, ids, group, parent)
         group = parent
-
-
-@inline
-def first_below(tree, level, offset, key):
-    """First leaf below a node, given by its level and its number there, that has a key."""
-    for below in range(level - 1, -1, -1):
-        offset <<= 3
-        while tree.key[U(tree.start[U(below)] + offset)] != key:
-            offset += 1
-    return offset
-
-
-@inline
-def next_leaf(tree, i, key):
-    """First leaf after leaf i that has a key; -1 if there is none."""
-    offset = np.int64(i)
-    for level in range(tree.start.shape[0] - 1):
-        for sibling in range(offset + 1, (offset | 7) + 1):
-            if tree.key[U(tree.start[U(level)] + sibling)] == key:
-                return first_below(tree, level, sibling, key)
-        offset >>= 3
-    return np.int64(-1)
