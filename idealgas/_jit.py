@@ -274,7 +274,10 @@ class _Cache(FunctionCache):
 
 
 def njit(function: Callable) -> Any:
-    """Compile an entry point: without fastmath and without the GIL, cached on disk if its source is a file."""
+    """Compile an entry point: without fastmath and without the GIL, cached on disk if its source is a file.
+
+    Where an inlined function calls it, it stays out of line: numba would inherit `forceinline` from there.
+    """
     compiled = numba.njit(function, no_cfunc_wrapper=True, forceinline=False, **_OPTIONS)
     if not numba.config.DISABLE_JIT and os.path.isfile(function.__code__.co_filename):
         compiled._cache = _Cache(function)

@@ -14,7 +14,7 @@ from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_
 from idealgas.engine.event_driven.lookahead import fetch_ahead
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
-from idealgas.engine.event_driven.scheduler import clear, is_tied, settle, withdraw
+from idealgas.engine.event_driven.scheduler import clear, has_another, is_settled, settle, withdraw
 from idealgas.engine.event_driven.turns import count_at_one_time, enter_in_schedule, leave, next_turn
 from idealgas.engine.records import add_to_counters
 from idealgas.engine.resolve import (
@@ -107,14 +107,16 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             continue
         of_piston = is_piston(i, ids, effects.piston)
         other = np.int64(-1)
+        tied = False
         if at_contact and prediction.partner >= 0 and not of_piston:
             other = np.int64(prediction.partner)
             if record[U(other)].count != prediction.partner_count:
                 stale += 1
                 predict_contact_again(record, ids, state, i, time, effects, border)
                 continue
+            tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
             withdraw(state.tree, state.prediction, ids, other)
-        if is_tied(state.tree, time):
+        if tied or not is_settled(state.tree, time):
             settle(state.tree, state.prediction, ids, i, other)
             continue
         if of_piston:

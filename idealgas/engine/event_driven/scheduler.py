@@ -14,7 +14,7 @@ from idealgas.engine.event_driven.simultaneous import comes_first, settle_path
 from idealgas.physics.constants import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
-UNSETTLED = -1  # key of no time
+UNSETTLED = -1.0  # no time
 
 U = np.uintp
 
@@ -27,8 +27,8 @@ class Tree(NamedTuple):
         key: (total,) i8, the same memory; times are not negative, so their bits have the same order.
         winner: (total,) i4, index of the disc with that event.
         start: (levels,) i8, first node of each level.
-        settled: (1,) i8, key of the latest time of which there were several events: among these, the winners are those
-            that come first. Where events have another time in common, any of them may be a winner.
+        settled: (1,) f8, latest time of which there were several events: among these, the winners are those that come
+            first. Where events have another time in common, any of them may be a winner.
     """
 
     time: np.ndarray
@@ -92,7 +92,8 @@ def schedule(tree, predictions, ids, i):
     """Enter the next event of disc i, of which the tree has none, and climb as far as it is the earliest."""
     _, key, winner, start, settled = tree
     prediction = predictions[U(i)]
-    tree.time[U(i)] = min(prediction.contact, prediction.crossing)
+    time = min(prediction.contact, prediction.crossing)
+    tree.time[U(i)] = time
     own = key[U(i)]
     node = np.int64(i)
     base = 0
@@ -101,7 +102,7 @@ def schedule(tree, predictions, ids, i):
         base = start[U(level)]
         node = base + offset
         if own >= key[U(node)]:
-            is_later = own > key[U(node)] or own != settled[0]
+            is_later = own > key[U(node)] or time != settled[0]
             if is_later or not comes_first(predictions, ids, np.int64(i), np.int64(winner[U(node)])):
                 return
         key[U(node)] = own
@@ -111,8 +112,8 @@ def schedule(tree, predictions, ids, i):
 @inline
 def withdraw(tree, predictions, ids, i):
     """Remove disc i's event from the tree, and climb as far as it was the earliest."""
-    _, key, winner, start, settled = tree
-    removed = key[U(i)]
+    times, key, winner, start, settled = tree
+    removed = times[U(i)]
     key[U(i)] = NEVER_KEY + i
     group = np.int64(i)
     base = 0
@@ -151,9 +152,20 @@ def next_disc(tree):
 
 
 @inline
-def is_tied(tree, time):
-    """Whether an event at a time, which was withdrawn, may not be the first of those that are simultaneous."""
-    return tree.time[U(root_of(tree))] == time and tree.settled[0] != tree.key[U(root_of(tree))]
+def has_another(tree, predictions, i, j, time):
+    """Whether disc j has another event at the time at which disc i is to meet it; often j foretells the same one."""
+    prediction = predictions[U(j)]
+    same = (prediction.partner == i) & (prediction.contact == time) & (prediction.crossing > time)
+    return (tree.time[U(j)] == time) & (not same)
+
+
+@inline
+def is_settled(tree, time):
+    """Whether an event at a time, which was withdrawn, is the first of those that are simultaneous.
+
+    It is if no other one is left in the tree, or if the tree is settled for the time.
+    """
+    return (tree.time[U(root_of(tree))] != time) | (tree.settled[0] == time)
 
 
 @njit
@@ -165,14 +177,14 @@ def settle(tree, predictions, ids, i, j):
     schedule(tree, predictions, ids, i)
     if j >= 0:
         schedule(tree, predictions, ids, j)
-    key = tree.key[U(root_of(tree))]
-    tree.settled[0] = key
+    time = tree.time[U(root_of(tree))]
+    tree.settled[0] = time
     parents = tree.start[1]
     for offset in range(parents >> 3):
-        if tree.key[U(parents + offset)] == key:
+        if tree.time[U(parents + offset)] == time:
             for leaf in range(offset << 3, (offset << 3) + 8):
-                if tree.key[U(leaf)] == key:
-                    settle_path(tree, predictions, ids, leaf, key)
+                if tree.time[U(leaf)] == time:
+                    settle_path(tree, predictions, ids, leaf, time)
 
 
 @njit

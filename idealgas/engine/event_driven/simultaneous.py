@@ -26,7 +26,7 @@ def settle_group(tree, predictions, ids, group, parent):
     """Make the winner of a group of eight the one that comes first among those that share the earliest time."""
     first = np.int64(-1)
     for node in range(group, group + 8):
-        if tree.key[U(node)] == tree.key[U(parent)]:
+        if tree.time[U(node)] == tree.time[U(parent)]:
             i = np.int64(tree.winner[U(node)])
             if first < 0 or comes_first(predictions, ids, i, first):
                 first = i
@@ -34,8 +34,8 @@ def settle_group(tree, predictions, ids, group, parent):
 
 
 @njit
-def settle_path(tree, predictions, ids, i, key):
-    """Settle the groups of disc i on all levels, as far as they have events of the time of a key."""
+def settle_path(tree, predictions, ids, i, time):
+    """Settle the groups of disc i on all levels, as far as they have events of a time."""
     group = np.int64(i)
     base = 0
     for level in range(1, tree.start.shape[0]):
@@ -43,6 +43,6 @@ def settle_path(tree, predictions, ids, i, key):
         group = base + (offset << 3)
         base = tree.start[U(level)]
         parent = base + offset
-        if tree.key[U(parent)] == key:
+        if tree.time[U(parent)] == time:
             settle_group(tree, predictions, ids, group, parent)
         group = parent

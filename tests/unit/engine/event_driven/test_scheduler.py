@@ -10,7 +10,8 @@ from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX
 from idealgas.engine.event_driven.scheduler import (
     UNSETTLED,
     clear,
-    is_tied,
+    has_another,
+    is_settled,
     make_tree,
     next_disc,
     reschedule,
@@ -33,10 +34,10 @@ def enter(tree, predictions, ids, i):
     if time < before:
         tree.settled[0] = UNSETTLED
     withdraw(tree, predictions, ids, first)
-    if is_tied(tree, time):
-        settle(tree, predictions, ids, first, -1)
-    else:
+    if is_settled(tree, time):
         schedule(tree, predictions, ids, first)
+    else:
+        settle(tree, predictions, ids, first, -1)
     return next_disc(tree)
 
 
@@ -96,3 +97,25 @@ def test_the_root_is_the_next_event(case):
     assert is_first(root)
     for _ in range(updates):
         assert is_first(renew(int(draw.integers(n))))
+
+
+@njit
+def ask(tree, predictions, i, j, time):
+    return has_another(tree, predictions, i, j, time)
+
+
+@pytest.mark.parametrize(
+    ("partner", "contact", "crossing", "expected"),
+    [
+        (0, 2.0, 3.0, False),  # the same contact, foretold by both
+        (2, 2.0, 3.0, True),  # one with a third disc
+        (0, 2.0, 2.0, True),  # a crossing, which precedes the contact
+        (2, 4.0, 3.0, False),  # later
+    ],
+)
+def test_a_partner_may_have_another_event_at_that_time(partner, contact, crossing, expected):
+    ids, tree, predictions = np.arange(3, dtype=np.uint32), make_tree(3), aligned(3, PREDICTION)
+    clear(tree)
+    predictions[1].partner, predictions[1].contact, predictions[1].crossing = partner, contact, crossing
+    enter(tree, predictions, ids, 1)
+    assert ask(tree, predictions, 0, 1, 2.0) == expected
