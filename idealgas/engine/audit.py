@@ -48,7 +48,9 @@ def deepest_overlap_of_all(record, periodic):
 
 def audit(gas: Gas, overlap: float) -> Audit:
     """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
-    reach = np.maximum(gas.radius[:, None] - gas.position, gas.position + gas.radius[:, None] - np.array(gas.box))
-    outside = float(max((reach / (2 * gas.radius[:, None])).max(), 0.0))
+    radius, outside = gas.radius, 0.0
+    for x, length in zip(gas.position.T, gas.box, strict=True):
+        reach = np.maximum(radius - x, x + radius - length)
+        outside = max(outside, float((reach / (2 * radius)).max()))
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)
     return Audit(gas.kinetic_energy, momentum, overlap, outside)

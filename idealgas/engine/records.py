@@ -111,6 +111,15 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 
 @inline
+def reload(disc, own, position, velocity):
+    """Make a disc's record that of local time 0, of the positions and velocities (N, 2) by id; own: the disc's id."""
+    disc.x, disc.y = position[own, 0], position[own, 1]
+    disc.vx, disc.vy = velocity[own, 0], velocity[own, 1]
+    disc.t = 0.0
+    disc.count = 0
+
+
+@inline
 def check_clock(time, now, events_at_this_time, n):
     """Number of events in a row at one instant, after an event at local time `time` that follows one at `now`.
 

@@ -44,7 +44,8 @@ class Gas:
     @property
     def kinetic_energy(self) -> float:
         """Sum of m v²/2 over the discs, mass length²/time²."""
-        return float((0.5 * self.mass * (self.velocity**2).sum(axis=1)).sum())
+        vx, vy = self.velocity.T
+        return float((0.5 * self.mass * (vx**2 + vy**2)).sum())
 
     @property
     def temperature(self) -> float:

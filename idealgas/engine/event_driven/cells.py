@@ -69,6 +69,13 @@ def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]
 
 
 @inline
+def find_cell(cells, disc):
+    """Store in a disc's record the column and row of the cell of its position, see `cell_of`."""
+    disc.column = min(max(np.int64(disc.x / cells.width) + 1, 1), cells.columns - 2)
+    disc.row = min(max(np.int64(disc.y / cells.height) + 1, 1), cells.rows - 2)
+
+
+@inline
 def cell_index(cells, disc):
     """Index of a disc's cell."""
     return np.int64(disc.row) * cells.columns + np.int64(disc.column)

@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.border import OVER
-from idealgas.engine.event_driven.cells import cell_index, enter
+from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
 from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
 from idealgas.engine.event_driven.lookahead import fetch_ahead
@@ -16,7 +16,7 @@ from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, pred
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
 from idealgas.engine.event_driven.scheduler import clear, has_another, is_settled, settle, withdraw
 from idealgas.engine.event_driven.turns import count_at_one_time, enter_in_schedule, leave, next_turn
-from idealgas.engine.records import add_to_counters
+from idealgas.engine.records import add_to_counters, reload
 from idealgas.engine.resolve import (
     resolve_kick,
     resolve_pair,
@@ -63,10 +63,12 @@ def enter_next_cell(record, ids, state, i, crossing_code, now, effects, border):
 
 
 @njit
-def rebuild(record, ids, state, effects):
-    """Fill cells, predictions and schedule from records whose column and row are set."""
+def rebuild(record, ids, position, velocity, state, effects):
+    """Begin an epoch: fill records, cells, predictions and schedule from positions and velocities (N, 2) by id."""
     state.cells.head[:] = -1
     for i in range(record.shape[0]):
+        reload(record[U(i)], U(ids[U(i)]), position, velocity)
+        find_cell(state.cells, record[U(i)])
         enter(state.cells, i, cell_index(state.cells, record[U(i)]))
     clear(state.tree)
     predict_piston(record, ids, state, effects.piston, effects.gravity)

@@ -6,17 +6,20 @@ batches.
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import Cells, cell_of, discs_per_cell, make_cells
+from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cells
 from idealgas.engine.event_driven.kernel import advance_events, rebuild
 from idealgas.engine.event_driven.overlap import deepest_overlap
-from idealgas.engine.event_driven.state import make_state
+from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.strips import FAST, Tuning, share_out
 from idealgas.engine.event_driven.team import Crew, Team
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
-from idealgas.engine.records import NOTHING_KEPT, Limits, Threads, make_discs
+from idealgas.engine.records import NOTHING_KEPT, Discs, Limits, Threads, make_discs
 from idealgas.events import EventBatch
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+
+IN_ANY_ORDER = 4096
+"""Discs that the caches hold: they are not sorted in memory anew at each epoch."""
 
 
 def expected_threads(gas: Gas, threads: int | None, local: bool) -> Threads:
@@ -31,6 +34,9 @@ class EventDriven:
     without_positions = False
     single_epoch = False
     kept = NOTHING_KEPT
+    discs: Discs
+    _state: EventDrivenState
+    _shared: Threads
 
     def __init__(self, filling: float | None = None, threads: int | None = 1, tuning: Tuning = FAST) -> None:
         """Set what changes the speed only.
@@ -43,23 +49,41 @@ class EventDriven:
         self.crew = Crew(tuning)
         self._team: Team | None = None
         self._walls: tuple[bytes, WallCells] | None = None
+        self._radius: np.ndarray | None = None  # of the discs for which there is memory
+
+    def __copy__(self) -> "EventDriven":
+        """Another one of its kind, with memory of its own."""
+        other = EventDriven(self._filling, self._threads, self.crew.tuning)
+        other._walls = self._walls
+        return other
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch: sort the discs in memory by cell, and predict the next events of all."""
-        filling = self._filling or discs_per_cell(gas.packing_fraction)
-        largest_radius = float(gas.radius.max())
-        cells = make_cells(len(gas), gas.box, largest_radius, filling)
-        column, row = cell_of(gas.position, cells)
-        order = np.argsort(row * cells.columns + column, kind="stable")
-        self.discs = make_discs(gas, order)
-        fields = self.discs.record.view(np.ndarray)
-        fields["column"], fields["row"] = column[order], row[order]
+        """Begin an epoch: predict the next events of all. Discs and kinds of effects stay the same in a run."""
+        another = self._radius is not gas.radius
+        if another:
+            self._make_room(gas, effects)
+        if another or len(gas) > IN_ANY_ORDER:
+            self._sort(gas)
         self._effects = effects
-        self._state = make_state(len(gas), cells, effects, self._wall_cells(effects, cells, largest_radius))
-        rebuild(self.discs.record, self.discs.id, self._state, effects)
-        self._shared = share_out(self._threads, cells.rows - 2, len(gas), effects.piston is None, self.crew.tuning)
+        self._state = self._state._replace(walls=self._wall_cells(effects))
+        position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
+        rebuild(self.discs.record, self.discs.id, position, velocity, self._state, effects)
         strips = self._shared.number
         self._team = Team(self.crew, strips, self.discs, self._state, effects) if strips > 1 else None
+
+    def _make_room(self, gas: Gas, effects: Effects) -> None:
+        """Cells and memory for the discs of a run, which never change but in position and velocity."""
+        self._radius, self._largest_radius = gas.radius, float(gas.radius.max())
+        filling = self._filling or discs_per_cell(gas.packing_fraction)
+        cells = make_cells(len(gas), gas.box, self._largest_radius, filling)
+        self._state = make_state(len(gas), cells, effects, None)
+        self._shared = share_out(self._threads, cells.rows - 2, len(gas), effects.piston is None, self.crew.tuning)
+
+    def _sort(self, gas: Gas) -> None:
+        """Sort the discs in memory by cell."""
+        cells = self._state.cells
+        column, row = cell_of(gas.position, cells)
+        self.discs = make_discs(gas, np.argsort(row * cells.columns + column, kind="stable"))
 
     @property
     def threads(self) -> Threads:
@@ -71,13 +95,14 @@ class EventDriven:
         """Whether rows of events that have happened are still to be handed on by `advance`."""
         return self._team is not None and self._team.pending
 
-    def _wall_cells(self, effects: Effects, cells: Cells, largest_radius: float) -> WallCells | None:
+    def _wall_cells(self, effects: Effects) -> WallCells | None:
         """Wall segments of each cell: those of the epoch before, unless a gate has opened or closed since."""
         if effects.segments is None:
             return None
         active = effects.segments.active.tobytes()
         if self._walls is None or self._walls[0] != active:
-            self._walls = active, make_wall_cells(effects.segments, effects.periodic, cells, largest_radius)
+            cells, radius = self._state.cells, self._largest_radius
+            self._walls = active, make_wall_cells(effects.segments, effects.periodic, cells, radius)
         return self._walls[1]
 
     def advance(

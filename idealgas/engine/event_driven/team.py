@@ -34,10 +34,13 @@ SHARE = 0.8
 """Part of the events up to a limit that a slice is made for: one that comes to more is in vain."""
 
 TRIAL = 2
-"""Times the least events of a slice: as many has the first one that is shared, or one a disc, if that is more.
+"""Times the least events of a slice: as many has one that shows what a way takes, or a number by the disc, if larger.
 
-On a busy machine it may take forty times as long as on one thread. What a slice costs beside its events is by the disc.
+What a slice costs beside its events is by the disc. On a busy machine a shared one may take forty times as long.
 """
+
+TRIED_ALONE, TRIED_SHARED = 0.25, 0.5
+"""Events a disc of such a slice, on one thread and on several."""
 
 FEW = 64
 """Events that say nothing of a rate."""
@@ -68,10 +71,14 @@ class Race:
         """Whether one of the ways was not taken yet."""
         return len(self._cost) < 2
 
+    def is_trial(self, shared: bool) -> bool:
+        """Whether a slice on one way is to show what that takes, as far as is known."""
+        return self.open or shared != self._faster
+
     def note(self, shared: bool, events: int, seconds: float) -> None:
         """Take note of a slice."""
         if events > 0:
-            if self.open or shared != self._faster:
+            if self.is_trial(shared):
                 self._again = time.perf_counter() + PATIENCE * seconds
             self._cost[shared] = seconds / events
 
@@ -158,7 +165,7 @@ class Team:
         """Process events up to the limits, see `advance_events`; rows beyond the batch come with the next calls."""
         if self.pending:
             return self._deliver(batch)
-        goal, race = self._goal(limits, counters[0]), self._crew.race
+        goal, race = self._goal(limits, batch, counters[0]), self._crew.race
         if limits.events == 0:
             self._share(0.0, batch, FAILED)  # compiles
             return self._alone(limits, epoch_start, batch, counters)
@@ -168,24 +175,30 @@ class Team:
         if shared and not given_up:
             rows, arrived = self._deliver(batch)
         else:
+            if race is not None and not shared and race.is_trial(shared):
+                limits = limits._replace(events=min(limits.events, self._trial(TRIED_ALONE)))
             rows, arrived = self._alone(limits, epoch_start, batch, counters)
         if race is not None and given_up != STOP:  # a rate that rose, as in a lattice that melts, says nothing of speed
             race.note(shared, int(counters[0]["events"]) - events, time.perf_counter() - started)
         return rows, arrived
 
-    def _goal(self, limits: Limits, counter: Any) -> float:
+    def _goal(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
         """Local time up to which a slice is to be shared; 0 for none."""
         if self._crew.rate is None:
             return 0.0
         (events, collisions), tuning = self._crew.rate, self._crew.tuning
-        most = float(min(limits.events, tuning.buffer * len(self._borders) // 2))
+        most = float(limits.events if batch is None else min(limits.events, tuning.buffer * len(self._borders) // 2))
         if collisions > 0:
             most = min(most, limits.collisions * events / collisions)
         if self._crew.race is not None and self._crew.race.open:
-            most = min(most, max(TRIAL * tuning.events, len(self._discs.record)))
+            most = min(most, self._trial(TRIED_SHARED))
         now = max(float(counter["time"]), self._done)
         until = min(now + SHARE * most / events, limits.until)
         return until if (until - now) * events >= tuning.events else 0.0
+
+    def _trial(self, by_disc: float) -> int:
+        """Events of a slice that shows what a way takes; by_disc: events a disc, unless that comes to few."""
+        return max(TRIAL * self._crew.tuning.events, int(by_disc * len(self._discs.record)), FEW)
 
     def _alone(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
