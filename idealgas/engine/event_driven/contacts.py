@@ -29,6 +29,27 @@ def wrapped_index(index, count, is_periodic):
     return index, 0
 
 
+@njit
+def gather_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
+    """Do the work of `gather_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
+    for step in range(3):
+        c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
+        r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
+        j = cells.head[U(r * cells.columns + c)]
+        candidates[U(count)] = j
+        record_image(images, count, image_x, image_y)
+        count += 1 if j >= 0 else 0
+    return count
+
+
+@inline
+def is_inside(cells, column, row, along_y):
+    """Whether three cells in a row or column, from (column, row) on, are all in the box."""
+    last_column = column + (0 if along_y else 2)
+    last_row = row + (2 if along_y else 0)
+    return (column >= 1) & (row >= 1) & (last_column < cells.columns - 1) & (last_row < cells.rows - 1)
+
+
 @inline
 def gather_line(state, count, column, row, along_y, periodic):
     """Append the first discs of three cells in a row or column, from (column, row) on, to `count` candidates.
@@ -36,16 +57,14 @@ def gather_line(state, count, column, row, along_y, periodic):
     Returns the new number of candidates.
     """
     cells = state.cells
+    if periodic is not None and not is_inside(cells, column, row, along_y):
+        return gather_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
-    for step in range(3):
-        if periodic is not None:
-            c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
-            r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
-            cell = r * cells.columns + c
-            record_image(state.images, count, image_x, image_y)
+    for _ in range(3):
         j = cells.head[U(cell)]
         state.candidates[U(count)] = j
+        record_image(state.images, count, 0, 0)
         count += 1 if j >= 0 else 0
         cell += stride
     return count

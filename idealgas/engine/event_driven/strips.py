@@ -22,7 +22,6 @@ from idealgas.engine.event_driven.border import (
 )
 from idealgas.engine.records import Threads
 
-
 LARGE_SLICE = 1 << 21
 """Events of a slice that takes long enough, seconds, to be no larger where it need not."""
 
