@@ -1,0 +1,54 @@
+"""Unit tests of idealgas.engine.event_driven.method: memory that epochs share."""
+
+import numpy as np
+import pytest
+from effect_samples import make_effects, make_gas
+from support import record
+
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven import method
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.simulation import Simulation, Stop
+
+STOP = Stop(events=20_000)  # several epochs
+
+
+def rows_of(engine, effects, each=1000):
+    """Rows of a run whose states are looked at on the way."""
+    gas = make_gas(3)
+    simulation = Simulation(gas, engine, make_effects(effects, gas))
+    found = record(simulation, STOP, events=each)
+    assert simulation.epoch > 1
+    return found
+
+
+@pytest.mark.parametrize("effects", [set(), {"gates"}, {"periodic", "piston"}], ids=str)
+@pytest.mark.parametrize("in_any_order", [0, 4096], ids=["sorted", "as they were"])
+def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_order, monkeypatch):
+    monkeypatch.setattr(method, "IN_ANY_ORDER", in_any_order)
+    for a, b in zip(rows_of(EventDriven(), effects), rows_of(BruteForce(), effects), strict=True):
+        assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("effects", [set(), {"gates"}, {"periodic", "piston"}], ids=str)
+def test_an_audit_on_the_way_changes_nothing(effects):
+    gas = make_gas(3)
+    looked_at = Simulation(gas, EventDriven(), make_effects(effects, gas))
+    quiet = Simulation(gas, EventDriven(), make_effects(effects, gas))
+    for _ in looked_at.slices(STOP, events=1000):
+        looked_at.audit_of(looked_at.state()[0])
+    for _ in quiet.slices(STOP, events=1000):
+        pass
+    assert looked_at.counters == quiet.counters
+    for name in ("position", "velocity"):
+        assert np.array_equal(getattr(looked_at.state()[0], name), getattr(quiet.state()[0], name))
+
+
+def test_another_gas_has_memory_of_its_own():
+    engine, few, many = EventDriven(), make_gas(1, 2, 2), make_gas(1)
+    for gas in (many, few, many):
+        engine.start(gas, make_effects(set(), gas))
+        assert len(engine.discs.record) == len(gas)
+        assert sorted(engine.discs.id) == list(range(len(gas)))
+        assert np.array_equal(engine.discs.record.x, gas.position[engine.discs.id, 0])
+        assert np.array_equal(engine.discs.record.r, gas.radius[engine.discs.id])
