@@ -23,7 +23,7 @@ from idealgas.engine.event_driven.border import (
 from idealgas.engine.records import Threads
 
 LARGE_SLICE = 1 << 21
-"""Events of a slice that takes long enough, seconds, to be no larger where it need not."""
+"""Events of a slice that takes seconds: long enough for one that wants to end the run."""
 
 
 class Tuning(NamedTuple):
@@ -78,7 +78,7 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
             threads: "as run.threads says",
         }
     number = min(limits)
-    worth = max(2 * tuning.events, n, min(2 * n, LARGE_SLICE))  # what a slice changes is copied: all discs
+    worth = max(2 * tuning.events, min(2 * n, LARGE_SLICE))  # what a slice changes is copied: all discs
     return Threads(max(number, 1), limits[number], events=worth if number > 1 else 1)
 
 

@@ -10,6 +10,9 @@ from idealgas.engine.event_driven import method
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 
+several = pytest.mark.parametrize(
+    "effects", [set(), {"gates"}, {"periodic", "piston"}], ids=["plain", "gates", "periodic and piston"]
+)
 STOP = Stop(events=20_000)  # several epochs
 
 
@@ -22,7 +25,7 @@ def rows_of(engine, effects, each=1000):
     return found
 
 
-@pytest.mark.parametrize("effects", [set(), {"gates"}, {"periodic", "piston"}], ids=str)
+@several
 @pytest.mark.parametrize("in_any_order", [0, 4096], ids=["sorted", "as they were"])
 def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_order, monkeypatch):
     monkeypatch.setattr(method, "IN_ANY_ORDER", in_any_order)
@@ -30,7 +33,7 @@ def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_ord
         assert np.array_equal(a, b)
 
 
-@pytest.mark.parametrize("effects", [set(), {"gates"}, {"periodic", "piston"}], ids=str)
+@several
 def test_an_audit_on_the_way_changes_nothing(effects):
     gas = make_gas(3)
     looked_at = Simulation(gas, EventDriven(), make_effects(effects, gas))
