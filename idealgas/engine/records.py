@@ -10,6 +10,7 @@ from idealgas._jit import aligned, inline, njit
 from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.physics.constants import NEVER
+from idealgas.physics.momentum_flow import complete_flights
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 
@@ -151,11 +152,14 @@ def add_to_counters(counter, events, disc_collisions, kicks, crossings, stale, n
 
 
 @njit
-def synchronise(record, ids, time, gravity, periodic, position, velocity):
+def synchronise(record, ids, time, gravity, periodic, flow, position, velocity):
     """Move every disc to one local time, wrap its position into the box, and store position and velocity by id.
 
-    position, velocity: (N, 2) f8, length and length/time.
+    Where momentum flow is recorded, it then has all up to that time. position, velocity: (N, 2) f8, length and
+    length/time.
     """
+    if flow is not None:
+        complete_flights(record, time, gravity, flow)
     for i in range(record.shape[0]):
         disc = record[U(i)]
         own = U(ids[U(i)])

@@ -175,10 +175,8 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-            if self.effects.flow is not None:
-                momentum_flow.settle(self.effects.flow, self.effects.gravity)
-        except (EventCascadeError, SumRangeError) as error:  # raised by a kernel, which cannot tell the time
-            raise UserError(f"after t = {self.last_event_time:g}: {error}") from error
+        except (EventCascadeError, SumRangeError) as error:
+            raise self._dated(error) from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else self._counted()["time"]
         return rows
@@ -240,29 +238,30 @@ class Simulation:
     def state(self) -> tuple[Gas, Effects]:
         """Copies of the gas, its images and its momentum flow, and the effects, at the time reached."""
         periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
-        self._complete_flights(self._local_now, flow)
-        effects = self.effects._replace(periodic=periodic, flow=flow)
-        return self._synchronised(self._local_now, periodic), effects
+        gas = self._synchronised(self._local_now, periodic, flow)
+        return gas, self.effects._replace(periodic=periodic, flow=flow)
 
-    def _complete_flights(self, local_time: float, flow: MomentumFlow | None) -> None:
-        """Add to a momentum flow what is in the air at a local time."""
-        if flow is not None:
-            momentum_flow.complete_flights(self.method.discs.record, local_time, self.effects.gravity, flow)
+    def _dated(self, error: Exception) -> UserError:
+        """An error that a kernel raised, which cannot tell the time, with that of the last event."""
+        return UserError(f"after t = {self.last_event_time:g}: {error}")
 
-    def _synchronised(self, local_time: float, periodic: Periodic | None) -> Gas:
-        """The gas at a local time; the records do not change."""
+    def _synchronised(self, local_time: float, periodic: Periodic | None, flow: MomentumFlow | None) -> Gas:
+        """The gas at a local time, and its images and momentum flow up to then; the records do not change."""
         discs = self.method.discs
         record = np.array(discs.record)
         position, velocity = np.empty((2, len(record), 2))
-        synchronise(record, discs.id, local_time, self.effects.gravity, periodic, position, velocity)
+        try:
+            synchronise(record, discs.id, local_time, self.effects.gravity, periodic, flow, position, velocity)
+        except SumRangeError as error:
+            raise self._dated(error) from error
         if self.method.without_positions:
             position = self.gas.position
         return replace(self.gas, position=position, velocity=velocity)
 
     def next_epoch(self) -> None:
         """Move all discs to the end of the epoch and begin the next one there."""
-        self._complete_flights(self.length, self.effects.flow)
-        self.gas, self.totals = self._synchronised(self.length, self.effects.periodic), self.counters
+        self.gas = self._synchronised(self.length, self.effects.periodic, self.effects.flow)
+        self.totals = self.counters
         end_epoch(self.effects, self.length)
         self.time += self.length
         self.epoch += 1

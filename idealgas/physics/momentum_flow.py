@@ -283,7 +283,8 @@ def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
 
 @njit
 def complete_flights(record, time, gravity, flow):
-    """Add the flights of all discs from their records to a local time; no collisions may wait to be added."""
+    """Add the flights of all discs from their records to a local time, after the collisions that wait to be added."""
+    settle(flow, gravity)
     terms = flow.notes.terms
     for first in range(0, record.shape[0], TOGETHER):
         number = min(TOGETHER, record.shape[0] - first)
@@ -320,8 +321,10 @@ def counts_of(flow: MomentumFlow) -> list[np.ndarray]:
 
 
 def copy_of(flow: MomentumFlow | None) -> MomentumFlow | None:
-    """Independent copy of sums for which no collision waits; None for none."""
+    """Independent copy of sums and of the collisions that wait to be added; None for none."""
     if flow is None:
         return None
     copies: Any = {name: part.copy() for name, part in flow._asdict().items() if isinstance(part, np.ndarray)}
-    return flow._replace(notes=make_notes(), **copies)
+    notes = make_notes()
+    notes.waiting[:], notes.noted[:] = flow.notes.waiting, flow.notes.noted
+    return flow._replace(notes=notes, **copies)
