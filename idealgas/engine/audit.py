@@ -48,9 +48,8 @@ def deepest_overlap_of_all(record, periodic):
 
 def audit(gas: Gas, overlap: float) -> Audit:
     """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
-    radius, outside = gas.radius, 0.0
-    for x, length in zip(gas.position.T, gas.box, strict=True):
-        reach = np.maximum(radius - x, x + radius - length)
-        outside = max(outside, float((reach / (2 * radius)).max()))
+    radius = gas.radius
+    reach = [np.maximum(radius - x, x + radius - side) for x, side in zip(gas.position.T, gas.box, strict=True)]
+    outside = float(max((np.array(reach) / (2 * radius)).max(), 0.0))
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)
     return Audit(gas.kinetic_energy, momentum, overlap, outside)

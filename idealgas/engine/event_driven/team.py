@@ -15,6 +15,7 @@ import numpy as np
 from idealgas.engine.event_driven.border import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.merge import Pending, TiedRowsError, order_of
+from idealgas.engine.event_driven.race import Race
 from idealgas.engine.event_driven.scheduler import make_tree, plant
 from idealgas.engine.event_driven.state import EventDrivenState
 from idealgas.engine.event_driven.strips import FAST, Tuning, cut, make_borders, reset
@@ -47,45 +48,6 @@ FEW = 64
 
 SLOWER = 8
 """By which a rate is divided that foretold far too many events."""
-
-PATIENCE = 20
-"""After so many times what a slice took the way that was the slower one, that way is tried again."""
-
-
-class Race:
-    """Which way is the faster one at the moment: with several threads, or with one."""
-
-    def __init__(self) -> None:
-        """Know nothing of either."""
-        self._cost: dict[bool, float] = {}  # seconds an event
-        self._again = 0.0  # when the slower way is to be tried again
-
-    def shares(self) -> bool:
-        """Whether several threads are to go on. The slower way is tried now and then, at a small part of the time."""
-        if self.open:
-            return False in self._cost
-        return self._faster if time.perf_counter() < self._again else not self._faster
-
-    @property
-    def open(self) -> bool:
-        """Whether one of the ways was not taken yet."""
-        return len(self._cost) < 2
-
-    def is_trial(self, shared: bool) -> bool:
-        """Whether a slice on one way is to show what that takes, as far as is known."""
-        return self.open or shared != self._faster
-
-    def note(self, shared: bool, events: int, seconds: float) -> None:
-        """Take note of a slice."""
-        if events > 0:
-            if self.is_trial(shared):
-                self._again = time.perf_counter() + PATIENCE * seconds
-            self._cost[shared] = seconds / events
-
-    @property
-    def _faster(self) -> bool:
-        """Whether several threads were faster, each way the last time that it was taken."""
-        return self._cost[True] <= self._cost[False]
 
 
 class Crew:
@@ -190,7 +152,7 @@ class Team:
         most = float(limits.events if batch is None else min(limits.events, tuning.buffer * len(self._borders) // 2))
         if collisions > 0:
             most = min(most, limits.collisions * events / collisions)
-        if self._crew.race is not None and self._crew.race.open:
+        if self._crew.race is not None and self._crew.race.is_trial(True):
             most = min(most, self._trial(TRIED_SHARED))
         now = max(float(counter["time"]), self._done)
         until = min(now + SHARE * most / events, limits.until)

@@ -14,8 +14,9 @@ from thread_samples import EAGER, EFFECTS, SMALLEST_CELLS, compare, lattice, log
 
 from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.event_driven.race import Race
 from idealgas.engine.event_driven.strips import cut, share_out
-from idealgas.engine.event_driven.team import STOP, Crew, Race, Team, _Strip
+from idealgas.engine.event_driven.team import STOP, Crew, Team, _Strip
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.physics.exact_sum import TOGETHER, add_all, add_sums, make_sums, values
 from idealgas.run.resume import resume
@@ -61,6 +62,22 @@ def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
     now[0] = 100.0
     assert race.shares()
     race.note(True, 100, 0.5)
+    assert race.shares()
+
+
+def test_a_way_that_gets_slow_is_not_tried_again_at_once(monkeypatch):
+    """As when other work begins on the machine."""
+    now = [0.0]
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    race = Race()
+    race.note(False, 100, 1.0)
+    race.note(True, 100, 0.5)
+    now[0] = 5.0
+    assert race.shares()
+    race.note(True, 100, 40.0)
+    assert not race.shares()
+    assert race.is_trial(True)
+    now[0] = 5.0 + 20 * 40.0
     assert race.shares()
 
 
