@@ -18,7 +18,7 @@ from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
 from idealgas.scene import parse_scene
 
-EAGER = Tuning(rows=LEAST_ROWS, discs=1, events=1, race=False)
+EAGER = Tuning(rows=LEAST_ROWS, discs=1, events=1, slice=1000, race=False)
 SMALLEST_CELLS = 1e-9  # discs a cell
 
 EVERYTHING = """

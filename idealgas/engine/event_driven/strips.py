@@ -22,9 +22,6 @@ from idealgas.engine.event_driven.border import (
 )
 from idealgas.engine.records import Threads
 
-LARGE_SLICE = 1 << 21
-"""Events of a slice that takes seconds: long enough for one that wants to end the run."""
-
 
 class Tuning(NamedTuple):
     """What makes threads fast, and changes nothing else.
@@ -33,6 +30,7 @@ class Tuning(NamedTuple):
         rows: least rows of a strip.
         discs: least discs of a strip.
         events: least events of a slice that several threads share.
+        slice: events of a slice that are enough, however many discs there are: as many as take some seconds.
         buffer: rows of events that a strip has room for.
         lead: rows that the fastest disc may cross in the time by which events inside a strip are ahead of others.
         race: whether one thread goes on alone while that is faster, as on a busy machine.
@@ -42,6 +40,7 @@ class Tuning(NamedTuple):
     rows: int = 32
     discs: int = 5_000
     events: int = 20_000
+    slice: int = 1 << 21
     buffer: int = 1 << 18
     lead: float = 1.5
     race: bool = True
@@ -78,7 +77,7 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
             threads: "as run.threads says",
         }
     number = min(limits)
-    worth = max(2 * tuning.events, min(2 * n, LARGE_SLICE))  # what a slice changes is copied: all discs
+    worth = max(2 * tuning.events, min(2 * n, tuning.slice))  # what a slice changes is copied: all discs
     return Threads(max(number, 1), limits[number], events=worth if number > 1 else 1)
 
 
