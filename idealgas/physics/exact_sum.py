@@ -79,33 +79,28 @@ def add_large(total, units):
 
 @njit
 def add_all(total, terms):
-    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most TOGETHER."""
-    large = 0
-    for i in range(terms.shape[0]):
-        large += not abs(terms[U(i)] * total.per_unit) < FITS
-    if large == 0:
-        add_together(total, terms)
-    else:
-        for i in range(terms.shape[0]):
-            add(total, terms[U(i)])
-
-
-@inline
-def add_together(total, terms):
-    """Add terms (n,) of less than FITS units to a SUM; n at most TOGETHER.
+    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most TOGETHER.
 
     Few processors turn several floats at a time into whole numbers; rounded by a sum, their bits are read as such.
     """
-    upper = np.int64(0)
-    lower = np.int64(0)
-    for i in range(terms.shape[0]):
-        units = terms[U(i)] * total.per_unit
+    number = np.int64(terms.shape[0])
+    upper = number * -ROUNDER_BITS
+    lower = upper
+    small = np.int64(0)
+    per_unit = total.per_unit
+    for i in range(number):
+        units = terms[U(i)] * per_unit
         high = np.float64(units / HALF + ROUNDER)
         low = np.float64((units - (high - ROUNDER) * HALF) + ROUNDER)
-        upper += high.view(np.int64) - ROUNDER_BITS
-        lower += low.view(np.int64) - ROUNDER_BITS
-    whole = (upper << np.int64(32)) + lower
-    add_words(total, whole >> np.int64(63), np.uint64(whole))
+        upper += high.view(np.int64)
+        lower += low.view(np.int64)
+        small += np.int64(abs(units) < FITS)
+    if small == number:
+        whole = (upper << np.int64(32)) + lower
+        add_words(total, whole >> np.int64(63), np.uint64(whole))
+    else:
+        for i in range(number):
+            add(total, terms[U(i)])
 
 
 def unit_exponent(typical: float) -> int:
