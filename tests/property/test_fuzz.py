@@ -120,7 +120,7 @@ def run_scene(text: str, max_errors: MaxErrors) -> None:
 
 
 scenes = given(scene_texts())
-quick = settings(max_examples=20, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+quick = settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
 def with_what_once_broke(test: Callable) -> Callable:
