@@ -1,8 +1,9 @@
 """Memory of discs whose events come soon, fetched while others happen: for a gas too large for the caches.
 
-The disc that becomes the first below the root of the schedule has one of the next events. Each step needs what the one
-before has fetched, so it is done an event later: first the disc's record, prediction and place in the schedule; then
-the cells around it, and its partner; then the discs in the cells that its event will ask.
+The schedule has 8 to 64 parts two levels below its root, and the disc that becomes the first of its part has an event
+some ten events later. (Of the few parts right below the root, two for some numbers of discs, the first may be next.)
+Each step needs what the one before has fetched, so it is done an event later: first the disc's record, prediction and
+place in the schedule; then the cells around it, and its partner; then the discs in the cells that its event will ask.
 """
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from idealgas._jit import fetch, inline
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 
-FROM = 8_000
+FROM = 6_000
 """Least number of discs at which that is faster."""
 
 U = np.uintp
@@ -22,9 +23,9 @@ def make_lookahead(n: int) -> np.ndarray | None:
 
 
 @inline
-def first_below_root(tree, i):
-    """Index of the disc with the next event in the part of the tree, below its root, that contains disc i."""
-    level = tree.start.shape[0] - 2
+def first_of_part(tree, i):
+    """Index of the disc with the next event in the part of the tree, two levels below its root, that has disc i."""
+    level = max(tree.start.shape[0] - 3, 0)
     return np.int64(tree.winner[U(tree.start[U(level)] + (i >> (3 * level)))])
 
 
@@ -67,6 +68,13 @@ def fetch_first_of_three(cells, record, cell, stride):
 
 
 @inline
+def fetch_block(cells, record, cell):
+    """Fetch the first discs of a cell and of the eight around it."""
+    for row in range(-1, 2):
+        fetch_first_of_three(cells, record, cell + row * cells.columns - 1, 1)
+
+
+@inline
 def fetch_candidates(cells, record, disc, prediction):
     """Fetch the first discs of the cells that a disc's next event will ask."""
     cell = cell_around(cells, disc)
@@ -78,16 +86,17 @@ def fetch_candidates(cells, record, disc, prediction):
         else:
             fetch_first_of_three(cells, record, cell + ahead - cells.columns, cells.columns)
     else:
-        for row in range(-1, 2):
-            fetch_first_of_three(cells, record, cell + row * cells.columns - 1, 1)
+        fetch_block(cells, record, cell)
+        if prediction.partner >= 0:
+            fetch_block(cells, record, cell_around(cells, record[U(prediction.partner)]))
 
 
 @inline
 def fetch_ahead(lookahead, record, state, i):
-    """Fetch memory for the disc that comes first now that disc i's event was withdrawn, and for those before it."""
+    """Fetch memory for the disc that is the first of disc i's part now that this was withdrawn, and for those before."""
     if lookahead is not None:
         third, second = lookahead[0], lookahead[1]
-        first = min(first_below_root(state.tree, i), record.shape[0] - 1)  # a piston is no disc
+        first = min(first_of_part(state.tree, i), record.shape[0] - 1)  # a piston is no disc
         lookahead[0], lookahead[1] = second, first
         fetch_disc(state.tree, record, state, first)
         fetch_cells(state.cells, record[U(second)])

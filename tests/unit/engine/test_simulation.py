@@ -20,7 +20,7 @@ def gas_of(box, *discs):
     """Unit-mass discs from (x, y, vx, vy, radius)."""
     table = np.array(discs, float)
     return Gas(
-        box=box,
+        box=(float(box[0]), float(box[1])),  # whole numbers would take machine code of their own
         position=table[:, :2].copy(),
         velocity=table[:, 2:4].copy(),
         radius=table[:, 4].copy(),
