@@ -93,7 +93,7 @@ def fetch_candidates(cells, record, disc, prediction):
 
 @inline
 def fetch_ahead(lookahead, record, state, i):
-    """Fetch memory for the disc that is the first of disc i's part now that this was withdrawn, and for those before."""
+    """Fetch memory for the disc that comes first in disc i's part now that this was withdrawn, and for those before."""
     if lookahead is not None:
         third, second = lookahead[0], lookahead[1]
         first = min(first_of_part(state.tree, i), record.shape[0] - 1)  # a piston is no disc
