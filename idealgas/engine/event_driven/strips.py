@@ -77,7 +77,7 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
             threads: "as run.threads says",
         }
     number = min(limits)
-    worth = max(2 * tuning.events, min(2 * n, tuning.slice))  # what a slice changes is copied: all discs
+    worth = max(2 * tuning.events, min(4 * n, tuning.slice))  # all discs are copied before
     return Threads(max(number, 1), limits[number], events=worth if number > 1 else 1)
 
 
