@@ -1,9 +1,9 @@
 """Memory of discs whose events come soon, fetched while others happen: for a gas too large for the caches.
 
-The schedule has 8 to 64 parts two levels below its root, and the disc that becomes the first of its part has an event
-some ten events later. (Of the few parts right below the root, two for some numbers of discs, the first may be next.)
-Each step needs what the one before has fetched, so it is done an event later: first the disc's record, prediction and
-place in the schedule; then the cells around it, and its partner; then the discs in the cells that its event will ask.
+The disc that becomes the first of its part of the schedule has an event soon: of 8 to 64 parts, two levels below the
+root, some ten events later. (Right below the root there may be two, and the first of one is often next.) Each step
+needs what the one before has fetched, so it is done an event later: first the disc's record, prediction and place in
+the schedule; then the cells around it, and its partner; then the discs in the cells that its event will ask.
 """
 
 import numpy as np
@@ -14,18 +14,25 @@ from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 FROM = 6_000
 """Least number of discs at which that is faster."""
 
+NEAR = 32_768
+"""Most discs for which the parts right below the root do, if there are three: memory is not so far then."""
+
 U = np.uintp
 
 
 def make_lookahead(n: int) -> np.ndarray | None:
-    """Indices of the two discs for which memory is being fetched; None for a gas of few discs."""
-    return np.zeros(2, np.int64) if n >= FROM else None
+    """Indices of two discs for which memory is being fetched, and level of the parts; None for a gas of few discs."""
+    if n < FROM:
+        return None
+    level, parts = 0, n
+    while parts > 8:
+        level, parts = level + 1, -(-parts // 8)
+    return np.array([0, 0, level if n <= NEAR and parts >= 3 else max(level - 1, 0)], np.int64)
 
 
 @inline
-def first_of_part(tree, i):
-    """Index of the disc with the next event in the part of the tree, two levels below its root, that has disc i."""
-    level = max(tree.start.shape[0] - 3, 0)
+def first_of_part(tree, level, i):
+    """Index of the disc with the next event in the part of the tree, a node of that level, that has disc i."""
     return np.int64(tree.winner[U(tree.start[U(level)] + (i >> (3 * level)))])
 
 
@@ -96,7 +103,7 @@ def fetch_ahead(lookahead, record, state, i):
     """Fetch memory for the disc that comes first in disc i's part now that this was withdrawn, and for those before."""
     if lookahead is not None:
         third, second = lookahead[0], lookahead[1]
-        first = min(first_of_part(state.tree, i), record.shape[0] - 1)  # a piston is no disc
+        first = min(first_of_part(state.tree, lookahead[2], i), record.shape[0] - 1)  # a piston is no disc
         lookahead[0], lookahead[1] = second, first
         fetch_disc(state.tree, record, state, first)
         fetch_cells(state.cells, record[U(second)])

@@ -25,7 +25,7 @@ class EventDrivenState(NamedTuple):
         candidates: i4 scratch memory for indices of discs that may be in contact.
         images: (…, 2) i4 scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
-        lookahead: discs whose memory is fetched; None for a gas that the caches hold.
+        lookahead: (3,) i8, see `make_lookahead`; None for a gas that the caches hold.
     """
 
     cells: Cells

@@ -290,7 +290,7 @@ class _Strip:
         self._state = state._replace(
             tree=make_tree(n),
             candidates=np.empty_like(state.candidates),
-            lookahead=None if state.lookahead is None else np.zeros_like(state.lookahead),
+            lookahead=None if state.lookahead is None else state.lookahead.copy(),
             images=None if state.images is None else np.empty_like(state.images),
         )
         self._effects = with_own_sums(effects)
