@@ -20,14 +20,16 @@ NEAR = 32_768
 U = np.uintp
 
 
-def make_lookahead(n: int) -> np.ndarray | None:
-    """Indices of two discs for which memory is being fetched, and level of the parts; None for a gas of few discs."""
+def make_lookahead(n: int, levels: int) -> np.ndarray | None:
+    """Indices of two discs for which memory is being fetched, and level of the parts; None for a gas of few discs.
+
+    levels: of the schedule, whose last is the root.
+    """
     if n < FROM:
         return None
-    level, parts = 0, n
-    while parts > 8:
-        level, parts = level + 1, -(-parts // 8)
-    return np.array([0, 0, level if n <= NEAR and parts >= 3 else max(level - 1, 0)], np.int64)
+    below_root = levels - 2
+    enough = n <= NEAR and n > 2 * 8**below_root
+    return np.array([0, 0, below_root if enough else max(below_root - 1, 0)], np.int64)
 
 
 @inline

@@ -41,14 +41,15 @@ def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) 
     """Event-driven state of n discs, without any prediction."""
     leaves = n if effects.piston is None else n + 1
     room = 9 * n + 16  # in a box of one cell, each disc is a candidate in nine images
+    tree = make_tree(leaves)
     return EventDrivenState(
         cells,
-        make_tree(leaves),
+        tree,
         aligned(leaves, PREDICTION),
         np.empty(room if effects.periodic else n + 16, np.int32),
         np.empty((room, 2), np.int32) if effects.periodic else None,
         walls,
-        make_lookahead(n),
+        make_lookahead(n, len(tree.start)),
     )
 
 
