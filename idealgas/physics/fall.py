@@ -4,6 +4,7 @@ import math
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import position_after
 
 
 @inline
@@ -23,3 +24,12 @@ def time_to_plane(height, velocity, acceleration):
     if acceleration < 0.0:
         return (velocity + root) / -acceleration
     return NEVER
+
+
+@inline
+def stays_above(height, velocity, acceleration, delay):
+    """Whether height + velocity t + ½ acceleration t² is above zero up to a delay (time), for a body that is pulled down.
+
+    False where it is not, or where it is not pulled down, so that both ends do not tell.
+    """
+    return (height > 0.0) & (acceleration <= 0.0) & (position_after(height, velocity, acceleration, delay) > 0.0)

@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.fall import time_to_plane
+from idealgas.physics.fall import stays_above, time_to_plane
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.restitution import wall_rebound
@@ -45,8 +45,11 @@ def end_epoch(piston: np.ndarray, length: float) -> None:
 
 
 @inline
-def piston_contact(disc, piston, gravity):
-    """Local time at which a disc touches the piston; NEVER if it does not."""
+def height_over_piston(disc, piston, gravity):
+    """Later local time of a disc's and the piston's records, and the motion of the disc from the piston at that time.
+
+    Returns (time, height, velocity, acceleration) along the axis, the height being that of the disc's edge.
+    """
     along_y = piston.side >= 2
     sign = outward(piston)
     time = max(disc.t, piston.t)
@@ -57,8 +60,25 @@ def piston_contact(disc, piston, gravity):
     d_velocity = velocity_after(velocity, pull, d_dt)
     p_position, p_velocity = piston_motion(piston, time)
     height = sign * (p_position - d_position) - disc.r
-    delay = time_to_plane(height, sign * (p_velocity - d_velocity), sign * (piston.a - pull))
+    return time, height, sign * (p_velocity - d_velocity), sign * (piston.a - pull)
+
+
+@inline
+def piston_contact(disc, piston, gravity):
+    """Local time at which a disc touches the piston; NEVER if it does not."""
+    time, height, velocity, acceleration = height_over_piston(disc, piston, gravity)
+    delay = time_to_plane(height, velocity, acceleration)
     return time + delay if delay < NEVER else NEVER
+
+
+@inline
+def misses_piston_until(disc, piston, gravity, limit):
+    """Whether a disc surely does not touch the piston up to a local time; quicker than `piston_contact`.
+
+    It is asked for a time a little after the limit, so that rounding does not matter.
+    """
+    time, height, velocity, acceleration = height_over_piston(disc, piston, gravity)
+    return stays_above(height, velocity, acceleration, limit * (1.0 + 1e-9) - time)
 
 
 @inline

@@ -10,7 +10,7 @@ import numpy as np
 
 from idealgas._jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.disc_disc import touch
+from idealgas.physics.disc_disc import path_to_touch, touch
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.polynomial import first_descent, parabola
@@ -160,6 +160,23 @@ def reflection_changes(disc, own, nx, ny, restitution):
     """Whether a reflection would change a digit of a disc's velocity; if not, it counts as done."""
     k = reflection_factor(disc, own, nx, ny, restitution)
     return (disc.vx - k * nx != disc.vx) | (disc.vy - k * ny != disc.vy)
+
+
+@inline
+def misses_segment(disc, segment, gravity, periodic, images):
+    """Whether a disc surely does not touch a segment, as it does not come into the circle around it.
+
+    Quicker than `segment_contact`, whose arguments it has; the circle is a little wider, so that rounding does not
+    matter. False with gravity, where the path is no line.
+    """
+    if gravity is not None:
+        return False
+    half = 0.5 * segment.length
+    x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
+    meets, _, gap, _ = path_to_touch(
+        x - half * segment.tx, y - half * segment.ty, disc.vx, disc.vy, (half + disc.r) * (1.0 + 1e-6)
+    )
+    return (gap > 0.0) & (not meets)
 
 
 @inline

@@ -10,7 +10,7 @@ from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
 from idealgas.physics.disc_disc import contact_time, first_touch, will_touch
 from idealgas.physics.periodic import NO_IMAGES, images_between
-from idealgas.physics.wall import segment_contact
+from idealgas.physics.wall import misses_segment, segment_contact
 
 U = np.uintp
 
@@ -188,6 +188,8 @@ def test_segments(record, ids, state, i, segments, effects):
         for entry in range(state.walls.start[cell], state.walls.start[cell + U(1)]):
             k = state.walls.item[U(entry)]
             images = images_to_item(state.walls, U(entry), ids[U(i)], effects.periodic)
+            if misses_segment(record[U(i)], segments[U(k)], effects.gravity, effects.periodic, images):
+                continue
             time = segment_contact(
                 record[U(i)], own, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
             )

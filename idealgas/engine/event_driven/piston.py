@@ -6,7 +6,7 @@ from idealgas._jit import inline
 from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX
 from idealgas.engine.event_driven.scheduler import reschedule
 from idealgas.engine.order import precedes, wall_rank
-from idealgas.physics.piston import piston_contact, stop_contact
+from idealgas.physics.piston import misses_piston_until, piston_contact, stop_contact
 
 U = np.uintp
 
@@ -20,11 +20,14 @@ def is_piston(i, ids, piston):
 
 
 @inline
-def keep_if_earlier(record, ids, prediction, j, time, side):
-    """Store the contact of disc j at a local time as the piston's next if it is the earliest; return whether it is."""
+def keep_if_earlier(record, ids, prediction, j, piston, gravity):
+    """Store disc j's contact with the piston as the piston's next if it is the earliest; return whether it is."""
+    if misses_piston_until(record[U(j)], piston, gravity, prediction.contact):
+        return False
+    time = piston_contact(record[U(j)], piston, gravity)
     earlier = time < prediction.contact
     if time == prediction.contact:
-        rank = wall_rank(side)
+        rank = wall_rank(piston.side)
         earlier = precedes(np.int64(ids[U(j)]), rank, np.int64(ids[U(prediction.partner)]), rank)
     if earlier:
         prediction.contact = time
@@ -43,7 +46,7 @@ def predict_piston(record, ids, state, piston, gravity):
         prediction.contact = NO_CONTACT
         prediction.partner = -1
         for j in range(leaf):
-            keep_if_earlier(record, ids, prediction, j, piston_contact(record[U(j)], p, gravity), p.side)
+            keep_if_earlier(record, ids, prediction, j, p, gravity)
         prediction.crossing = stop_contact(p)
         prediction.crossing_code = SIDE_OF_BOX + p.side
         reschedule(state.tree, state.prediction, ids, leaf)
@@ -54,7 +57,5 @@ def offer_to_piston(record, ids, state, i, piston, gravity):
     """Update the piston's next contact after disc i's record has changed."""
     if piston is not None:
         leaf = ids.shape[0]
-        p = piston[0]
-        prediction = state.prediction[U(leaf)]
-        if keep_if_earlier(record, ids, prediction, i, piston_contact(record[U(i)], p, gravity), p.side):
+        if keep_if_earlier(record, ids, state.prediction[U(leaf)], i, piston[0], gravity):
             reschedule(state.tree, state.prediction, ids, leaf)

@@ -53,7 +53,7 @@ def images_to_item(walls, entry, own, periodic):
 
 
 def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
-    """Indices of the cells so near to an image of a segment that a corner may be within reach (length)."""
+    """Indices of the cells that may have a point within reach (length) of an image of a segment."""
     start = np.array([segment.x + image[0] * cells.Lx, segment.y + image[1] * cells.Ly])
     tangent = np.array([segment.tx, segment.ty])
     length = segment.length
@@ -64,7 +64,6 @@ def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach:
     high = np.clip(np.floor((ends.max(axis=0) + reach) / size).astype(int) + 1, 1, last)
     column, row = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
     centre = (np.stack((column, row), axis=-1) - 0.5) * size - start
-    along = np.clip(centre @ tangent, 0.0, length)
-    distance = np.hypot(*np.moveaxis(centre - along[..., None] * tangent, -1, 0))
-    near = distance <= reach + 0.5 * np.hypot(*size)
+    normal = np.array([-tangent[1], tangent[0]])
+    near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no line parallel to it lies between
     return (row[near] * cells.columns + column[near]).ravel()

@@ -8,7 +8,7 @@ import pytest
 from rounding import exact, gamma
 
 from idealgas.physics.constants import NEVER
-from idealgas.physics.fall import time_to_plane
+from idealgas.physics.fall import stays_above, time_to_plane
 
 pytestmark = pytest.mark.interpreted
 
@@ -69,3 +69,18 @@ def test_what_rises_or_rests_without_a_pull_never_comes():
 def test_what_rounding_put_below_comes_back_or_turns():
     assert time_to_plane(-1.5, 2.0, -1.0) == 3.0  # rises through zero at 1, falls through it at 3
     assert time_to_plane(-5.0, 2.0, -1.0) == 2.0  # turns at 2, below zero
+
+
+def test_what_stays_above():
+    """To ten roundings of the time of the fall; a body that is not pulled down is never said to stay above."""
+    draw = np.random.default_rng(3)
+    for _ in range(300):
+        height, speed, pull = 10.0 ** draw.uniform(-6, 6, 3)
+        velocity = speed * draw.choice([-1.0, 1.0])
+        fall = time_to_plane(height, velocity, -pull)
+        assert stays_above(height, velocity, -pull, fall * (1 - 1e-14))
+        assert not stays_above(height, velocity, -pull, fall * (1 + 1e-14))
+        assert not stays_above(-height, velocity, -pull, 0.1 * fall)
+        assert not stays_above(height, speed, pull, fall)
+    assert stays_above(1.0, 1.0, 0.0, NEVER)
+    assert not stays_above(1.0, -1.0, -1.0, NEVER)

@@ -13,6 +13,7 @@ from idealgas.physics.piston import (
     advance_piston,
     collide_with_piston,
     is_piston_side,
+    misses_piston_until,
     outward,
     piston_contact,
     piston_energy,
@@ -71,6 +72,31 @@ def test_a_disc_that_is_left_behind_never_meets_it():
     assert piston_contact(body(x=5, y=5, vx=1, vy=0, r=0.5, m=1), some_piston(v=1.0), None) == NEVER
     assert piston_contact(body(x=5, y=5, vx=1, vy=0, r=0.5, m=1), some_piston(v=0.5), None) == 5.0
     assert piston_contact(body(x=7.5, y=5, vx=1, vy=0, r=0.5, m=1, t=2), some_piston(), None) == 2.0  # touches
+
+
+@pytest.mark.parametrize("side", range(4))
+@pytest.mark.parametrize("falls", [True, False])
+def test_what_surely_misses_it(side, falls):
+    """Until the time of contact and a little longer a disc does not; until a little before, it does where it can tell."""
+    draw = np.random.default_rng(side)
+    sign = 1 if side % 2 else -1
+    met = told = 0
+    for _ in range(300):
+        piston = some_piston(side, x=5 + 2 * sign, v=draw.normal(), a=falls * draw.normal(), t=draw.uniform(0, 0.1))
+        x, y = 5 - 2 * sign * draw.uniform(0, 0.5, 2)
+        vx, vy = draw.normal(size=2)
+        disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.1, 0.5), m=1.0, t=draw.uniform(0, 0.1))
+        gravity = Gravity(*draw.normal(size=2)) if falls else None
+        found = piston_contact(disc, piston, gravity)
+        if found < NEVER:
+            met += 1
+            assert not misses_piston_until(disc, piston, gravity, found)
+            assert not misses_piston_until(disc, piston, gravity, np.nextafter(found, 0))
+            told += misses_piston_until(disc, piston, gravity, found * (1 - 1e-8))
+        elif not falls:
+            assert misses_piston_until(disc, piston, gravity, 0.5 * NEVER)
+    assert met > 100
+    assert told > (0.3 if falls else 0.99) * met
 
 
 def test_end_stop():

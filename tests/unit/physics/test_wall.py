@@ -15,6 +15,7 @@ from idealgas.physics.wall import (
     accelerated_body_delay,
     end_delay,
     foot_inside,
+    misses_segment,
     reflection_changes,
     segment_contact,
     segment_normal,
@@ -142,6 +143,30 @@ def test_contact_with_a_segment(gravity):
             assert abs(distance_to(wall, *place(last)) - exact(disc.r)) <= gamma(40) * (way + 20) * 20 / exact(disc.r)
     assert met > 15
     assert missed > 15
+
+
+def test_what_surely_misses_a_segment():
+    """No disc that touches it, be it by the last digit of an end; but most of those that do not."""
+    draw = np.random.default_rng(9)
+    missed = told = 0
+    for _ in range(2000):
+        wall = segment(draw.uniform(3, 5, 2), draw.uniform(5.5, 7, 2))
+        x, y = draw.uniform(1, 9, 2)
+        angle = draw.uniform(0, 2 * math.pi)
+        disc = body(x=x, y=y, vx=math.cos(angle), vy=math.sin(angle), r=draw.uniform(0.01, 0.4), m=1.0, t=1.0)
+        misses = misses_segment(disc, wall, None, None, NO_IMAGES)
+        if segment_contact(disc, 0, wall, None, None, None, NO_IMAGES) < NEVER:
+            assert not misses
+        else:
+            missed += 1
+            told += misses
+    assert told > 0.5 * missed > 500
+    wall = segment((3.0, 5.0), (5.0, 5.0))
+    for y in 5.25 + 1e-16 * np.arange(-50, 50):  # along the wall, whose end it grazes
+        disc = body(x=7.0, y=y, vx=-1.0, vy=0.0, r=0.25, m=1.0)
+        assert not misses_segment(disc, wall, None, None, NO_IMAGES)
+    assert misses_segment(body(x=4.0, y=7.0, vx=0.0, vy=1.0, r=0.5), wall, None, None, NO_IMAGES)
+    assert not misses_segment(body(x=4.0, y=7.0, vx=0.0, vy=1.0, r=0.5), wall, Gravity(0.0, -1.0), None, NO_IMAGES)
 
 
 def test_straight_flight_to_an_end():
