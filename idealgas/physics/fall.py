@@ -28,8 +28,8 @@ def time_to_plane(height, velocity, acceleration):
 
 @inline
 def stays_above(height, velocity, acceleration, delay):
-    """Whether height + velocity t + ½ acceleration t² is above zero up to a delay (time), for a body that is pulled down.
+    """Whether height + velocity t + ½ acceleration t² is above zero from 0 up to a delay (time).
 
-    False where it is not, or where it is not pulled down, so that both ends do not tell.
+    Only the two ends are asked, so it is also False for a body that is pulled up, which may have been below in between.
     """
     return (height > 0.0) & (acceleration <= 0.0) & (position_after(height, velocity, acceleration, delay) > 0.0)

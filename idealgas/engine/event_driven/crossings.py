@@ -68,9 +68,10 @@ def crossing_along(disc, along_y, cell, size, cells_across, length, boundary_cro
     """Next cell crossing or side contact along one axis, with or without gravity; see `straight_crossing`."""
     if gravity is not None:
         pull = acceleration_along(gravity, along_y)
-        return accelerated_crossing(
-            disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, pull
-        )
+        if pull != 0.0:  # else the path along this axis is straight, and both laws give the same bits
+            return accelerated_crossing(
+                disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, pull
+            )
     return straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic)
 
 

@@ -77,7 +77,7 @@ def test_a_disc_that_is_left_behind_never_meets_it():
 @pytest.mark.parametrize("side", range(4))
 @pytest.mark.parametrize("falls", [True, False])
 def test_what_surely_misses_it(side, falls):
-    """Until the time of contact and a little longer a disc does not; until a little before, it does where it can tell."""
+    """No disc up to the time of its contact; up to a little before, those of which it can tell."""
     draw = np.random.default_rng(side)
     sign = 1 if side % 2 else -1
     met = told = 0
