@@ -72,7 +72,7 @@ def test_what_rounding_put_below_comes_back_or_turns():
 
 
 def test_what_stays_above():
-    """To ten roundings of the time of the fall; a body that is not pulled down is never said to stay above."""
+    """Until the body is down, to 1e-14 of that time; one that is pulled up is never said to stay above."""
     draw = np.random.default_rng(3)
     for _ in range(300):
         height, speed, pull = 10.0 ** draw.uniform(-6, 6, 3)

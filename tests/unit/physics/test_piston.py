@@ -36,6 +36,16 @@ def motion(x, v, a, t):
     return x + v * t + a * t * t / 2, v + a * t, abs(x) + abs(v * t) + abs(a * t * t)
 
 
+def before_meeting(draw, side, falls):
+    """A piston at a side, a disc on the other half of the box, and gravity; without `falls` nothing is accelerated."""
+    sign = 1 if side % 2 else -1
+    piston = some_piston(side, x=5 + 2 * sign, v=draw.normal(), a=falls * draw.normal(), t=draw.uniform(0, 0.1))
+    x, y = 5 - 2 * sign * draw.uniform(0, 0.5, 2)
+    vx, vy = draw.normal(size=2)
+    disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.1, 0.5), m=1.0, t=draw.uniform(0, 0.1))
+    return piston, disc, Gravity(*draw.normal(size=2)) if falls else None
+
+
 @pytest.mark.parametrize("side", range(4))
 @pytest.mark.parametrize("falls", [True, False])
 def test_contact(side, falls):
@@ -46,12 +56,7 @@ def test_contact(side, falls):
     met = 0
     with mpmath.workdps(50):
         for _ in range(150):
-            sign = 1 if side % 2 else -1
-            piston = some_piston(side, x=5 + 2 * sign, v=draw.normal(), a=falls * draw.normal(), t=draw.uniform(0, 0.1))
-            x, y = 5 - 2 * sign * draw.uniform(0, 0.5, 2)
-            vx, vy = draw.normal(size=2)
-            disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.1, 0.5), m=1.0, t=draw.uniform(0, 0.1))
-            gravity = Gravity(*draw.normal(size=2)) if falls else None
+            piston, disc, gravity = before_meeting(draw, side, falls)
             found = piston_contact(disc, piston, gravity)
             if found == NEVER:
                 continue
@@ -62,7 +67,7 @@ def test_contact(side, falls):
             piston_place, piston_speed, more = motion(piston.x, piston.v, piston.a, exact(found) - exact(piston.t))
             error = gamma(16) * (terms + more + exact(disc.r))
             error += gamma(1) * exact(found) * (abs(speed) + abs(piston_speed))
-            distance = sign * (piston_place - place)
+            distance = outward(piston) * (piston_place - place)
             assert found >= max(disc.t, piston.t)
             assert abs(distance - exact(disc.r)) <= error
     assert met > 40
@@ -79,14 +84,9 @@ def test_a_disc_that_is_left_behind_never_meets_it():
 def test_what_surely_misses_it(side, falls):
     """No disc up to the time of its contact; up to a little before, those of which it can tell."""
     draw = np.random.default_rng(side)
-    sign = 1 if side % 2 else -1
     met = told = 0
     for _ in range(300):
-        piston = some_piston(side, x=5 + 2 * sign, v=draw.normal(), a=falls * draw.normal(), t=draw.uniform(0, 0.1))
-        x, y = 5 - 2 * sign * draw.uniform(0, 0.5, 2)
-        vx, vy = draw.normal(size=2)
-        disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.1, 0.5), m=1.0, t=draw.uniform(0, 0.1))
-        gravity = Gravity(*draw.normal(size=2)) if falls else None
+        piston, disc, gravity = before_meeting(draw, side, falls)
         found = piston_contact(disc, piston, gravity)
         if found < NEVER:
             met += 1

@@ -30,8 +30,8 @@ def distance(points, wall):
 
 @pytest.mark.parametrize("filling", [0.2, 2.0])
 def test_cells_of_segments(filling):
-    """A grid of points in each cell says which segments come within the radius of it; in reach of a square of that
-    size around each point lie all that are entered.
+    """A grid of points in each cell tells how near each segment comes: all that come within the radius are entered, and
+    none that stays out of the corners of a cell that is wider by the radius on every side.
     """
     draw = np.random.default_rng(1)
     ends = draw.uniform(0.0, 1.0, (40, 4)) * (*BOX, *BOX)
