@@ -11,7 +11,7 @@ from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
-from idealgas.physics.momentum_flow import MomentumFlow, make_notes
+from idealgas.physics.momentum_flow import MomentumFlow, none_waiting
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
@@ -93,7 +93,7 @@ def make_flow(gas: Gas, faces: int, tensor: int = 6) -> MomentumFlow:
     kinds = len(gas.species_names)
     return MomentumFlow(
         tensor=make_sums([1.0] * tensor),
-        notes=make_notes(),
+        waiting=none_waiting(),
         walls=make_sums([1.0]),
         push=make_sums([1.0] * faces),
         drag=make_sums([1.0] * faces),

@@ -101,7 +101,7 @@ def clear_sums(effects: Effects) -> None:
     for counts in _counts(effects):
         counts[...] = 0
     if effects.flow is not None:
-        effects.flow.notes.waiting[0] = 0
+        effects.flow.waiting.number[0] = 0
 
 
 def add_sums_of(effects: Effects, part: Effects) -> None:

@@ -24,38 +24,22 @@ U = np.uintp
 KINETIC, COLLISION = slice(0, 3), slice(3, None)
 """Which of the sums of the tensor are the two flows: their components xx, xy, yy, and of the collision flow yx."""
 
-NOTED = np.dtype([
-    (name, "f8", (TOGETHER,)) for name in (
-        "a_m", "b_m", "a_delay", "b_delay",  # masses, and durations of the flights
-        "a_vx", "a_vy", "b_vx", "b_vy",  # velocities at the start of the flights, only under gravity,
-        "a_vx_before", "a_vy_before", "b_vx_before", "b_vy_before",  # before the collision,
-        "a_vx_after", "a_vy_after", "b_vx_after", "b_vy_after",  # and after it
-        "x", "y",  # position of a relative to b at their contact
-    )
-])  # fmt: skip
-"""What is noted of the collisions of two discs a and b, by collision; a record, so that places in memory are constant.
-
-What follows from it is computed for many collisions at once, which takes less time than in the loop of events.
-"""
-
 TERMS = np.dtype([("column", "f8", (TOGETHER,))])
 """Terms of one of the sums, by collision."""
 
-PARTS = 7
-"""Most sums of the tensor: those of rough discs."""
+PARTS, HEAT = 7, 4
+"""Most sums of the tensor, which are those of rough discs, and sums of the heat."""
 
 
-class Notes(NamedTuple):
-    """Collisions that wait until `settle` adds what they carried and passed on.
+class Waiting(NamedTuple):
+    """Terms of collisions that wait until `settle` adds many at once, which takes less time than one by one.
 
     Attributes:
-        waiting: (1,) i8, number of these collisions.
-        noted: (1,) NOTED.
-        terms: (PARTS,) TERMS, room for what follows.
+        number: (1,) i8, of these collisions.
+        terms: (PARTS + HEAT,) TERMS, those of the tensor, then those of the heat.
     """
 
-    waiting: np.ndarray
-    noted: np.recarray
+    number: np.ndarray
     terms: np.recarray
 
 
@@ -65,7 +49,7 @@ class MomentumFlow(NamedTuple):
     Attributes:
         tensor: (6,) SUM: the kinetic flow xx, xy and yy, and the collision flow xx, xy and yy, energy times time; where
             discs are rough (7,), also the collision flow yx, which smooth discs make equal to xy.
-        notes: of collisions that are not in these sums yet.
+        waiting: terms that are not in these sums yet.
         walls: (1,) SUM, -Σ r·Δp over all wall hits, r from the middle of the box and Δp what the disc receives,
             energy times time.
         push: (F,) SUM, momentum given to each face along its normal, into the wall, mass length/time.
@@ -83,7 +67,7 @@ class MomentumFlow(NamedTuple):
     """
 
     tensor: np.recarray
-    notes: Notes
+    waiting: Waiting
     walls: np.recarray
     push: np.recarray
     drag: np.recarray
@@ -97,9 +81,9 @@ class MomentumFlow(NamedTuple):
     vy: float = 0.0
 
 
-def make_notes() -> Notes:
-    """Notes of no collision."""
-    return Notes(np.zeros(1, np.int64), aligned(1, NOTED), aligned(PARTS, TERMS))
+def none_waiting() -> Waiting:
+    """Room for terms, with those of no collision."""
+    return Waiting(np.zeros(1, np.int64), aligned(PARTS + HEAT, TERMS))
 
 
 @inline
@@ -159,102 +143,68 @@ def flights_to(flow, a, b, time):
 
 @inline
 def record_collision_flow(flow, a, b, a_id, b_id, flights, before, periodic, images, gravity):
-    """Note the collision of two discs at their contact, where momentum flow is recorded.
+    """Record the collision of two discs at their contact, where momentum flow is recorded.
 
     flights: as `flights_to` gave them. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
     images: numbers of box lengths (x, y) between the records, where sides are periodic.
     """
     if flow is not None:
-        k = U(flow.notes.waiting[0])
-        noted = flow.notes.noted[0]
+        number, terms = flow.waiting.number, flow.waiting.terms
+        k = U(number[0])
         x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
-        delays, start = flights
-        noted.a_m[k] = a.m
-        noted.b_m[k] = b.m
-        noted.a_delay[k], noted.b_delay[k] = delays
-        note_velocities_before(noted, k, start, before, gravity)
-        noted.a_vx_after[k] = a.vx
-        noted.a_vy_after[k] = a.vy
-        noted.b_vx_after[k] = b.vx
-        noted.b_vy_after[k] = b.vy
-        noted.x[k] = x
-        noted.y[k] = y
-        flow.notes.waiting[0] += 1
-        if flow.notes.waiting[0] == TOGETHER:
-            settle(flow, gravity)
+        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy) = flights
+        a_xx, a_xy, a_yy = flow_carried(a.m, a_vx, a_vy, a_delay, gravity)
+        b_xx, b_xy, b_yy = flow_carried(b.m, b_vx, b_vy, b_delay, gravity)
+        px = 0.5 * (a.m * (a.vx - before[0]) - b.m * (b.vx - before[2]))
+        py = 0.5 * (a.m * (a.vy - before[1]) - b.m * (b.vy - before[3]))
+        terms[U(0)].column[k] = a_xx + b_xx
+        terms[U(1)].column[k] = a_xy + b_xy
+        terms[U(2)].column[k] = a_yy + b_yy
+        terms[U(3)].column[k] = px * x
+        terms[U(4)].column[k] = px * y
+        terms[U(5)].column[k] = py * y
+        terms[U(6)].column[k] = py * x
+        keep_heat(flow.heat, terms, k, a, b, flights, x, y, flow.vx, flow.vy)
+        number[0] += 1
+        if number[0] == TOGETHER:
+            settle(flow)
         count_pair(flow.pairs, flow.species, a_id, b_id)
 
 
 @inline
-def note_velocities_before(noted, k, start, before, gravity):
-    """Note velocities at the start of two flights and at their end, which are the same without gravity."""
-    noted.a_vx_before[k], noted.a_vy_before[k], noted.b_vx_before[k], noted.b_vy_before[k] = before
-    if gravity is not None:
-        noted.a_vx[k], noted.a_vy[k], noted.b_vx[k], noted.b_vy[k] = start
+def keep_heat(heat, terms, k, a, b, flights, x, y, vx, vy):
+    """Keep what a collision adds to the flow of heat as terms number k, where it is recorded.
 
-
-@inline
-def velocities_at_start(noted, k, gravity):
-    """Velocities (a_vx, a_vy, b_vx, b_vy) at the start of the flights to the collision that was noted as number k."""
-    if gravity is not None:
-        return noted.a_vx[k], noted.a_vy[k], noted.b_vx[k], noted.b_vy[k]
-    return noted.a_vx_before[k], noted.a_vy_before[k], noted.b_vx_before[k], noted.b_vy_before[k]
+    x, y: position of a relative to b, length. vx, vy: velocity of the gas as a whole, length/time.
+    """
+    if heat is not None:
+        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy) = flights
+        a_x, a_y = heat_carried(a.m, a_vx - vx, a_vy - vy, a_delay)
+        b_x, b_y = heat_carried(b.m, b_vx - vx, b_vy - vy, b_delay)
+        a_gain = energy_gained(a.m, a_vx, a_vy, a.vx, a.vy, vx, vy)
+        b_gain = energy_gained(b.m, b_vx, b_vy, b.vx, b.vy, vx, vy)
+        gain = 0.5 * (a_gain - b_gain)
+        terms[U(PARTS)].column[k] = a_x + b_x
+        terms[U(PARTS + 1)].column[k] = a_y + b_y
+        terms[U(PARTS + 2)].column[k] = gain * x
+        terms[U(PARTS + 3)].column[k] = gain * y
 
 
 @njit
-def settle(flow, gravity):
-    """Add what the collisions that were noted have carried and passed on."""
-    number, noted, terms = flow.notes.waiting[0], flow.notes.noted[0], flow.notes.terms
-    for i in range(number):
-        k = U(i)
-        a_vx, a_vy, b_vx, b_vy = velocities_at_start(noted, k, gravity)
-        a_xx, a_xy, a_yy = flow_carried(noted.a_m[k], a_vx, a_vy, noted.a_delay[k], gravity)
-        b_xx, b_xy, b_yy = flow_carried(noted.b_m[k], b_vx, b_vy, noted.b_delay[k], gravity)
-        a_px = noted.a_m[k] * (noted.a_vx_after[k] - noted.a_vx_before[k])
-        a_py = noted.a_m[k] * (noted.a_vy_after[k] - noted.a_vy_before[k])
-        b_px = noted.b_m[k] * (noted.b_vx_after[k] - noted.b_vx_before[k])
-        b_py = noted.b_m[k] * (noted.b_vy_after[k] - noted.b_vy_before[k])
-        px, py = 0.5 * (a_px - b_px), 0.5 * (a_py - b_py)
-        terms[U(0)].column[k] = a_xx + b_xx
-        terms[U(1)].column[k] = a_xy + b_xy
-        terms[U(2)].column[k] = a_yy + b_yy
-        terms[U(3)].column[k] = px * noted.x[k]
-        terms[U(4)].column[k] = px * noted.y[k]
-        terms[U(5)].column[k] = py * noted.y[k]
-        terms[U(6)].column[k] = py * noted.x[k]
-    add_terms(flow.tensor, terms, flow.tensor.shape[0], number)
-    settle_heat(flow.heat, flow.notes, flow.vx, flow.vy)
-    flow.notes.waiting[0] = 0
+def settle(flow):
+    """Add the terms that wait."""
+    number, terms = flow.waiting.number[0], flow.waiting.terms
+    add_terms(flow.tensor, terms, 0, flow.tensor.shape[0], number)
+    add_terms(flow.heat, terms, PARTS, HEAT, number)
+    flow.waiting.number[0] = 0
 
 
 @inline
-def settle_heat(heat, notes, vx, vy):
-    """Add the heat that the collisions that were noted have carried and passed on, where it is recorded.
-
-    vx, vy: velocity of the gas as a whole, length/time.
-    """
-    if heat is not None:
-        number, noted, terms = notes.waiting[0], notes.noted[0], notes.terms
-        for i in range(number):
-            k = U(i)
-            a_vx, a_vy, b_vx, b_vy = velocities_at_start(noted, k, None)
-            a_x, a_y = heat_carried(noted.a_m[k], a_vx - vx, a_vy - vy, noted.a_delay[k])
-            b_x, b_y = heat_carried(noted.b_m[k], b_vx - vx, b_vy - vy, noted.b_delay[k])
-            a_gain = energy_gained(noted.a_m[k], a_vx, a_vy, noted.a_vx_after[k], noted.a_vy_after[k], vx, vy)
-            b_gain = energy_gained(noted.b_m[k], b_vx, b_vy, noted.b_vx_after[k], noted.b_vy_after[k], vx, vy)
-            gain = 0.5 * (a_gain - b_gain)
-            terms[U(0)].column[k] = a_x + b_x
-            terms[U(1)].column[k] = a_y + b_y
-            terms[U(2)].column[k] = gain * noted.x[k]
-            terms[U(3)].column[k] = gain * noted.y[k]
-        add_terms(heat, terms, 4, number)
-
-
-@inline
-def add_terms(sums, terms, parts, number):
-    """Add a number of terms to each of the first sums."""
-    for k in range(parts):
-        add_all(sums[U(k)], terms[U(k)].column[:number])
+def add_terms(sums, terms, first, parts, number):
+    """Add a number of terms to each of the first sums, if any, from columns of which the first has number `first`."""
+    if sums is not None:
+        for k in range(parts):
+            add_all(sums[U(k)], terms[U(first + k)].column[:number])
 
 
 @inline
@@ -284,8 +234,8 @@ def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
 @njit
 def complete_flights(record, time, gravity, flow):
     """Add the flights of all discs from their records to a local time, after the collisions that wait to be added."""
-    settle(flow, gravity)
-    terms = flow.notes.terms
+    settle(flow)
+    terms = flow.waiting.terms
     for first in range(0, record.shape[0], TOGETHER):
         number = min(TOGETHER, record.shape[0] - first)
         for k in range(number):
@@ -294,7 +244,7 @@ def complete_flights(record, time, gravity, flow):
             terms[U(0)].column[U(k)] = xx
             terms[U(1)].column[U(k)] = xy
             terms[U(2)].column[U(k)] = yy
-        add_terms(flow.tensor, terms, 3, number)
+        add_terms(flow.tensor, terms, 0, 3, number)
         complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy)
 
 
@@ -307,7 +257,7 @@ def complete_heat(heat, terms, record, first, number, time, vx, vy):
             x, y = heat_carried(disc.m, disc.vx - vx, disc.vy - vy, time - disc.t)
             terms[U(0)].column[U(k)] = x
             terms[U(1)].column[U(k)] = y
-        add_terms(heat, terms, 2, number)
+        add_terms(heat, terms, 0, 2, number)
 
 
 def sums_of(flow: MomentumFlow) -> list[np.ndarray]:
@@ -325,6 +275,6 @@ def copy_of(flow: MomentumFlow | None) -> MomentumFlow | None:
     if flow is None:
         return None
     copies: Any = {name: part.copy() for name, part in flow._asdict().items() if isinstance(part, np.ndarray)}
-    notes = make_notes()
-    notes.waiting[:], notes.noted[:] = flow.notes.waiting, flow.notes.noted
-    return flow._replace(notes=notes, **copies)
+    waiting = none_waiting()
+    waiting.number[:], waiting.terms[:] = flow.waiting
+    return flow._replace(waiting=waiting, **copies)

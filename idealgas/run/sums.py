@@ -10,7 +10,7 @@ from idealgas.events import Column, Values
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
-from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, make_notes
+from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, none_waiting
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
@@ -51,7 +51,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
     push, drag = (make_sums([momentum] * faces) for _ in range(2))
     return MomentumFlow(
         tensor=make_sums(tensor),
-        notes=make_notes(),
+        waiting=none_waiting(),
         walls=make_sums([momentum * max(gas.box)]),
         push=push,
         drag=drag,

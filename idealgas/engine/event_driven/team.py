@@ -306,7 +306,7 @@ class _Strip:
             record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
         )
         if self._effects.flow is not None:
-            momentum_flow.settle(self._effects.flow, self._effects.gravity)
+            momentum_flow.settle(self._effects.flow)
 
     def add_to(self, effects: Effects) -> None:
         """Add the sums of the slice to those of the run."""

@@ -63,7 +63,7 @@ def test_exchanged_discs_give_the_same_bits(rough):
             effects = Effects(flow=flow, rotation=rotation)
             before = [(disc.vx, disc.vy) for disc in pair]
             resolve_pair(*pair, *order, 0.2, (0, 0), effects)
-            settle(flow, None)
+            settle(flow)
             flows.append(stored(flow.tensor))
             impulse = pair[0].m * (np.array([pair[0].vx, pair[0].vy]) - before[0])
             apart = np.array([pair[0].x - pair[1].x, pair[0].y - pair[1].y])
@@ -80,7 +80,7 @@ def test_what_a_collision_adds(gravity):
     pair = discs((0, 0, 1.1, 0.3, 0.05, 1, 1), (1.9, 0.4, -0.6, 0.2, 0.15, 1, 3))
     flights = [(disc.m.item(), disc.vx.item(), disc.vy.item(), 0.2 - disc.t.item()) for disc in pair]
     resolve_pair(*pair, 0, 1, 0.2, (0, 0), Effects(flow=flow, gravity=gravity))
-    settle(flow, gravity)
+    settle(flow)
     carried = np.sum([flow_carried(*flight, gravity) for flight in flights], axis=0)
     assert values(flow.tensor[KINETIC]) == pytest.approx(carried, rel=1e-14)
     mass, vx, vy, delay = flights[0]
@@ -96,9 +96,9 @@ def test_collisions_are_added_together_and_one_by_one():
         for each in (flow, other):
             pair = discs((0, 0, 0.7, 0.1, 0, 1, 1), (2, 0.1, -0.3, 0.2, 0, 1, 2))
             resolve_pair(*pair, 0, 1, 0.05, (0, 0), Effects(flow=each))
-        settle(other, None)
-    assert flow.notes.waiting[0] == 5
-    settle(flow, None)
+        settle(other)
+    assert flow.waiting.number[0] == 5
+    settle(flow)
     assert stored(flow.tensor).tolist() == stored(other.tensor).tolist()
     assert values(flow.tensor).all()
 
