@@ -27,8 +27,11 @@ KINETIC, COLLISION = slice(0, 3), slice(3, None)
 TERMS = np.dtype([("column", "f8", (TOGETHER,))])
 """Terms of one of the sums, by collision."""
 
-PARTS, HEAT = 7, 4
-"""Most sums of the tensor, which are those of rough discs, and sums of the heat."""
+PARTS = 7
+"""Most sums of the tensor: those of rough discs."""
+
+HEAT = 4
+"""Sums of the heat."""
 
 
 class Waiting(NamedTuple):
@@ -163,7 +166,7 @@ def record_collision_flow(flow, a, b, a_id, b_id, flights, before, periodic, ima
         terms[U(3)].column[k] = px * x
         terms[U(4)].column[k] = px * y
         terms[U(5)].column[k] = py * y
-        terms[U(6)].column[k] = py * x
+        terms[U(6)].column[k] = py * x  # added for rough discs only
         keep_heat(flow.heat, terms, k, a, b, flights, x, y, flow.vx, flow.vy)
         number[0] += 1
         if number[0] == TOGETHER:
