@@ -31,10 +31,12 @@ from numba.core.serialize import dumps
 from numba.core.types.containers import BaseTuple
 from numba.extending import lower_builtin, overload, register_jitable, type_callable
 
+from idealgas._compiler import Compiler
+
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
 
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "pipeline_class": Compiler}
 """Without numba's runtime, arrays are not reference-counted, and none can be made: the caller keeps them alive.
 
 Counting takes an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time, and a

@@ -1,0 +1,83 @@
+"""What numba is made to leave out: optimization and machine code of inlined functions."""
+
+import re
+
+import numba
+import pytest
+
+from idealgas._jit import inline, njit
+
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+
+
+@inline
+def _deepest(x):
+    return x / 3.0
+
+
+@inline
+def _below(x):
+    return _deepest(x) + 1.0
+
+
+@njit
+def _shared(x):
+    return _deepest(x) - 1.0
+
+
+@njit
+def _entry(x):
+    return _deepest(x) + 2.0 * _below(x) + _shared(x)  # inlined directly, through another, and through an entry point
+
+
+@inline
+def _refuse(x):
+    if x < 0.0:
+        raise ValueError("below zero")
+    return x
+
+
+@njit
+def _refusing(x):
+    return _refuse(x)
+
+
+def _code(entry):
+    return entry.inspect_llvm(entry.signatures[0])
+
+
+def _functions(text):
+    return set(re.findall(r"^define .*? @\"?([\w.$]+)", text, re.MULTILINE))
+
+
+def test_inlined_functions_are_in_each_caller_and_nowhere_else():
+    assert _entry(6.0) == 6.0 / 3.0 + 2.0 * (6.0 / 3.0 + 1.0) + (6.0 / 3.0 - 1.0)
+    defined = _functions(_code(_entry))
+    assert not [name for name in defined if "_deepest" in name or "_below" in name]
+    called = re.findall(r"call .*?@\"?([\w.$]+)", _code(_entry))
+    assert not [name for name in called if "_deepest" in name or "_below" in name]
+
+
+def test_an_inlined_function_has_no_machine_code(monkeypatch):
+    made = []
+    library = type(_library(_entry))
+    finish = library._finalize_final_module
+    monkeypatch.setattr(library, "_finalize_final_module", lambda self: (made.append(self.name), finish(self))[1])
+
+    @njit
+    def entry(x):
+        return _below(x)
+
+    assert entry(3.0) == 2.0
+    assert made == [entry.py_func.__qualname__]
+
+
+def _library(entry):
+    entry(1.0)
+    return entry.overloads[entry.signatures[0]].library
+
+
+def test_errors_of_an_inlined_function_arrive():
+    assert _refusing(2.0) == 2.0
+    with pytest.raises(ValueError, match="below zero"):
+        _refusing(-1.0)
