@@ -21,7 +21,7 @@ _NEEDLESS = {InlineClosureLikes, NopythonRewrites}
 class _Inlined(JITCodeLibrary):
     """Intermediate code of an inlined function, not optimized with what it calls, and no machine code."""
 
-    codegen = SimpleNamespace(set_env=lambda name, environment: None)  # what numba would tell that machine code
+    codegen = SimpleNamespace(set_env=lambda name, environment: None)  # numba would write into that machine code
 
     def finalize(self) -> None:
         self._finalized = True
@@ -39,7 +39,7 @@ class _EntryPoint(JITCodeLibrary):
 
 
 def _callers_first(libraries: list) -> list:
-    """All code that these libraries call through inlined functions: LLVM links what has been called already."""
+    """These and all that they call through inlined functions; LLVM links only what is called by something linked."""
     order: list = []
     seen = set()
 
@@ -57,7 +57,7 @@ def _callers_first(libraries: list) -> list:
 
 
 class Compiler(CompilerBase):
-    """numba's steps from a function of Python to machine code, without those above."""
+    """numba's steps from a function of Python to machine code, without those above; `forceinline` tells the two kinds."""
 
     def define_pipelines(self) -> list[PassManager]:
         state = self.state
