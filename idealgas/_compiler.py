@@ -57,7 +57,7 @@ def _callers_first(libraries: list) -> list:
 
 
 class Compiler(CompilerBase):
-    """numba's steps from a function of Python to machine code, without those above; `forceinline` tells the two kinds."""
+    """numba's steps from a function of Python to machine code, without those above."""
 
     def define_pipelines(self) -> list[PassManager]:
         state = self.state
