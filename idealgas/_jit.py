@@ -23,13 +23,11 @@ from typing import Any
 import llvmlite
 import numba
 import numpy as np
-from llvmlite import ir
-from numba.core import cgutils, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 from numba.core.event import TimingListener, install_listener
 from numba.core.serialize import dumps
 from numba.core.types.containers import BaseTuple
-from numba.extending import lower_builtin, overload, register_jitable, type_callable
+from numba.extending import overload, register_jitable
 
 from idealgas._compiler import Compiler
 
@@ -40,7 +38,7 @@ _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False
 """Without numba's runtime, arrays are not reference-counted, and none can be made: the caller keeps them alive.
 
 Counting takes an atomic operation wherever LLVM cannot prove it needless, up to half of an event loop's time, and a
-fifth of the compilation's.
+fifth of the compilation's. `Compiler` leaves out more of it.
 """
 
 CACHE_LINE = 64  # bytes
@@ -297,46 +295,6 @@ def inline(function: Callable) -> Any:
 def inline_by_type(function: Callable) -> Callable:
     """Decorate a function that chooses inlined code by the types of its arguments; `function` is what Python calls."""
     return overload(function, jit_options=_INLINE)
-
-
-def fetch(array: Any, row: Any) -> None:
-    """Prefetch the memory of a row, as it will be read soon; does nothing in Python."""
-
-
-def fetch_next_line(array: Any, row: Any) -> None:
-    """Prefetch the memory one cache line after a row, as it will be written soon; does nothing in Python.
-
-    Stores take effect in order: while one waits for memory that is not in a cache, all later ones wait too.
-    """
-
-
-@type_callable(fetch)
-@type_callable(fetch_next_line)
-def _type_of_fetch(context: Any) -> Callable:
-    return lambda array, row: types.none
-
-
-@lower_builtin(fetch, types.Array, types.Integer)
-def _code_of_fetch(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    return _prefetch(context, builder, signature, arguments, 0, 0)
-
-
-@lower_builtin(fetch_next_line, types.Array, types.Integer)
-def _code_of_fetch_next_line(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    return _prefetch(context, builder, signature, arguments, CACHE_LINE, 1)
-
-
-def _prefetch(context: Any, builder: Any, signature: Any, arguments: Any, distance: int, for_writing: int) -> Any:
-    """Code that prefetches what lies at a distance (bytes) from a row of an array."""
-    kind, (value, row) = signature.args[0], arguments
-    array = context.make_array(kind)(context, builder, value)
-    element = cgutils.get_item_pointer(context, builder, kind, array, [row] + [row.type(0)] * (kind.ndim - 1))
-    address = builder.gep(builder.bitcast(element, cgutils.voidptr_t), [cgutils.intp_t(distance)])
-    i32 = cgutils.int32_t
-    prefetch = ir.FunctionType(ir.VoidType(), [address.type, i32, i32, i32])
-    function = builder.module.declare_intrinsic("llvm.prefetch", [address.type], prefetch)
-    builder.call(function, [address, i32(for_writing), i32(3), i32(1)])  # into all cache levels, data
-    return context.get_dummy_value()
 
 
 def compile_timer() -> AbstractContextManager[TimingListener]:

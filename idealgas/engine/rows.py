@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from idealgas._jit import fetch_next_line, inline
+from idealgas._jit import inline
+from idealgas._prefetch import fetch_next_line
 from idealgas.events import BATH, Kind
 from idealgas.sides import FIRST_SEGMENT
 

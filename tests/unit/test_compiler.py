@@ -2,12 +2,10 @@
 
 import re
 
-import numba
 import pytest
 
+from idealgas._compiler import _EntryPoint, _Inlined
 from idealgas._jit import inline, njit
-
-pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 
 
 @inline
@@ -60,9 +58,11 @@ def test_inlined_functions_are_in_each_caller_and_nowhere_else():
 
 def test_an_inlined_function_has_no_machine_code(monkeypatch):
     made = []
-    library = type(_library(_entry))
-    finish = library._finalize_final_module
-    monkeypatch.setattr(library, "_finalize_final_module", lambda self: (made.append(self.name), finish(self))[1])
+    for kind in (_EntryPoint, _Inlined):
+        finish = kind._finalize_final_module
+        monkeypatch.setattr(
+            kind, "_finalize_final_module", lambda self, finish=finish: (made.append(self.name), finish(self))
+        )
 
     @njit
     def entry(x):
@@ -70,11 +70,6 @@ def test_an_inlined_function_has_no_machine_code(monkeypatch):
 
     assert entry(3.0) == 2.0
     assert made == [entry.py_func.__qualname__]
-
-
-def _library(entry):
-    entry(1.0)
-    return entry.overloads[entry.signatures[0]].library
 
 
 def test_errors_of_an_inlined_function_arrive():

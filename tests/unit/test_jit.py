@@ -286,7 +286,8 @@ def test_what_has_no_source_file_is_compiled_but_not_cached(tmp_path, cache):
 
 
 NEAR = """
-from idealgas._jit import fetch_next_line, njit
+from idealgas._jit import njit
+from idealgas._prefetch import fetch_next_line
 
 @njit
 def near(column, row):
@@ -294,7 +295,7 @@ def near(column, row):
 """
 NEAR_THE_END = """
 import numpy as np
-from idealgas._jit import fetch_next_line
+from idealgas._prefetch import fetch_next_line
 from module import near
 for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
     before = column.copy()

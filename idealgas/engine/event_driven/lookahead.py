@@ -8,7 +8,8 @@ the schedule; then the cells around it, and its partner; then the discs in the c
 
 import numpy as np
 
-from idealgas._jit import fetch, inline
+from idealgas._jit import inline
+from idealgas._prefetch import fetch
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 
 FROM = 6_000
