@@ -12,14 +12,11 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from idealgas.analysis.core.autoregression import error_of_mean, is_constant
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
-
-logging.getLogger("pymbar").setLevel(logging.ERROR)  # pymbar logs at import that JAX would be faster
-from pymbar import timeseries  # noqa: E402
 
 ENOUGH_REPLICATES = 20
 """Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
@@ -63,7 +60,7 @@ class Estimate:
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval at a level (0 to 1), by Student's t with independent_samples - 1 degrees of freedom."""
-        half = stats.t.ppf(0.5 + level / 2, max(self.independent_samples - 1, 1)) * self.standard_error
+        half = special.stdtrit(max(self.independent_samples - 1, 1), 0.5 + level / 2) * self.standard_error
         return self.value - half, self.value + half
 
     @classmethod
@@ -130,7 +127,7 @@ def inefficiency(series: np.ndarray) -> float:
     """Statistical inefficiency g ≥ 1 of a series: samples per independent sample; 1 if it is too short or constant."""
     if len(series) < 4 or is_constant(series):
         return 1.0
-    return float(timeseries.statistical_inefficiency(series))
+    return float(_timeseries().statistical_inefficiency(series))
 
 
 def ensemble_inefficiency(series: np.ndarray) -> float:
@@ -140,7 +137,15 @@ def ensemble_inefficiency(series: np.ndarray) -> float:
     """
     if len(series) < 4 or is_constant(series):
         return 1.0
-    return float(timeseries.statistical_inefficiency_multiple(list(series.T)))
+    return float(_timeseries().statistical_inefficiency_multiple(list(series.T)))
+
+
+def _timeseries() -> Any:
+    """The module of pymbar, imported where it is used: that takes as long as all else that most analyses import."""
+    logging.getLogger("pymbar").setLevel(logging.ERROR)  # it logs at import that JAX would be faster
+    from pymbar import timeseries
+
+    return timeseries
 
 
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from idealgas.analysis.core.autoregression import error_of_mean, is_constant, process_of, variance_of_mean
 from idealgas.analysis.core.flights import Moments
@@ -109,7 +109,7 @@ class Reference(NamedTuple):
 
     def quantile(self, level: float) -> float:
         """Deviation in standard errors that chance exceeds with the probability `level`, on either side."""
-        return float(stats.t.isf(level / 2, self.dof))
+        return -float(special.stdtrit(self.dof, level / 2))
 
 
 def steady_from(series: Iterable[np.ndarray]) -> int | None:

@@ -8,7 +8,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from idealgas.analysis.theory import hard_discs
 from idealgas.physics.contact_value import contact_value
@@ -32,6 +31,7 @@ def barometric_temperature(
         pull: size of the acceleration, length/time².
         height: (S,), length that the centres can reach along the acceleration.
     """
+    from scipy.optimize import brentq  # which would take a tenth of the time of commands about gases that do not fall
 
     def excess(t: float) -> float:
         x = mass * pull * height / t

@@ -163,7 +163,6 @@ box.size = [10, 10]
 gravity.acceleration = [0, -1]
 restitution = { wall = 0.5, contact_duration = 1e-6 }
 run.until = 3
-log.events = false
 disc = [{ position = [5, 0.6], radius = 0.5 }]
 species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1, region = [0, 5, 10, 10] }]
 """

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from effect_samples import make_effects, make_gas
-from support import record
+from support import batches, joined, record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven import method
@@ -37,11 +37,12 @@ def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_ord
 def test_an_audit_on_the_way_changes_nothing(effects):
     gas = make_gas(3)
     looked_at = Simulation(gas, EventDriven(), make_effects(effects, gas))
-    quiet = Simulation(gas, EventDriven(), make_effects(effects, gas))
-    for _ in looked_at.slices(STOP, events=1000):
+    rows = []
+    for batch in batches(looked_at, STOP, events=1000):
         looked_at.audit_of(looked_at.state()[0])
-    for _ in quiet.slices(STOP, events=1000):
-        pass
+        rows.append(batch)
+    quiet = Simulation(gas, EventDriven(), make_effects(effects, gas))
+    assert same_rows(joined(rows), record(quiet, STOP, events=1000))
     assert looked_at.counters == quiet.counters
     for name in ("position", "velocity"):
         assert np.array_equal(getattr(looked_at.state()[0], name), getattr(quiet.state()[0], name))
