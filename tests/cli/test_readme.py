@@ -82,7 +82,7 @@ def test_quick_start_is_two_commands():
         venv, install, *_ = commands(command)
         assert venv == "python3 -m venv --without-pip .venv"
         assert install == f"python3 -m pip --python .venv install -q {needs}"
-    assert commands(second)[2:] == [".venv/bin/pytest -n 2"]
+    assert commands(second)[2:] == [".venv/bin/pytest -n 3 --dist worksteal"]
 
 
 def blocks_of_quick_start():
