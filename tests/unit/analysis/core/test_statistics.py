@@ -91,7 +91,12 @@ def test_bootstrap_error_of_a_mean():
     assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(30), rel=0.06)  # 4/√(2·2000) resamples
 
 
-def test_import_prints_nothing():
-    code = "import idealgas.analysis.core.statistics"
+def test_pymbar_is_imported_where_it_is_used_and_says_nothing():
+    """It and what it takes of scipy would be half of the time in which most analyses start."""
+    code = (
+        "import sys\nimport numpy as np\nfrom idealgas.analysis.core import equilibrium, statistics, steadiness\n"
+        "assert not {'pymbar', 'scipy.stats', 'scipy.optimize'} & set(sys.modules)\n"
+        "assert statistics.inefficiency(np.arange(8.0)) > 1.0"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout + done.stderr == ""
