@@ -3,9 +3,17 @@
 import re
 
 import pytest
+from numba.core.caching import NullCache
 
 from idealgas._compiler import _EntryPoint, _Inlined
 from idealgas._jit import inline, njit
+
+
+def compiled(function):
+    """An entry point that is compiled in every run of the tests: what is kept on disk cannot be looked at."""
+    entry = njit(function)
+    entry._cache = NullCache()
+    return entry
 
 
 @inline
@@ -18,12 +26,12 @@ def _below(x):
     return _deepest(x) + 1.0
 
 
-@njit
+@compiled
 def _shared(x):
     return _deepest(x) - 1.0
 
 
-@njit
+@compiled
 def _entry(x):
     return _deepest(x) + 2.0 * _below(x) + _shared(x)  # inlined directly, through another, and through an entry point
 
@@ -35,7 +43,7 @@ def _refuse(x):
     return x
 
 
-@njit
+@compiled
 def _refusing(x):
     return _refuse(x)
 
@@ -64,7 +72,7 @@ def test_an_inlined_function_has_no_machine_code(monkeypatch):
             kind, "_finalize_final_module", lambda self, finish=finish: (made.append(self.name), finish(self))
         )
 
-    @njit
+    @compiled
     def entry(x):
         return _below(x)
 
