@@ -32,10 +32,13 @@ _STEPS: tuple[type[CompilerPass], ...] = (
 )
 """numba's own steps, in its order.
 
-Those for closures, array expressions, `with`, unrolled tuples, functions inlined by numba itself and its threads are
-not among them, nor is the one that marks the end of each variable's life: without numba's runtime, nothing is released
-there.
+Those for closures, array expressions, `with`, literal arguments, unrolled tuples, functions inlined by numba itself,
+its threads and its reports are not among them, nor is the one that marks the end of each variable's life: without
+numba's runtime, nothing is released there.
 """
+
+_ANALYSIS = dict.fromkeys(_STEPS)
+"""What steps may look up of each other: `DeadBranchPrune` does, and uses nothing of it."""
 
 
 class _Pipeline:
@@ -48,7 +51,7 @@ class _Pipeline:
         """Compile a function."""
         for step in _STEPS:
             one = step()
-            one.analysis = dict.fromkeys(_STEPS)
+            one.analysis = _ANALYSIS
             one.run_pass(state)
 
 
@@ -96,6 +99,7 @@ class Compiler(CompilerBase):
     def define_pipelines(self) -> list[_Pipeline]:
         state = self.state
         kind = _Inlined if state.flags.forceinline else _EntryPoint
-        state.library = kind(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
+        library = kind(state.targetctx.codegen(), state.func_id.func_qualname)
+        library.enable_object_caching()
+        state["library"] = library
         return [_Pipeline()]

@@ -1,11 +1,13 @@
 """What numba is made to leave out: optimization and machine code of inlined functions."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 from numba.core.caching import NullCache
+from numba.core.compiler import DefaultPassBuilder, Flags
 
-from idealgas._compiler import _EntryPoint, _Inlined
+from idealgas._compiler import _STEPS, _EntryPoint, _Inlined
 from idealgas._jit import inline, njit
 
 
@@ -46,6 +48,35 @@ def _refuse(x):
 @compiled
 def _refusing(x):
     return _refuse(x)
+
+
+LEFT_OUT = {
+    "AnnotateTypes",
+    "DumpParforDiagnostics",
+    "FindLiterallyCalls",
+    "IRLegalization",
+    "InlineClosureLikes",
+    "InlineInlinables",
+    "InlineOverloads",
+    "LiteralPropagationSubPipelinePass",
+    "LiteralUnroll",
+    "MakeFunctionToJitFunction",
+    "NopythonRewrites",
+    "WithLifting",
+}
+
+
+def test_the_steps_are_those_of_numba_without_some():
+    """Another numba may have another step, of which it is then to be said whether it is needed here."""
+    flags = Flags()
+    flags.enable_ssa = True
+    steps = [
+        step
+        for step, _ in DefaultPassBuilder.define_nopython_pipeline(SimpleNamespace(func_ir=None, flags=flags)).passes
+    ]
+    assert {step.__name__ for step in steps} - {step.__name__ for step in _STEPS} == LEFT_OUT
+    rest = iter(steps)
+    assert all(step in rest for step in _STEPS)  # in the same order
 
 
 def _code(entry):
