@@ -95,6 +95,25 @@ def lattice(seed: int) -> tuple[Gas, Effects]:
     return gas_of((width, height), position, velocity, draw.choice([0.25, 0.5])), Effects()
 
 
+def tie_at_a_border() -> tuple[Gas, Effects]:
+    """Discs 1 and 2 are to meet across a border at the time of another contact of disc 1, which diverts it."""
+    discs = np.array(
+        [  # x, y, vx, vy, radius, mass
+            (19.0, 98.5, 4.0, -2.0, 1.0, 3.0),
+            (17.0, 91.5, 0.0, 0.0, 4.0, 1.0),
+            (17.0, 97.5, 0.0, 0.0, 1.0, 7.0),
+            (17.0, 83.0, 0.0, 1.0, 4.0, 1.0),
+            (11.0, 97.5, -8.0, 0.0, 1.0, 1.0),
+            (17.0, 103.5, 0.0, -1.0, 1.0, 1.0),
+            (22.5, 91.5, 0.0, 1.0, 0.5, 1.0),
+            (22.5, 86.0, 0.0, 2.0, 0.5, 1.0),
+            (23.0, 101.5, -2.0, 0.0, 1.0, 1.0),
+            *((x, y, 0.0, 0.0, 0.5, 1.0) for x, y in ((4.0, 90.0), (1.0, 90.0), (2.5, 90.0), (1.0, 92.0), (2.5, 92.0))),
+        ]
+    )
+    return gas_of((24.0, 194.0), discs[:, :2], discs[:, 2:4], discs[:, 4], discs[:, 5]), Effects()
+
+
 def wind(seed: int) -> tuple[Gas, Effects]:
     """Columns of discs that fly upwards round a box, all but one without a collision: all go from strip to strip."""
     draw = np.random.default_rng(seed)

@@ -207,7 +207,7 @@ class Simulation:
         done = self.counters
         if done.events >= stop.events or done.disc_collisions >= stop.disc_collisions or done.trials >= stop.trials:
             return True
-        return self.epoch_over and self.length >= stop.time - self.time
+        return self.epoch_over and self._local_now >= stop.time - self.time
 
     @property
     def counters(self) -> Totals:

@@ -15,7 +15,13 @@ from idealgas.engine.event_driven.lookahead import fetch_ahead
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
 from idealgas.engine.event_driven.scheduler import clear, has_another, is_settled, settle, withdraw
-from idealgas.engine.event_driven.turns import count_at_one_time, enter_in_schedule, leave, next_turn
+from idealgas.engine.event_driven.turns import (
+    count_at_one_time,
+    enter_in_schedule,
+    in_own_schedule,
+    leave,
+    next_turn,
+)
 from idealgas.engine.records import add_to_counters, reload
 from idealgas.engine.resolve import (
     resolve_kick,
@@ -119,7 +125,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
             withdraw(state.tree, state.prediction, ids, other)
         if tied or not is_settled(state.tree, time):
-            settle(state.tree, state.prediction, ids, i, other)
+            settle(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
             continue
         if of_piston:
             i = np.int64(prediction.partner)

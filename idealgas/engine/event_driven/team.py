@@ -75,8 +75,10 @@ class Crew:
 
     def memory(self, batch: EventBatch | None, strips: int) -> EventBatch | None:
         """Memory for the rows of all strips, a part for each, with columns as those of a batch; None without a log."""
+        if batch is None:
+            return None
         rows = self.tuning.buffer * strips
-        if batch is not None and (self._rows is None or len(self._rows.time) != rows):
+        if self._rows is None or len(self._rows.time) != rows:
             self._rows = EventBatch(*(_longer(column, rows) for column in batch))  # type: ignore[arg-type]
         return self._rows
 

@@ -65,6 +65,14 @@ def enter_in_schedule(record, ids, state, i, border):
 
 
 @inline
+def in_own_schedule(record, j, border):
+    """Disc j if the thread has its events in its schedule, -1 if another has them; j: -1 for no disc."""
+    if border is not None and j >= 0 and not border.low <= record[U(j)].row < border.high:
+        return np.int64(-1)
+    return j
+
+
+@inline
 def count_at_one_time(time, now, events_at_this_time, n, border):
     """Time of the latest event, after one at `time`, and number of events in a row then; n: number of discs."""
     if border is None:

@@ -72,6 +72,17 @@ def test_stops_where_it_should(method):
     assert run(early, Stop(time=20.0)) == [row for row in whole if row[0] <= 20.0]
 
 
+@methods
+def test_a_later_stop_in_the_same_epoch_is_another(method):
+    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
+    at_once, on_the_way = (Simulation(gas_of((10, 10), *discs), method()) for _ in range(2))
+    assert at_once.length > 5.0
+    rows = run(on_the_way, Stop(time=2.0))
+    assert on_the_way.finished(Stop(time=2.0))
+    assert not on_the_way.finished(Stop(time=5.0))
+    assert rows + run(on_the_way, Stop(time=5.0)) == run(at_once, Stop(time=5.0))
+
+
 def run_rows(rows, events):
     """The rows of the first so many events."""
     taken, k = [], 0

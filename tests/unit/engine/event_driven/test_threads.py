@@ -10,13 +10,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from log_compare import differences
 from support import batch_for
-from thread_samples import EAGER, EFFECTS, SMALLEST_CELLS, compare, lattice, log_with, tall_scene, wind
+from thread_samples import (
+    EAGER,
+    EFFECTS,
+    SMALLEST_CELLS,
+    compare,
+    lattice,
+    log_with,
+    tall_scene,
+    tie_at_a_border,
+    wind,
+)
 
 from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.event_driven.race import Race
 from idealgas.engine.event_driven.strips import cut, share_out
 from idealgas.engine.event_driven.team import STOP, Crew, Team, _Strip
+from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.physics.exact_sum import TOGETHER, add_all, add_sums, make_sums, values
 from idealgas.run.resume import resume
@@ -172,6 +183,19 @@ def test_a_time_without_an_event_is_passed():
 
 
 @pytest.mark.slow
+def test_a_run_may_go_on_without_a_log():
+    gas, effects = tall_scene("plain", 3)
+    simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
+    for _ in simulation.slices(Stop(events=1000), batch_for(simulation, 65_536), 500):
+        pass
+    shared = simulation.method.threads.slices
+    for _ in simulation.slices(Stop(events=3000), None, 500):
+        assert not simulation.method.pending
+    assert simulation.finished(Stop(events=3000))
+    assert simulation.method.threads.slices > shared > 0
+
+
+@pytest.mark.slow
 def test_lattices_have_the_log_of_one_thread():
     facts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
     assert facts["tie"] > 0
@@ -181,6 +205,18 @@ def test_lattices_have_the_log_of_one_thread():
 @pytest.mark.slow
 def test_a_disc_that_comes_over_has_its_turn_among_events_of_one_time():
     compare(lambda: lattice(1822), 1822)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("until", [3.9, 4.1, 4.4])
+def test_a_disc_of_another_strip_is_not_in_the_schedule_after_events_of_one_time(until):
+    stop = Stop(time=until)
+    expected = log_with(*tie_at_a_border(), stop, UNLIMITED, EventDriven())
+    method = EventDriven(1e-3, 2, EAGER)
+    method.crew.rate = 1000.0, 500.0  # all is one slice
+    found = log_with(*tie_at_a_border(), stop, UNLIMITED, method)
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert (method.threads.slices, method.threads.given_up) == (1, 0)
 
 
 @pytest.mark.slow
