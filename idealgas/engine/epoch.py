@@ -12,6 +12,7 @@ from idealgas.physics.encounters import encounters_of_discs
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
 FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs
 LONGEST_WAY = 6144  # of the fastest disc, in diameters: it limits a contact's error to 2**-54 of it for each disc
+MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
 FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc
 
 
@@ -50,17 +51,21 @@ def epoch_length(
     """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if it has none.
 
     In a dilute gas it is fewer events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
-    speeds to be expected from gravity or a piston, length/time. periodic: whether the sides along x and along y are
-    periodic. kicks: of all discs per time, 1/time. The sum of the speeds is exactly rounded, so it depends neither on
-    the order of the discs nor on the processor.
+    speeds to be expected from gravity, a piston or a heat bath, length/time. periodic: whether the sides along x and
+    along y are periodic. kicks: of all discs per time, 1/time. The sum of the speeds is exactly rounded, so it depends
+    neither on the order of the discs nor on the processor.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
     rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, periodic) + kicks
     if rate == 0.0:
         return math.inf
-    longest_flight = 2.0 * LONGEST_WAY * float(gas.radius.min()) / (float(speeds.max()) + extra_speed)
-    shortest = FEWEST_PER_DISC * n / rate
+    fastest = float(speeds.max()) + extra_speed
+    longest_flight = 2.0 * LONGEST_WAY * float(gas.radius.min()) / fastest
+    round_the_box = (
+        min((length for length, on in zip(gas.box, periodic, strict=True) if on), default=math.inf) / fastest
+    )
+    shortest = min(FEWEST_PER_DISC * n / rate, MOST_CROSSINGS * round_the_box)
     longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
     return 2.0 ** math.floor(math.log2(min(max(longest_flight, shortest), longest)))
 

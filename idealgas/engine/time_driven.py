@@ -261,6 +261,16 @@ def advance_steps(
     return rows, reached
 
 
+def first_step_after(time: float, dt: float) -> int:
+    """Number of the first step that ends after a time; step k ends at the float nearest to k dt."""
+    number = math.floor(time / dt)  # a quotient that is rounded may be one off, either way
+    while number * dt > time:
+        number -= 1
+    while number * dt <= time:
+        number += 1
+    return number
+
+
 class TimeDriven:
     """The time-driven method: its records and effects in an epoch; steps end at multiples of dt (time)."""
 
@@ -274,6 +284,7 @@ class TimeDriven:
         """Set the length of a step, dt (time)."""
         self._dt = dt
         self._deepest = np.zeros(1)
+        self._overlap = 0.0
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch; its start may divide a step in two, as discs fly on unchanged."""
@@ -284,6 +295,7 @@ class TimeDriven:
         self._effects = effects
         self._step = np.zeros(1, STEP).view(np.recarray)
         self._step[0].spent = math.inf
+        self._overlap, self._deepest = float(self._deepest[0]), np.zeros(1)
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
@@ -292,7 +304,7 @@ class TimeDriven:
         record, ids, box = self.discs
         step = self._step[0]
         if step.number == 0:
-            step.number = math.floor(epoch_start / self._dt) + 1
+            step.number = first_step_after(epoch_start, self._dt)
         if step.pairs > len(self._near.pairs):
             self._near = self._near._replace(pairs=np.empty((2 * step.pairs, 2), np.int32))
         return advance_steps(
@@ -301,5 +313,5 @@ class TimeDriven:
         )  # fmt: skip
 
     def deepest_overlap(self) -> float:
-        """Deepest overlap of all collisions so far, divided by the sum of the radii."""
-        return float(self._deepest[0])
+        """Deepest overlap of a collision in the epoch before the start, divided by the sum of the radii."""
+        return self._overlap

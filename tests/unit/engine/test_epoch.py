@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas.engine.epoch import FEWEST_PER_DISC, LONGEST_WAY, encounters_per_length, epoch_length
+from idealgas.engine.epoch import FEWEST_PER_DISC, LONGEST_WAY, MOST_CROSSINGS, encounters_per_length, epoch_length
 from idealgas.gas.state import Gas
 
 
@@ -61,6 +61,17 @@ def test_some_events_in_the_thinnest_gas():
     speeds = np.sqrt((thinnest.velocity**2).sum(1))
     events = length_for(thinnest) * speeds.mean() * encounters_per_length(thinnest)
     assert FEWEST_PER_DISC * len(thinnest) / 2 <= events <= FEWEST_PER_DISC * len(thinnest)
+
+
+def test_a_disc_does_not_go_round_the_box_too_often(monkeypatch):
+    """A single fast disc among many at rest hardly meets any, but its crossings are counted in 16 bits."""
+    n, both = 50_000, (True, True)
+    thin = replace(gas(n, speed=0.0), box=(1.0, 1.0), radius=np.full(n, 6e-7))
+    thin.velocity[0] = 1.0, 0.0
+    encounters = encounters_per_length(thin, both)
+    assert MOST_CROSSINGS / 2 <= epoch_length(thin, encounters, periodic=both) <= MOST_CROSSINGS
+    monkeypatch.setattr("idealgas.engine.epoch.MOST_CROSSINGS", math.inf)
+    assert epoch_length(thin, encounters, periodic=both) > 2**15
 
 
 def in_a_channel(velocity, periodic=(False, False)):

@@ -4,14 +4,19 @@ import math
 
 import numpy as np
 import pytest
+from log_compare import differences
 from support import gas_of, record, same_rows
 
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.engine.time_driven import TimeDriven, make_nearby
+from idealgas.engine.time_driven import TimeDriven, first_step_after, make_nearby
 from idealgas.events import Kind
+from idealgas.log import open_log
 from idealgas.physics.effects import Effects
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
 
 BOX = (10.0, 8.0)
 
@@ -90,7 +95,31 @@ def test_neither_batches_nor_slices_change_anything(rows, events):
     parts = Simulation(some_gas(), TimeDriven(0.05))
     assert same_rows(record(whole, stop), record(parts, stop, rows, events))
     assert whole.state()[0].position.tolist() == parts.state()[0].position.tolist()
-    assert whole.method.deepest_overlap() == parts.method.deepest_overlap() > 0
+    assert whole.audit_of(whole.gas).overlap == parts.audit_of(parts.gas).overlap > 0
+
+
+@pytest.mark.parametrize("dt", [2.3331434616323543, 0.1, 1 / 3])
+def test_no_step_is_left_out_between_epochs(dt):
+    for end in (28_672.0, 4096.0, 3 * dt, 7 * dt):
+        number = first_step_after(end, dt)
+        assert number * dt > end >= (number - 1) * dt
+    assert first_step_after(28_672.0, 2.3331434616323543) == 12_289  # 0.000000000004 later
+
+
+@pytest.mark.slow
+def test_a_resumed_run_has_the_log_of_one_without_a_break(tmp_path):
+    scene = parse_scene(
+        'species = [{name = "a", count = 60, radius = 0.5, temperature = 1}]\nbox.size = [20, 20]\n'
+        'run = {method = "time_driven", dt = 0.05, until = 600}'
+    )
+    whole, cut_off, calls = tmp_path / "whole.h5", tmp_path / "cut.h5", []
+    simulate(scene, whole)
+    assert not simulate(scene, cut_off, interrupted=lambda: calls.append(1) or len(calls) > 3).completed
+    assert resume(cut_off).completed
+    assert differences(whole, cut_off) == []
+    with open_log(whole) as log:
+        overlaps = log.observables["overlap"][1]
+    assert len(set(overlaps.tolist())) == len(overlaps) > 5
 
 
 def test_it_stops_in_the_middle_of_a_step():
