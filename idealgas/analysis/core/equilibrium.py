@@ -49,12 +49,16 @@ def ensemble(log: Log) -> Ensemble:
     found = known_ensemble(log)
     if found is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
-        raise NotApplicableError(f"{log.path}: no temperature is known beforehand under {', '.join(causes)}")
+        given = f"under {', '.join(causes)}" if causes else "for a single disc that nothing can stop"
+        raise NotApplicableError(f"{log.path}: no temperature is known beforehand {given}")
     return found
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
-    """Ensemble of the gas of a log; None if the energy is neither conserved nor set by heat of one temperature."""
+    """Ensemble of the gas of a log; None if the energy is neither conserved nor set by heat of one temperature.
+
+    None too for a single disc whose momentum is conserved, as none of its energy is heat.
+    """
     properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
     if not properties.conserves_energy or len(properties.temperatures) > 1:
         return None
@@ -65,6 +69,8 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
+    if dof == 0:
+        return None
     share = 1 - kept.mean() * mass / gas.mass.sum()
     if properties.temperatures:  # a heat bath has no limit to its energy
         (temperature,) = properties.temperatures

@@ -2,7 +2,16 @@
 
 import numpy as np
 
-from idealgas.analysis.core.window import MOST_BLOCKS, Window, first_steady, must_apply, span
+from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.window import (
+    MOST_BLOCKS,
+    Window,
+    after_gates,
+    first_steady,
+    must_apply,
+    must_be_shared,
+    span,
+)
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.sides import FIRST_SEGMENT, OUTWARD
@@ -101,7 +110,11 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     if start is not None:
         return Window(edges, 0, detected=False), impacts
     series = (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
-    return Window(edges, first_steady(log, series), detected=True), impacts
+    begin = after_gates(log, edges)
+    window = Window(edges, begin + first_steady(log, (values[begin:] for values in series)), detected=True)
+    energies = window.of(impacts.kinetic_flow[:, ::2]) - log.discs.mass.sum() * drift(log) ** 2
+    must_be_shared(log, energies[:, None])
+    return window, impacts
 
 
 def in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndarray:

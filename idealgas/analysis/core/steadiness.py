@@ -47,7 +47,10 @@ STARTS = 33
 """Number of evenly spaced starts that are tried, beside those each 1.4 times the one before."""
 
 SHORTEST = 4
-"""Number of blocks of the shortest stretch that is tested; each longer one is twice as long."""
+"""Number of blocks of the shortest stretch that is tested; each longer one is twice as long.
+
+Of numbers of discs, whose largest scatter is known, single blocks are tested.
+"""
 
 FEWEST_SAMPLES = 4.0
 """Least number of independent samples with which a series counts as longer than its fluctuations."""
@@ -66,6 +69,7 @@ class Course:
         """Take the gas of a log; of the tallies that are `present` in an analysis those that fit are used."""
         present = list(present)
         self._present = present
+        self._clusters = not log.scene.properties.lossless
         self.moments = next((t for t in present if isinstance(t, Moments)), None) or Moments(log.gravity)
         self.impacts: Impacts | None = None
         self.strips: Strips | None = None
@@ -85,9 +89,19 @@ class Course:
         yield self.moments.flights[:, :, 3].sum(axis=1)
         yield from self.moments.flights[:, :, 1:3].reshape(len(self.moments.flights), -1).T
         yield from self.moments.events.T.astype(float)
-        if self.impacts is not None and self.strips is not None:
+        if self.impacts is not None:
             yield self.impacts.pair_virial
-            yield from self.strips.discs.reshape(len(self.strips.discs), -1).T
+
+    def counts(self) -> Iterator[tuple[np.ndarray, float]]:
+        """Numbers of discs (B,) at instants that are steady too, each with the number of all discs of its species.
+
+        The number is infinite where discs form clusters, and their numbers scatter more than if each had a place of its
+        own.
+        """
+        if self.strips is not None:
+            for s in range(self.strips.discs.shape[1]):
+                discs = self.strips.discs[:, s].reshape(len(self.strips.discs), -1)
+                yield from ((one, math.inf if self._clusters else float(discs[0].sum() / 2)) for one in discs.T)
 
 
 class Reference(NamedTuple):
@@ -112,9 +126,14 @@ class Reference(NamedTuple):
         return -float(special.stdtrit(self.dof, level / 2))
 
 
-def steady_from(series: Iterable[np.ndarray]) -> int | None:
-    """Index from which on all series (n,) are steady; None if they still change at the end."""
-    some = [values for values in series if np.ptp(values) > ROUNDING * np.abs(values).max()]
+def steady_from(series: Iterable[np.ndarray], counts: Iterable[tuple[np.ndarray, float]] = ()) -> int | None:
+    """Index from which on all series (n,) are steady; None if they still change at the end.
+
+    counts: series of numbers at instants, each with the number from which it is drawn; infinite if they are not.
+    """
+    every = [*((values, math.inf) for values in series), *counts]
+    varied = [(values, number) for values, number in every if np.ptp(values) > ROUNDING * np.abs(values).max()]
+    some = [values for values, _ in varied]
     if not some or len(some[0]) < FEWEST:
         return 0
     n, level = len(some[0]), TREND / len(some)
@@ -131,7 +150,7 @@ def steady_from(series: Iterable[np.ndarray]) -> int | None:
         else:
             return None if n // 2 >= LONG else n - n // 2
     last = max(r.first for r in references)
-    start = _first_steady(some, references, last)
+    start = _first_steady(varied, references, last)
     return None if drifts and last - start < n // BEYOND else start
 
 
@@ -176,18 +195,27 @@ def _reference(series: np.ndarray, first: int) -> Reference:
     return Reference(first, float(values.mean()), scatter, dof, abs(slope) / math.sqrt(variance))
 
 
-def _first_steady(series: list[np.ndarray], references: list[Reference], last: int) -> int:
-    """First start, of those that are tried, from which on all series agree with their references; at latest `last`."""
-    sums = [np.append(0.0, np.cumsum(values - r.mean)) for values, r in zip(series, references, strict=True)]
+def _first_steady(series: list[tuple[np.ndarray, float]], references: list[Reference], last: int) -> int:
+    """First start, of those that are tried, from which on all series agree with their references; at latest `last`.
+
+    series: with the number from which a number of discs is drawn; that of independent discs has the largest scatter.
+    """
+    sums = [np.append(0.0, np.cumsum(values - r.mean)) for (values, _), r in zip(series, references, strict=True)]
     limits = [r.quantile(LEVEL / len(series)) ** 2 for r in references]
+    beyond = special.ndtri(LEVEL / len(series) / 2) ** 2
+    most = [
+        math.inf if number == math.inf else beyond * r.mean * (1 - r.mean / number)
+        for (_, number), r in zip(series, references, strict=True)
+    ]
 
     def is_steady(start: int) -> bool:
-        lengths = SHORTEST * 2 ** np.arange(int(np.log2(max(last - start, SHORTEST) / SHORTEST)) + 1)
-        for total, r, limit in zip(sums, references, limits, strict=True):
-            some = lengths[start + lengths <= r.first]
+        lengths = 2 ** np.arange(int(np.log2(last - start)) + 1)
+        for total, r, limit, largest in zip(sums, references, limits, most, strict=True):
+            shortest = SHORTEST if largest == math.inf else 1
+            some = lengths[(lengths >= shortest) & (start + lengths <= r.first)]
             heads = (total[start + some] - total[start]) / some
             scatter = r.variance[np.minimum(some, len(r.variance)) - 1] + r.variance[-1]
-            if (heads**2 > limit * scatter).any():
+            if (heads**2 > np.minimum(limit * scatter, largest + limit * r.variance[-1])).any():
                 return False
         return True
 

@@ -6,11 +6,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from idealgas.analysis.core.equipartition import why_not_shared
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.steadiness import Course, steady_from
+from idealgas.analysis.core.steadiness import FEWEST, Course, steady_from
 from idealgas.analysis.core.stream import Tally, stream
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
 DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
@@ -95,7 +97,11 @@ def measure(
     if key not in known:
         course = Course(log, tallies)
         stream(log, edges, course.tallies, progress)
-        known[key] = first_steady(log, course.series())
+        begin = after_gates(log, edges)
+        counts = ((numbers[begin:], drawn) for numbers, drawn in course.counts())
+        first = begin + first_steady(log, (values[begin:] for values in course.series()), counts)
+        must_be_shared(log, course.moments.flights[first:, :, 1:3] / (edges[1] - edges[0]))
+        known[key] = first
     elif tallies:
         stream(log, edges, tallies, progress)
     return Window(edges, known[key], detected=True)
@@ -113,16 +119,40 @@ def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
         raise not_steady(log, why)
 
 
-def first_steady(log: Log, series: Iterable[np.ndarray]) -> int:
-    """Index from which on all series (n,) of a log are steady.
+def after_gates(log: Log, edges: np.ndarray) -> int:
+    """Index of the first block after the last gate has opened or closed; 0 without any. edges: (B + 1,), of the blocks.
+
+    Raises:
+        UserError: if so few blocks are left that nothing can be said of them.
+    """
+    changes = [time for wall in walls_inside(log.scene) for time in wall.absence if edges[0] < time < edges[-1]]
+    if not changes:
+        return 0
+    begin = int(np.searchsorted(edges, max(changes)))
+    if begin > len(edges) - 1 - FEWEST:
+        raise not_steady(log, f"a gate opens or closes at t = {max(changes):g}, shortly before the end of the log")
+    return begin
+
+
+def first_steady(log: Log, series: Iterable[np.ndarray], counts: Iterable[tuple[np.ndarray, float]] = ()) -> int:
+    """Index from which on all series (n,) of a log are steady; counts: see `steady_from`.
 
     Raises:
         UserError: if they are not steady by the end.
     """
-    first = steady_from(series)
+    first = steady_from(series, counts)
     if first is None:
         raise not_steady(log, "it still changes at the end of the log")
     return first
+
+
+def must_be_shared(log: Log, energies: np.ndarray) -> None:
+    """Refuse a log whose gas is steady, as far as can be seen, but has not the temperatures of equilibrium.
+
+    energies: see `why_not_shared`.
+    """
+    if why := why_not_shared(log, energies):
+        raise not_steady(log, why)
 
 
 def not_steady(log: Log, why: str) -> NotApplicableError:

@@ -87,6 +87,8 @@ def effusion(
     discs, equilibrium = composition(log.discs), ensemble(log)
     opening, across, place, width = _slit(log)
     radius, number, slit = discs.radius[0], len(log.discs), width - 2 * discs.radius[0]
+    if opening >= log.end_time:
+        raise UserError(f"{log.path}: no effusion: the gate opens at t = {opening:g}, the log ends at {log.end_time:g}")
     time = np.linspace(opening if start is None else start, log.end_time if end is None else end, INSTANTS)
     beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
     for k, state in enumerate(log.frames(time)):

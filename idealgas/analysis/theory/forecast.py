@@ -172,7 +172,8 @@ def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     freedom = 2 + scene.properties.spins
     frame = conserved.common_motion(scene, gas)
     kinetic = gas.kinetic_energy - float(gas.mass.sum() * (frame @ frame)) / 2
-    temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / (freedom * len(gas))
+    dof = freedom * len(gas) - int(conserved.kept_momentum(scene).sum())
+    temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / max(dof, 1)
     if scene.properties.bath is not None:
         temperature = scene.properties.bath
     number = np.bincount(gas.species)

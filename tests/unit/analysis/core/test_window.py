@@ -56,6 +56,24 @@ def test_start_is_after_a_gate_has_opened(log_of):
     assert 3 < start < 20
 
 
+def test_start_is_after_a_gas_has_filled_its_box(log_of):
+    half = '[[species]]\nname = "a"\ncount = 200\nradius = 0.05\ntemperature = 1\nregion = [0, 0, 5, 10]\n'
+    box = "[box]\nsize = [10, 10]\n"
+    found = [
+        starts(log_of(f"scene.seed = {seed}\n{box}{half}[run]\ncollisions_per_disc = 60\n"), "profile").pop()
+        for seed in range(1, 8)
+    ]
+    assert min(found) > 0
+    assert sorted(found)[3] > 2  # a disc of the mean speed crosses the empty half in 4
+    assert max(found) < 20
+
+
+def test_a_gate_that_opens_near_the_end_leaves_no_equilibrium(log_of):
+    log = log_of(EXPANSION.replace("opens_at = 3", "opens_at = 59.9"))
+    with pytest.raises(NotApplicableError, match="a gate opens or closes at t = 59.9, shortly before the end of the log"):
+        analyse(log, "profile")
+
+
 def test_steady_gas_is_kept(log_of):
     assert starts(log_of(BOX + GAS + RUN), "pressure", "profile") == {0.0}
 
