@@ -115,7 +115,7 @@ def image_range(periodic, along_y):
 
 
 @inline
-def boundary_crossing_event(record, i, effects, periodic, best):
+def boundary_crossing_event(record, i, periodic, best):
     """The earlier of the event `best` and disc i's next crossing of a periodic side.
 
     A crossing changes no record, but the images in which the disc has to be searched for contacts.
@@ -157,7 +157,7 @@ def next_event(record, box, effects):
         best = kick_event(i, effects.thermostat, best)
         for j in range(i + 1, record.shape[0]):
             best = pair_event(record, i, j, effects, best)
-        best = boundary_crossing_event(record, i, effects, effects.periodic, best)
+        best = boundary_crossing_event(record, i, effects.periodic, best)
     return stop_event(effects.piston, best)
 
 
@@ -218,7 +218,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
         events += 1
         events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, kicks, 0, 0, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
     return rows, reached
 
 

@@ -250,7 +250,7 @@ def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, ba
         events += 1
         events_at_this_time = check_clock(clock, now, events_at_this_time, record.shape[0])
         now = clock
-    add_to_counters(counters[0], events, collisions, 0, 0, 0, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, 0, now, events_at_this_time)
     return rows, reached
 
 

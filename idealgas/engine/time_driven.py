@@ -257,7 +257,7 @@ def advance_steps(
         events += 1
         collisions += 1
         now = time
-    add_to_counters(counters[0], events, collisions, 0, 0, 0, now, 0)
+    add_to_counters(counters[0], events, collisions, 0, now, 0)
     return rows, reached
 
 

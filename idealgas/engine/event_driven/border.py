@@ -52,7 +52,7 @@ OWN = np.dtype(
         ("at_once", "i8"),  # events in a row at that time
         ("held", "i8"), ("idle", "i8"),  # borders that are locked; whether there is no event up to the limit
         ("draw", "u8"),  # state of the delays
-        ("border_events", "i8"), ("posts", "i8"), ("pairs", "i8"), ("set_back", "i8"), ("while_posting", "i8"),  # facts
+        ("posts", "i8"), ("set_back", "i8"), ("while_posting", "i8"),  # facts
     ],
     align=True,
 )  # fmt: skip

@@ -154,6 +154,19 @@ def test_candidates(record, ids, state, count, i, now, effects):
         store_contact(state, record, ids, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
 
 
+@inline
+def comes_earlier(prediction, ids, own, rank, partner, time, images):
+    """Whether a contact of disc `own` (id) comes before the one predicted for it; of one time by the rule for those.
+
+    rank: of what it meets. partner: the same as it is stored in a prediction.
+    """
+    if time != prediction.contact:
+        return time < prediction.contact
+    if prediction.partner == partner:
+        return image_precedes(own, rank, images, images_of(prediction))
+    return precedes(own, rank, own, partner_rank(ids, prediction.partner))
+
+
 @njit
 def resolve_ties(record, ids, state, count, i, effects):
     """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
@@ -169,12 +182,7 @@ def resolve_ties(record, ids, state, count, i, effects):
         time = contact_time(
             record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
         )
-        earlier = time < prediction.contact
-        if time == prediction.contact:
-            earlier = precedes(own, other, own, partner_rank(ids, prediction.partner))
-            if prediction.partner == j:
-                earlier = image_precedes(own, other, images, images_of(prediction))
-        if earlier:
+        if comes_earlier(prediction, ids, own, other, j, time, images):
             store_contact(state, record, ids, i, j, k, time, effects.periodic)
 
 
@@ -193,15 +201,10 @@ def test_segments(record, ids, state, i, segments, effects):
             time = segment_contact(
                 record[U(i)], own, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
             )
-            earlier = time < prediction.contact
-            if time == prediction.contact:
-                rank = partner_rank(ids, segment_partner(k))
-                earlier = precedes(own, rank, own, partner_rank(ids, prediction.partner))
-                if prediction.partner == segment_partner(k):
-                    earlier = image_precedes(own, rank, images, images_of(prediction))
-            if earlier:
+            partner = segment_partner(k)
+            if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
                 prediction.contact = time
-                prediction.partner = segment_partner(k)
+                prediction.partner = partner
                 store_images(prediction, images, effects.periodic)
 
 

@@ -92,8 +92,6 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     events = 0
     collisions = 0
     kicks = 0
-    crossings = 0
-    stale = 0
     rows = 0
     now = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
@@ -110,7 +108,6 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         withdraw(state.tree, state.prediction, ids, i)
         fetch_ahead(state.lookahead, record, state, i)
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
-            crossings += 1
             enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)
             continue
         of_piston = is_piston(i, ids, effects.piston)
@@ -119,7 +116,6 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         if at_contact and prediction.partner >= 0 and not of_piston:
             other = np.int64(prediction.partner)
             if record[U(other)].count != prediction.partner_count:
-                stale += 1
                 predict_contact_again(record, ids, state, i, time, effects, border)
                 continue
             tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
@@ -132,7 +128,6 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             if not at_contact:
                 resolve_stop(time, effects.piston)
             if not at_contact or record[U(i)].count != prediction.partner_count:
-                stale += at_contact
                 predict_piston(record, ids, state, effects.piston, effects.gravity)
                 continue
             withdraw(state.tree, state.prediction, ids, i)
@@ -164,5 +159,5 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         events += 1
         now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
     leave(border, reached)
-    add_to_counters(counters[0], events, collisions, kicks, crossings, stale, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
     return rows, reached

@@ -76,7 +76,7 @@ class EventDriven:
         self._radius, self._largest_radius = gas.radius, float(gas.radius.max())
         filling = self._filling or discs_per_cell(gas.packing_fraction)
         cells = make_cells(len(gas), gas.box, self._largest_radius, filling)
-        self._state = make_state(len(gas), cells, effects, None)
+        self._state = make_state(len(gas), cells, effects)
         self._shared = share_out(self._threads, cells.rows - 2, len(gas), effects.piston is None, self.crew.tuning)
 
     def _sort(self, gas: Gas) -> None:

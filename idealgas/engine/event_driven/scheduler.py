@@ -188,7 +188,7 @@ def settle(tree, predictions, ids, i, j):
 
 
 @njit
-def plant(tree, predictions, ids, record, low, high):
+def plant(tree, predictions, record, low, high):
     """Make the tree that of the discs in rows `low` to before `high` of the cells, and of no other."""
     clear(tree)
     for i in range(record.shape[0]):

@@ -37,8 +37,8 @@ class EventDrivenState(NamedTuple):
     lookahead: np.ndarray | None
 
 
-def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) -> EventDrivenState:
-    """Event-driven state of n discs, without any prediction."""
+def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
+    """Event-driven state of n discs, without any prediction, and before the walls are known."""
     leaves = n if effects.piston is None else n + 1
     room = 9 * n + 16  # in a box of one cell, each disc is a candidate in nine images
     tree = make_tree(leaves)
@@ -48,7 +48,7 @@ def make_state(n: int, cells: Cells, effects: Effects, walls: WallCells | None) 
         aligned(leaves, PREDICTION),
         np.empty(room if effects.periodic else n + 16, np.int32),
         np.empty((room, 2), np.int32) if effects.periodic else None,
-        walls,
+        None,
         make_lookahead(n, len(tree.start)),
     )
 

@@ -170,7 +170,7 @@ class Team:
         """Process events on this thread only."""
         record, ids, _ = self._discs
         if not self._planted:
-            plant(self._state.tree, self._state.prediction, ids, record, 0, self._state.cells.rows)
+            plant(self._state.tree, self._state.prediction, record, 0, self._state.cells.rows)
             self._planted = True
         before = counters.copy()
         rows, reached = advance_events(
@@ -197,7 +197,7 @@ class Team:
             why = self._share(goal, batch, 0)
             strips, total = self._strips, counters.copy()
             for strip in strips:
-                for name in ("events", "disc_collisions", "wall_hits", "kicks", "crossings", "stale"):
+                for name in ("events", "disc_collisions", "wall_hits", "kicks"):
                     total[name] += strip.counters[name]
             last = max(strips, key=lambda strip: strip.counters[0]["time"]).counters[0]
             done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}
@@ -257,7 +257,7 @@ class Team:
         self._planted = False
         self._crew.run(work, len(self._borders), give_up)
         for border in self._borders:
-            for name in ("border_events", "posts", "set_back", "while_posting"):
+            for name in ("posts", "set_back", "while_posting"):
                 self._crew.facts[name] += int(border.own[0][name])
                 border.own[name] = 0
         return REASONS.get(int(words[FLAG]), "")
@@ -303,7 +303,7 @@ class _Strip:
         """Process the strip's events up to a limit of time; rows: memory for them, with local times; None for none."""
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self._effects)
-        plant(self._state.tree, self._state.prediction, ids, record, border.low, border.high)
+        plant(self._state.tree, self._state.prediction, record, border.low, border.high)
         self.filled, _ = advance_events(
             record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
         )

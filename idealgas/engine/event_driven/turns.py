@@ -212,7 +212,6 @@ def is_in_order(record, ids, state, i, time, where, b):
     if where & HIGH:
         own.high = time
     own.at_border = max(own.at_border, time)
-    own.border_events += 1
     return True
 
 
