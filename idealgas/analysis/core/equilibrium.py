@@ -19,15 +19,19 @@ class Ensemble:
     drift: (2,), velocity of the centre of mass that is subtracted from all velocities, length/time; see `drift`.
     dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
     temperature: T = 2E/D, energy (k_B = 1).
-    of_species: (S,), mean kinetic energy of translation of a disc of each species, energy. It is T where momentum is
-    not conserved, T(1 - m/M) for a disc of mass m where both components are conserved, with the mass M of all discs,
-    and T(1 - m/2M) where one component is conserved.
+    of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
+    not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs.
     """
 
     drift: np.ndarray
     dof: float
     temperature: float
-    of_species: np.ndarray
+    of_axes: np.ndarray
+
+    @property
+    def of_species(self) -> np.ndarray:
+        """Mean kinetic energy of translation (S,) of a disc of each species, energy."""
+        return self.of_axes.mean(axis=1)
 
 
 def kept_momentum(log: Log) -> np.ndarray:
@@ -71,7 +75,7 @@ def known_ensemble(log: Log) -> Ensemble | None:
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
     if dof == 0:
         return None
-    share = 1 - kept.mean() * mass / gas.mass.sum()
+    share = 1 - kept * mass[:, None] / gas.mass.sum()
     if properties.temperatures:  # a heat bath has no limit to its energy
         (temperature,) = properties.temperatures
         return Ensemble(frame, math.inf, temperature, temperature * share)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import special
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import kept_momentum, known_ensemble
+from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.statistics import mean
 from idealgas.analysis.core.steadiness import ROUNDING
 from idealgas.analysis.theory.conserved import is_ergodic
@@ -29,12 +29,12 @@ def why_not_shared(log: Log, energies: np.ndarray) -> str:
     (B, 1, 2), over all discs. Velocities are relative to the gas as a whole where nothing stops that.
     """
     ensemble, gas = known_ensemble(log), composition(log.discs)
-    alone = len(log.discs) == 1 and ensemble is not None and ensemble.dof < math.inf
-    if ensemble is None or alone or not is_ergodic(log.scene, log.discs):
+    if ensemble is None or not is_ergodic(log.scene, log.discs):
         return ""
-    mass, number = gas.mass[:, None], gas.number[:, None]
-    shares = ensemble.temperature * (1 - kept_momentum(log) * mass / (mass * number).sum())
-    expected, names = number * shares, [f" of {name}" for name in gas.name]
+    if len(log.discs) == 1 and ensemble.dof < math.inf:  # it has no other to share with
+        return ""
+    number = gas.number[:, None]
+    expected, names = number * ensemble.of_axes, [f" of {name}" for name in gas.name]
     if energies.shape[1] == 1:
         expected, number, names = expected.sum(axis=0, keepdims=True), number.sum(keepdims=True), [""]
     for s, name in enumerate(names):
