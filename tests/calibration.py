@@ -76,6 +76,8 @@ EXACT = (
     "mean vx (histogram)",
     "pressure tensor, xy",
     "temperature gradient",
+    "all walls, x",
+    "all walls, y",
 )
 """Estimates whose theory is exact for this number of discs; others are compared with their mean over all seeds."""
 

@@ -153,6 +153,16 @@ def slit(log: Log) -> Named:
     yield "flow through a slit", effusion(log).speed
 
 
+def gauges(log: Log) -> Named:
+    """Mechanical pressure of every wall, and what holds all of them together."""
+    found = pressure(log).mechanical
+    assert found is not None
+    for wall in found.walls:
+        yield wall.name, wall.pressure
+    for axis, force in found.forces[-1].large.items():
+        yield f"all walls, {axis}", force
+
+
 def equal_speeds(log: Log) -> Named:
     """Relaxation from equal speeds."""
     found = relaxation(log)
@@ -224,6 +234,18 @@ CASES = {
         ("until = 11", "until = 41"),
         slit,
         steady=False,
+    ),
+    "held piston": Case(
+        "[box]\nsize = [20, 5]\n[piston]\nposition = 10\nmass = 50\npressure = 1.5\n[[species]]\nname = 'gas'\n"
+        "count = 50\nradius = 0.05\ntemperature = 1\n",
+        ("until = 3000", "until = 6000"),
+        gauges,
+    ),
+    "column on a hot floor": Case(
+        "[box]\nsize = [10, 10]\nbottom = { thermal = 1 }\n[gravity]\nacceleration = [0, -0.3]\n"
+        "[[species]]\nname = 'gas'\ncount = 50\nradius = 0.3\ntemperature = 1\n",
+        ("until = 2000", "until = 4000"),
+        gauges,
     ),
     "equal speeds": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'gas'\ncount = 200\nradius = 0.0178\nspeed = 1\n",

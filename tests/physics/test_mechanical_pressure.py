@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 
+from idealgas.analysis.core.window import measure
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
@@ -90,6 +91,22 @@ def test_a_piston_is_held_by_the_gas(run):
     assert agrees(found["right wall"], 1.0, 0.001)  # its momentum is bounded, so that its mean force is exact in time
     for name, value in found.items():
         assert agrees(value, 1.0, 0.03), name
+    assert agrees(found["left wall"], 1.0, 0.003)  # it takes what the piston does not, and both are held together
+
+
+def test_a_gas_of_unknown_temperature_forgets_its_start(run):
+    """It cools from 1 to what the floor gives and losses take; the force on all walls is its weight from then on."""
+    log = run(
+        "box={ size = [10, 10], bottom = { thermal = 1 } }",
+        species(60, 0.3),
+        "gravity.acceleration=[0, -0.3]",
+        "restitution={ normal = 0.95, wall = 0.9 }",
+        "run.until=200",
+    )
+    window = measure(log, [])
+    assert 10 < window.start < 100  # energy has a correlation time of two to four
+    force = pressure(log).mechanical.forces[-1].y
+    assert agrees(force, -18, 0.01)
 
 
 def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run):

@@ -21,6 +21,9 @@ from idealgas.errors import UserError
 ENOUGH_REPLICATES = 20
 """Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
 
+FULL = 40.0
+"""Times in which the change of a store has grown to all that it can be, to the last bit."""
+
 TOLERANCE = 4.0
 """Largest allowed deviation between measurement and theory in a check, in errors of both together."""
 
@@ -188,23 +191,44 @@ def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
     return Estimate(float(series[part].mean()), error, samples)
 
 
-def mean_of_flux(flux: np.ndarray, bulk: np.ndarray, theory: Theory | float | None = None) -> Estimate:
+def mean_of_flux(
+    flux: np.ndarray, bulk: np.ndarray, theory: Theory | float | None = None, stored: float | None = None
+) -> Estimate:
     """Estimate of the mean of a flux through a boundary, such as the force on a wall.
 
     What flows through the boundary of a gas has come through its bulk, or its store has changed: the two series differ
     by the rate at which a bounded quantity of the gas changes, such as its momentum. This rate fluctuates much, to and
     fro with the sound in the box for as long as that lasts, and nearly cancels in the mean. So the error is that of the
-    bulk and that of the change of the store between two instants, which is twice its variance.
+    bulk and that of the change of the store between two instants.
 
-    flux, bulk: (n,), both series.
+    flux, bulk: (n,), both series. stored: variance of the store, in units of (flux x samples)², if a law gives it.
     """
     error, samples = error_of_mean(bulk)
-    store = np.append(0.0, np.cumsum(flux - bulk))
-    change = 2 * float(store.var()) / len(flux) ** 2
-    whole = error**2 + change
-    if error > 0:
-        samples = 1 + (samples - 1) * (whole / error**2) ** 2  # Welch-Satterthwaite
-    return Estimate(float(flux.mean()), math.sqrt(whole), samples, *_said(theory))
+    change, known = _change_of_store(flux - bulk, stored)
+    parts = np.array([error**2, change / len(flux) ** 2])
+    doubt = float((parts**2 / np.maximum([samples - 1, known], 1.0)).sum())
+    freedom = parts.sum() ** 2 / doubt if doubt > 0 else samples - 1  # Welch-Satterthwaite
+    return Estimate(float(flux.mean()), math.sqrt(parts.sum()), 1 + freedom, *_said(theory))
+
+
+def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, float]:
+    """Mean square change of a store, from its rates (n,), over all samples, and its degrees of freedom.
+
+    It is twice the variance in the end. If a law gives the variance, the change grows towards that as in an
+    Ornstein-Uhlenbeck process, and at first as the sum of squares of the rates, which a few large ones may make up.
+    Else it is the mean square of the store against its start: the variance and the square of how far from the mean the
+    store was at the start, which need not be a state that chance would give.
+    """
+    if stored is None:
+        store = np.cumsum(rates)
+        return float((store**2).mean()), len(store) / inefficiency(store) - 1
+    squares = rates**2
+    if not (total := float(squares.sum())) > 0:
+        return 0.0, math.inf
+    reached = min(total / (2 * stored), FULL)
+    share = reached / math.expm1(reached)  # by which the change depends on the rates
+    effective = total * (total / float((squares**2).sum()))
+    return -2 * stored * math.expm1(-reached), 2 * effective / share**2
 
 
 def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None) -> Estimate:

@@ -55,6 +55,9 @@ Of numbers of discs, whose largest scatter is known, single blocks are tested.
 FEWEST_SAMPLES = 4.0
 """Least number of independent samples with which a series counts as longer than its fluctuations."""
 
+FORGOTTEN = 10.0
+"""Correlation times after which a gas has forgotten its start: as much of it may be left as fluctuations hide."""
+
 ROUNDING = 1e-9
 """Relative change below which a series is constant."""
 
@@ -152,6 +155,16 @@ def steady_from(series: Iterable[np.ndarray], counts: Iterable[tuple[np.ndarray,
     last = max(r.first for r in references)
     start = _first_steady(varied, references, last)
     return None if drifts and last - start < n // BEYOND else start
+
+
+def forgetting(series: Iterable[np.ndarray], first: int) -> int:
+    """Number of samples in which all series (n,) forget their start, by their correlation times from `first` on."""
+    longest = 0.0
+    for values in series:
+        part = values[first:]
+        if np.ptp(part) > ROUNDING * np.abs(part).max():
+            longest = max(longest, error_of_mean(part).error ** 2 * len(part) / (2 * part.var()))
+    return math.ceil(FORGOTTEN * longest)
 
 
 def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:

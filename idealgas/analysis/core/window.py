@@ -6,9 +6,10 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.equipartition import why_not_shared
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.steadiness import FEWEST, Course, steady_from
+from idealgas.analysis.core.steadiness import FEWEST, Course, forgetting, steady_from
 from idealgas.analysis.core.stream import Tally, stream
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
@@ -137,12 +138,17 @@ def after_gates(log: Log, edges: np.ndarray) -> int:
 def first_steady(log: Log, series: Iterable[np.ndarray], counts: Iterable[tuple[np.ndarray, float]] = ()) -> int:
     """Index from which on all series (n,) of a log are steady; counts: see `steady_from`.
 
+    Where no law says what the gas is like in equilibrium, it has some time more to forget how it was placed.
+
     Raises:
         UserError: if they are not steady by the end.
     """
+    series = list(series)
     first = steady_from(series, counts)
     if first is None:
         raise not_steady(log, "it still changes at the end of the log")
+    if known_ensemble(log) is None:
+        return max(first, min(forgetting(series, first), len(series[0]) // 2))
     return first
 
 

@@ -249,26 +249,35 @@ def _routes(
     bulk = push if bulk is None else bulk
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall = {k: theory.sides[axis_of(k)] for k in sides}
-    routes = [
-        _route(f"{SIDES[k]} wall", push[k] / length[k] / ideal, bulk[k] / length[k] / ideal, ideal, at_wall[k])
-        for k in sides
-    ]
+    store = gas.mass.sum() * temperature / 3 / window.width**2
+    routes = [_wall(f"{SIDES[k]} wall", push[k], bulk[k], length[k] * ideal, store, ideal, at_wall[k]) for k in sides]
     if sides:
         perimeter = sum(length[k] for k in sides)
         at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
-        pushed, carried = (series[sides].sum(axis=0) / perimeter / ideal for series in (push, bulk))
-        routes.append(_route("all walls", pushed, carried, ideal, at_walls))
+        pushed, carried = (series[sides].sum(axis=0) for series in (push, bulk))
+        routes.append(_wall("all walls", pushed, carried, perimeter * ideal, len(sides) / 2 * store, ideal, at_walls))
         unit = len(sides) / 2 * gas.area * ideal
-        kinetic = sum(flow[:, axis] for axis in {axis_of(k) for k in sides})
-        inner = (kinetic + window.of(impacts.inner_virial)) / unit
-        routes.append(_route(WALLS, window.of(impacts.wall_virial) / unit, inner, ideal, theory.walls))
+        axes = [axis for axis in range(2) if not periodic[axis]]
+        inner = flow[:, axes].sum(axis=1) + window.of(impacts.inner_virial)
+        reach = (np.array(gas.box)[axes] - 2 * gas.radius[:, None]) ** 2
+        moment = temperature * float((gas.mass[:, None] * reach).sum()) / 12 / window.width**2
+        routes.append(_wall(WALLS, window.of(impacts.wall_virial), inner, unit, moment, ideal, theory.walls))
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
     return (*routes, _of(PAIRS, z, ideal))
 
 
-def _route(name: str, flux: np.ndarray, bulk: np.ndarray, ideal: float, theory: Theory | None) -> Route:
-    """Pressure by the momentum flux to walls in units of the `ideal` pressure, beside that of the bulk of the gas."""
-    return _of(name, mean_of_flux(flux, bulk, theory), ideal)
+def _wall(
+    name: str, flux: np.ndarray, bulk: np.ndarray, unit: float, stored: float, ideal: float, theory: Theory | None
+) -> Route:
+    """Pressure by a momentum flux to walls (n,), in units of one of the `ideal` pressure, beside that of the bulk.
+
+    stored: variance of the momentum that the gas stores on the way. Momenta of equilibrium are independent of each
+    other and of places: it is the sum of m T over discs, times the mean square of the share of it that has reached a
+    wall, which grows evenly from 0 at one wall to 1 at the other.
+    """
+    if not flux.any():  # walls that were never hit tell nothing of their error
+        return _of(name, Estimate(0.0, math.nan, 0.0, *((theory.value, theory.error) if theory else ())), ideal)
+    return _of(name, mean_of_flux(flux / unit, bulk / unit, theory, stored / unit**2), ideal)
 
 
 def _of(name: str, z: Estimate, ideal: float) -> Route:

@@ -1,6 +1,6 @@
 """Mechanical pressure of every wall, for gases whose pressure follows from no equation of state."""
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.statistics import Estimate, inefficiency, mean_of_replicates, ratio
+from idealgas.analysis.core.statistics import Estimate, mean_of_flux, mean_of_replicates, ratio
 from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
 from idealgas.analysis.core.window import Window
 from idealgas.log import Log
@@ -89,10 +89,11 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
     some, why = slice(window.first, None), why_never_stationary(log)
     faces = [(face, _holding(gauge, face, window)) for face in gauge.faces(window.edges)]
+    balances = None if why else _balances(log, gauge, window, faces)
     return Mechanical(
         area=float(gauge.area(window.edges)[some].mean()),
-        walls=tuple(_pressure(face, some, bool(why), holding) for face, holding in faces),
-        forces=_forces(log, gauge, window, bool(why)),
+        walls=tuple(_pressure(face, some, balances, holding) for face, holding in faces),
+        forces=_forces(log, gauge, window, balances),
         unsteady=why,
     )
 
@@ -103,58 +104,67 @@ def _holding(gauge: WallGauge, face: Face, window: Window) -> float | None:
     return moving.balance(window.start, window.end) if moving is not None and face.wall == moving.wall else None
 
 
-def _pressure(face: Face, some: slice, unsteady: bool, holding: float | None) -> WallPressure:
+def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[Face, float | None]]) -> np.ndarray:
+    """Forces less what balances them (B, K), each the rate at which the momentum of discs or of a piston changes.
+
+    All walls together carry the weight of the discs, where walls stop their motion; a piston is held from outside.
+    """
+    forces = window.of(gauge.impulses.given).sum(axis=1) - _weight(log)
+    held = [
+        (face.push - holding * face.exposed)[window.first :] / window.width
+        for face, holding in faces
+        if holding is not None
+    ]
+    return np.column_stack([*forces.T[~kept_momentum(log)], *held])
+
+
+def _weight(log: Log) -> np.ndarray:
+    """Weight (2,) of all discs."""
+    return np.asarray(log.discs.mass.sum() * np.array(log.gravity))
+
+
+def _pressure(face: Face, some: slice, balances: np.ndarray | None, holding: float | None) -> WallPressure:
     push, along, exposed = face.push[some], face.along[some], face.exposed[some]
     if not push.any():  # a wall that was never hit tells nothing of its error
         return WallPressure(face.name, Estimate(0.0, np.nan, 0.0, holding), None)
     rough = np.abs(along).sum() > SMOOTH * push.sum()
     return WallPressure(
         face.name,
-        _average(push, exposed, unsteady) if holding is None else _balanced(push / exposed, holding),
-        _average(along, exposed, unsteady) if rough else None,
+        _average(push, exposed, balances, holding),
+        _average(along, exposed, balances) if rough else None,
     )
 
 
-def _average(given: np.ndarray, exposed: np.ndarray, unsteady: bool) -> Estimate:
-    """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error."""
+def _average(
+    given: np.ndarray, exposed: np.ndarray, balances: np.ndarray | None, theory: float | None = None
+) -> Estimate:
+    """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error.
+
+    balances: see `_balances`; None for a changing state. The part of a force that goes with them fluctuates much, but
+    its mean is only off by the change of what is stored.
+    """
     there = exposed > 0
     given, exposed = given[there], exposed[there]
-    if not unsteady:
+    if balances is None:
+        pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
+        return mean_of_replicates([ratio(*piece) for piece in pieces])
+    if np.ptp(exposed) > SMOOTH * exposed.max():
         return ratio(given, exposed)
-    pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
-    return mean_of_replicates([ratio(*piece) for piece in pieces])
+    force = given / exposed
+    part = balances[there] @ np.linalg.lstsq(balances[there], force - force.mean())[0]
+    return mean_of_flux(force, force - part, theory)
 
 
-def _balanced(rates: np.ndarray, theory: float) -> Estimate:
-    """Mean of the rate at which momentum is given that `theory` gives back, so that what is stored stays bounded.
-
-    The mean is off by the change of the stored momentum from start to end over the time, with the variance of two
-    independent values of it.
-    """
-    stored = np.cumsum(rates - theory)
-    return Estimate(
-        float(rates.mean()),
-        float(math.sqrt(2) * stored.std() / len(rates)),
-        len(rates) / inefficiency(stored),
-        theory,
-    )
-
-
-def _forces(log: Log, gauge: WallGauge, window: Window, unsteady: bool) -> tuple[WallForce, ...]:
+def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | None) -> tuple[WallForce, ...]:
     """Force on every wall that was hit, and on all walls, which carry the weight of a gas in a stationary state."""
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
-    all_time, total, weight = np.ones(len(given)), given.sum(axis=1), log.discs.mass.sum() * np.array(log.gravity)
+    all_time, known = np.ones(len(given)), ~kept_momentum(log) & (balances is not None)
+    weight = [float(force) if balanced else None for force, balanced in zip(_weight(log), known, strict=True)]
 
-    def component(series: np.ndarray) -> Estimate:
-        return _average(series, all_time, unsteady)
+    def force(name: str, series: np.ndarray, theory: Sequence[float | None] = (None, None)) -> WallForce:
+        x, y = (_average(series[:, k], all_time, balances, theory[k]) for k in range(2))
+        return WallForce(name, x, y)
 
-    known = ~kept_momentum(log) & (not unsteady)
-    return (
-        *(WallForce(name, *map(component, series.T)) for name, series in by_wall),
-        WallForce(
-            "all walls",
-            *(_balanced(total[:, k], float(weight[k])) if known[k] else component(total[:, k]) for k in range(2)),
-        ),
-    )
+    return (*(force(name, series) for name, series in by_wall), force("all walls", given.sum(axis=1), weight))

@@ -1,3 +1,4 @@
+import math
 import subprocess
 import sys
 
@@ -51,6 +52,40 @@ def test_flux_has_the_error_of_the_bulk_and_of_its_store(length):
         deviations.append(found.deviation)
     rms = np.sqrt(np.mean(np.square(deviations)))
     assert abs(rms - 1) < 4 / np.sqrt(2 * 300)  # the scatter of an rms of normal deviates; four of it
+
+
+@pytest.mark.parametrize("length", [10, 30, 100, 1000])
+def test_flux_has_the_error_of_a_store_of_known_variance(length):
+    """A store of variance 9 that forgets its state in 50 samples: at first it wanders, later its change is bounded."""
+    rng = np.random.default_rng(17)
+    deviations = []
+    for _ in range(300):
+        store = 3 * (autoregressive(rng, length + 1, math.exp(-1 / 50))[:, 0] - 5)
+        found = statistics.mean_of_flux(5 + np.diff(store), np.full(length, 5.0), 5.0, 9.0)
+        assert found.value == pytest.approx(5 + (store[-1] - store[0]) / length)
+        deviations.append(found.deviation)
+    rms = np.sqrt(np.mean(np.square(deviations)))
+    more = math.sqrt(length / (length - 2))  # at first the error is known as from as many squares as there are samples
+    assert 1 - 4 / math.sqrt(2 * 300) < rms < more * (1 + 4 / math.sqrt(2 * 300))
+
+
+def test_a_few_large_steps_of_a_store_say_little_of_its_change():
+    rates = np.zeros(100)
+    rates[[20, 50, 80]] = 1.0
+    few = statistics.mean_of_flux(rates, np.zeros(100), stored=1e6)
+    assert few.independent_samples == pytest.approx(1 + 2 * 3, rel=1e-4)
+    assert few.standard_error == pytest.approx(math.sqrt(3) / 100, rel=1e-4)
+    assert statistics.mean_of_flux(np.zeros(100), np.zeros(100), stored=1.0).standard_error == 0.0
+
+
+def test_flux_has_the_error_of_a_store_that_starts_from_rest():
+    """The start need not be a state of chance: of a store that starts at its mean, only the end is uncertain."""
+    rng = np.random.default_rng(19)
+    deviations = []
+    for _ in range(300):
+        store = np.append(0.0, autoregressive(rng, 400, 0.5)[20:, 0] - 5)
+        deviations.append(statistics.mean_of_flux(np.diff(store), np.zeros(len(store) - 1), 0.0).deviation)
+    assert abs(np.sqrt(np.mean(np.square(deviations))) - 1) < 4 / np.sqrt(2 * 300)
 
 
 def test_common_fluctuations_cancel_in_a_ratio():
