@@ -31,7 +31,13 @@ class Origin:
         return [text for *_, text in sorted(lines, key=lambda item: item[:2])]
 
     def _override(self, key: Key) -> str | None:
-        return next((o for k, o in self.overridden.items() if key[: len(k)] == k), None)
+        """Place of the override that sets the key, or something in a table around it that the text does not have."""
+        tables = [key[:n] for n in range(1, len(key) + 1)]
+        absent = next((table for table in tables if (*self.above, *table) not in self._lines), None)
+        return next(
+            (o for k, o in self.overridden.items() if key[: len(k)] == k or (absent and k[: len(absent)] == absent)),
+            None,
+        )
 
     def line(self, key: Key) -> int:
         """Line of the key or of the closest table above it; the first line if there is none."""

@@ -81,7 +81,8 @@ def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequenc
     def cells(name: str, found: "Estimate") -> tuple[Cell, ...]:
         by_law = math.isinf(found.independent_samples)
         samples = Number(found.independent_samples, ".0f", instead="" if by_law else None)
-        spread = Number(found.standard_error, ".2g", instead="exact" if by_law and found.standard_error == 0 else None)
+        said = "exact" if by_law and found.standard_error == 0 else "" if math.isnan(found.standard_error) else None
+        spread = Number(found.standard_error, ".2g", instead=said)
         error = [Number(None if found.theory is None else found.theory_error, ".2g")] if rough else []
         theory = Number(found.theory), *error, Number(found.deviation, "+.2f")
         return name, Number(found.value), spread, samples, *theory

@@ -79,6 +79,9 @@ class Evolution(Result):
 
 HEAT_BATH = "the heat bath"
 
+ROUNDING = 1e-12
+"""Energy that collisions lose, relative to the largest there is, that is rounding."""
+
 TABLES = ("beyond", "parts", "given", "dissipated")
 
 
@@ -198,6 +201,8 @@ def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.nda
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
     walls = [wall.name for wall in log.walls]
     sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath}
+    rounding = ROUNDING * scale  # of elastic collisions
     by_source = {name: series for name, series in sources.items() if series.any()}
-    losses = {name: series for name, series in zip(("discs", *walls), lost.T, strict=True) if series.any()}
+    sinks = zip(("discs", *walls), lost.T, strict=True)
+    losses = {name: series for name, series in sinks if np.abs(series).max(initial=0.0) > rounding}
     return parts, by_source, losses, (total - total[0]) / (scale or 1.0)

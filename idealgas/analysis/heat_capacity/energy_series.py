@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.window import first_steady, measure
+from idealgas.analysis.core.window import after_gates, first_steady, measure
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
@@ -58,7 +58,10 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         position, velocity = (observed[name][1][at] for name in ("piston_position", "piston_velocity"))
         pull = scene.piston.acceleration(scene.box.size, scene.gravity)
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
-    first = 0 if start is not None else first_steady(log, (kinetic, energy))
+    first = 0
+    if start is None:
+        opened = after_gates(log, time[at])
+        first = opened + first_steady(log, (kinetic[opened:], energy[opened:]))
     if len(at) - first < FEWEST:
         raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
     tail = slice(first, None)

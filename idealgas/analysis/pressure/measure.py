@@ -187,7 +187,7 @@ def _without_theory(
         window = measure(log, [moments, *gauge.tallies], start, end, progress)
         energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
     elif moving_wall(log):
-        raise NotApplicableError(f"{log.path}: has no events, and samples do not follow a piston closely enough")
+        raise UserError(f"{log.path}: has no events, and samples do not follow a piston closely enough")
     else:
         window, impacts = sampled(log, start, end, ())
         gauge = WallGauge(log, SampledWalls(log, impacts))

@@ -36,7 +36,11 @@ def _of_log(result: Pressure) -> list[Table]:
     gas = (
         f"N = {result.number}, A = {result.area:g}, φ = {result.packing_fraction:.5g}, T = {result.temperature:.6g}",
     )
-    theories = [(name, Number(one.value, ".6f"), Number(one.error, ".1g")) for name, one in result.theories.items()]
+    exact = (1.0, result.routes[-1].compressibility.theory)  # of the ideal gas, and of this number of discs in this box
+    theories = [
+        (name if one.value in exact else f"{name}, N → ∞", Number(one.value, ".6f"), Number(one.error, ".1g"))
+        for name, one in result.theories.items()
+    ]
     missing = (f"No theory here: {result.no_theory}.",) if result.no_theory else ()
     return [
         estimates(

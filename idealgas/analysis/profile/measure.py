@@ -191,7 +191,9 @@ def _gradient(
     lever = weight * away / (weight @ away**2)
     temperature = energies.mean(axis=0) / weight
     influence = (energies - temperature * counts) / weight
-    theory = None if expected is None else float(lever @ expected[known])
+    theory = None
+    if expected is not None:
+        theory = float(lever @ expected[known]) if np.ptp(expected[known]) > 0 else 0.0
     return mean(lever @ temperature + influence @ lever, theory)
 
 

@@ -185,5 +185,5 @@ def test_csv_has_all_digits_and_people_see_some():
     assert lines[0] == "table,name,n,value,standard_error,independent_samples,theory,deviation"
     assert lines[2] == f"t,1,{1 / 7!r},,,,,"
     assert lines[11] == f'e,"a, b",,{1 / 3!r},,5.0,,'
-    assert other.shown == [["a, b", "0.333333", "nan", "5", "", ""]]
+    assert other.shown == [["a, b", "0.333333", "", "5", "", ""]]
     assert as_csv([Table("empty", ("",), [])]) == "table\n"

@@ -87,6 +87,16 @@ def test_errors_name_the_override_not_the_file():
     ]
 
 
+def test_an_override_in_a_table_that_is_unknown_or_not_whole():
+    (unknown,) = refused("foo.bar=1")
+    assert unknown.startswith("--set foo.bar=1: foo: unknown table (got foo; allowed scene, ")
+    assert refused("gravity.accelerations=1")[0].startswith("--set gravity.accelerations=1: gravity")
+    assert [error.split(": ")[0] for error in refused("foo.bar=1", text="x = 1\n[foo]\n" + TWO)] == [
+        "s.toml:1",
+        "s.toml:2",  # the file has it too
+    ]
+
+
 def test_an_override_below_a_value():
     assert refused("run.events.most=3") == [
         "--set run.events.most=3: nothing of this name (got most; allowed no key below a value)"

@@ -3,6 +3,7 @@
 import pytest
 
 from idealgas import analyse, open_log, parse_scene, simulate
+from idealgas.analysis.heat_capacity.energy_series import energy_series
 from idealgas.errors import NotApplicableError
 
 GAS = '[[species]]\nname = "gas"\ncount = 60\nradius = 0.02\ntemperature = 1\n'
@@ -56,6 +57,10 @@ def test_start_is_after_a_gate_has_opened(log_of):
     assert 3 < start < 20
 
 
+def test_samples_of_the_energy_count_from_when_a_gate_has_opened(log_of):
+    assert energy_series(log_of(EXPANSION + "[log]\nevents = false\nsnapshot_every = 0.5\n")).start >= 3
+
+
 def test_start_is_after_a_gas_has_filled_its_box(log_of):
     half = '[[species]]\nname = "a"\ncount = 200\nradius = 0.05\ntemperature = 1\nregion = [0, 0, 5, 10]\n'
     box = "[box]\nsize = [10, 10]\n"
@@ -70,7 +75,7 @@ def test_start_is_after_a_gas_has_filled_its_box(log_of):
 
 def test_a_gate_that_opens_near_the_end_leaves_no_equilibrium(log_of):
     log = log_of(EXPANSION.replace("opens_at = 3", "opens_at = 59.9"))
-    with pytest.raises(NotApplicableError, match=r"a gate opens or closes at t = 59\.9, shortly before"):
+    with pytest.raises(NotApplicableError, match=r"a gate opens or closes at t = 59\.9, and too little"):
         analyse(log, "profile")
 
 

@@ -63,6 +63,11 @@ def test_haff(make):
     assert found.dissipated["discs"] == pytest.approx(energy[0] - energy, rel=1e-12, abs=1e-12 * energy[0])
 
 
+def test_what_elastic_discs_lose_by_rounding_is_no_loss(make):
+    found = evolution(make("restitution.wall=0.9"))
+    assert found.dissipated.keys() == {"left", "right", "bottom", "top"}
+
+
 def test_adiabat(make):
     """Of points T A stays the same; the discs' size makes it a little more."""
     found = evolution(make("piston={ velocity = -0.2 }", "species.radius=0.001"))

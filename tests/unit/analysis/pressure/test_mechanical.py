@@ -9,7 +9,7 @@ from idealgas.analysis.pressure.combine import combine_pressure, restore_pressur
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.tables import pressure_tables
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 
 GAS = """
 scene.seed = 3
@@ -93,6 +93,15 @@ def test_a_wall_that_is_never_hit_has_no_error_bar(make):
     found = pressure(make("gravity.acceleration=[0, -20]", "species.region=[0, 0, 8, 2]", "run.until=4"), start=1.0)
     top = next(wall.pressure for wall in found.mechanical.walls if wall.name == "top wall")
     assert (top.value, top.as_dict()["standard_error"]) == (0.0, None)
+    (row,) = [row for row in pressure_tables(found)[0].shown if row[0] == "top wall"]
+    assert row[1:3] == ["0", ""]
+
+
+def test_samples_alone_do_not_follow_a_piston(make):
+    log = make("piston={ mass = 8, pressure = 2, position = 6 }", "log.events=false", "log.pressure=true")
+    with pytest.raises(UserError, match="has no events, and samples do not follow a piston") as error:
+        pressure(log)
+    assert not isinstance(error.value, NotApplicableError)  # theory is not what is missing
 
 
 def test_no_equation_of_state_of_such_gases(make):
