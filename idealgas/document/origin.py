@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
 
 from idealgas.document.error import Issue, Key
 from idealgas.document.lines import key_lines
@@ -33,11 +34,11 @@ class Origin:
     def _override(self, key: Key) -> str | None:
         """Place of the override that sets the key, or something in a table around it that the text does not have."""
         tables = [key[:n] for n in range(1, len(key) + 1)]
-        absent = next((table for table in tables if (*self.above, *table) not in self._lines), None)
-        return next(
-            (o for k, o in self.overridden.items() if key[: len(k)] == k or (absent and k[: len(absent)] == absent)),
-            None,
-        )
+        absent = [table for table in tables if (*self.above, *table) not in self._lines][:1]
+        set_by = self.overridden.items()
+        exact = (place for k, place in set_by if key[: len(k)] == k)
+        around = (place for k, place in set_by for table in absent if k[: len(table)] == table)
+        return next(chain(exact, around), None)
 
     def line(self, key: Key) -> int:
         """Line of the key or of the closest table above it; the first line if there is none."""

@@ -175,3 +175,27 @@ def test_walls_in_short_windows(collisions, most, tmp_path):
     assert 1 - 4 / math.sqrt(200) < np.sqrt((known**2).mean()) < most
     samples = np.array([route.compressibility.independent_samples for routes in found for route in routes[:4]])
     assert np.median(samples) < 250 * collisions
+
+
+@pytest.mark.parametrize(
+    "log", ["", "events = false\npressure = true\nsnapshot_every = 0.1\n"], ids=["events", "samples"]
+)
+def test_kicks_are_momentum_from_outside(log, tmp_path):
+    """What a heat bath gives makes the momentum of the gas no bounded store: 120 windows of one run of thin discs.
+
+    The rms of deviation/error of the virial is within four times 1/√240, that of single walls, two and two alike,
+    within four times 1/√480 of 1.1: it is larger as few independent samples are in a window.
+    """
+    gas = 'name = "gas"\ncount = 40\nradius = 0.005\ntemperature = 1\n[thermostat]\ntemperature = 1\nrate = 5\n'
+    scene = f"[scene]\nseed = 7\n[box]\nsize = [1, 1]\n[[species]]\n{gas}[run]\nuntil = 1210\n[log]\n{log}"
+    simulate(parse_scene(scene), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as found:
+        windows = [pressure(found, 10 + 10.0 * k, 20 + 10.0 * k).routes for k in range(120)]
+    off = {route.name: [] for route in windows[0]}
+    for routes in windows:
+        for route in routes:
+            off[route.name].append(route.compressibility.deviation)
+    rms = {name: math.sqrt(np.mean(np.square(values))) for name, values in off.items()}
+    assert abs(rms[WALLS] - 1) < 4 / math.sqrt(240)
+    single = math.sqrt(np.mean([rms[f"{side} wall"] ** 2 for side in ("left", "right", "bottom", "top")]))
+    assert abs(single - 1.1) < 4 / math.sqrt(480)

@@ -19,7 +19,7 @@ class Impacts:
 
     pair_virial: (B,), Σ r_ij·Δp_ij over pair collisions with the minimum image of r_ij, energy·time.
     wall_virial: (B,), -Σ r·Δp over wall hits with r from the centre of the box along axes that are not periodic,
-    energy·time. inner_virial: (B,), Σ r·Δp over pair collisions along the same axes, energy·time.
+    energy·time. inner_virial: (B,), Σ r·Δp over all other events along the same axes, energy·time.
     passed_on: (B, 4), momentum that all events but its own hits pass on towards each side of the box, see `add`,
     mass·length/time.
     collisions: (B, S, S), numbers of pair collisions; only the upper triangle is filled.
@@ -93,6 +93,7 @@ def _add_impacts(
                 if partner[row] != -2 - 2 * axis:
                     passed_on[block, 2 * axis + 1] += near * given
         if partner[row] == BATH:
+            inner_virial[block] += virial
             continue
         if partner[row] < 0:
             wall = -1 - partner[row]

@@ -21,6 +21,9 @@ from idealgas.errors import UserError
 ENOUGH_REPLICATES = 20
 """Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
 
+LEAST_DOUBT = 1e-4
+"""One over the degrees of freedom from which on an error is as good as known by a law."""
+
 FULL = 40.0
 """Times in which the change of a store has grown to all that it can be, to the last bit."""
 
@@ -205,10 +208,12 @@ def mean_of_flux(
     """
     error, samples = error_of_mean(bulk)
     change, known = _change_of_store(flux - bulk, stored)
-    parts = np.array([error**2, change / len(flux) ** 2])
-    doubt = float((parts**2 / np.maximum([samples - 1, known], 1.0)).sum())
-    freedom = parts.sum() ** 2 / doubt if doubt > 0 else samples - 1  # Welch-Satterthwaite
-    return Estimate(float(flux.mean()), math.sqrt(parts.sum()), 1 + freedom, *_said(theory))
+    whole = math.hypot(error, math.sqrt(change) / len(flux))
+    if not whole > 0:
+        return Estimate(float(flux.mean()), whole, samples, *_said(theory))
+    share = (error / whole) ** 2
+    doubt = share**2 / max(samples - 1, 1.0) + (1 - share) ** 2 / max(known, 1.0)  # Welch-Satterthwaite
+    return Estimate(float(flux.mean()), whole, 1 + 1 / doubt if doubt > LEAST_DOUBT else math.inf, *_said(theory))
 
 
 def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, float]:

@@ -131,7 +131,7 @@ def after_gates(log: Log, edges: np.ndarray) -> int:
         return 0
     begin = int(np.searchsorted(edges, max(changes)))
     if begin > len(edges) - 1 - FEWEST:
-        raise not_steady(log, f"a gate opens or closes at t = {max(changes):g}, and too little of the log comes after it")
+        raise not_steady(log, f"a gate opens or closes at t = {max(changes):g}, with too little of the log after it")
     return begin
 
 

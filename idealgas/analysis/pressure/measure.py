@@ -33,7 +33,7 @@ from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, me
 from idealgas.analysis.core.steadiness import unsteady
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.core.window import Window, measure
-from idealgas.analysis.pressure.bulk import flow_in_events, flow_in_samples
+from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import SOLID, BoxTheory, NoTheoryError, Theory, crystal, fluid, mixture_error
@@ -144,22 +144,22 @@ def pressure(
     theory = theory_of(log, discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory)
     impacts: Impacts | SampledImpacts
-    flow: tuple[np.ndarray, np.ndarray | None]
     if log.has_events:
         moments, events = Moments(), Impacts(len(log.walls), log.periodic)
         window, impacts = measure(log, [moments, events], start, end, progress, needs), events
         paths = free_paths(discs, expected, equilibrium, window, moments, events)
-        flow = flow_in_events(gas, window, moments, events)
+        bulk = bulk_in_events(gas, log.periodic, window, moments, events)
     else:
         window, samples = sampled(log, start, end, needs)
-        impacts, paths, flow = samples, (), flow_in_samples(gas, window, samples)
+        impacts, paths = samples, ()
+        bulk = bulk_in_samples(gas, log.periodic, window, samples, log.scene.properties.kicks > 0)
     return Pressure(
         window=window,
         number=len(gas),
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, flow, impacts),
+        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts),
         theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
@@ -239,29 +239,30 @@ def _routes(
     periodic: tuple[bool, bool],
     theory: BoxTheory,
     window: Window,
-    momentum: tuple[np.ndarray, np.ndarray | None],
+    bulk: Bulk,
     impacts: Impacts | SampledImpacts,
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
-    flow, bulk = momentum
-    bulk = push if bulk is None else bulk
+    through = push if bulk.sides is None else bulk.sides
     length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
     at_wall = {k: theory.sides[axis_of(k)] for k in sides}
     store = gas.mass.sum() * temperature / 3 / window.width**2
-    routes = [_wall(f"{SIDES[k]} wall", push[k], bulk[k], length[k] * ideal, store, ideal, at_wall[k]) for k in sides]
+    routes = [
+        _wall(f"{SIDES[k]} wall", push[k], through[k], length[k] * ideal, store, ideal, at_wall[k]) for k in sides
+    ]
     if sides:
         perimeter = sum(length[k] for k in sides)
         at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
-        pushed, carried = (series[sides].sum(axis=0) for series in (push, bulk))
+        pushed, carried = (series[sides].sum(axis=0) for series in (push, through))
         routes.append(_wall("all walls", pushed, carried, perimeter * ideal, len(sides) / 2 * store, ideal, at_walls))
         unit = len(sides) / 2 * gas.area * ideal
-        axes = [axis for axis in range(2) if not periodic[axis]]
-        inner = flow[:, axes].sum(axis=1) + window.of(impacts.inner_virial)
-        reach = (np.array(gas.box)[axes] - 2 * gas.radius[:, None]) ** 2
-        moment = temperature * float((gas.mass[:, None] * reach).sum()) / 12 / window.width**2
-        routes.append(_wall(WALLS, window.of(impacts.wall_virial), inner, unit, moment, ideal, theory.walls))
+        virial = window.of(impacts.wall_virial)
+        inner = virial if bulk.virial is None else bulk.virial
+        reach = np.array(gas.box)[~np.array(periodic)] - 2 * gas.radius[:, None]
+        moment = temperature * float((gas.mass[:, None] * reach**2).sum()) / 12 / window.width**2
+        routes.append(_wall(WALLS, virial, inner, unit, moment, ideal, theory.walls))
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
     return (*routes, _of(PAIRS, z, ideal))
 

@@ -107,7 +107,7 @@ def _holding(gauge: WallGauge, face: Face, window: Window) -> float | None:
 def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[Face, float | None]]) -> np.ndarray:
     """Forces less what balances them (B, K), each the rate at which the momentum of discs or of a piston changes.
 
-    All walls together carry the weight of the discs, where walls stop their motion; a piston is held from outside.
+    All walls together carry the weight of the discs, where only they stop their motion; a piston is held from outside.
     """
     forces = window.of(gauge.impulses.given).sum(axis=1) - _weight(log)
     held = [
@@ -115,7 +115,12 @@ def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[
         for face, holding in faces
         if holding is not None
     ]
-    return np.column_stack([*forces.T[~kept_momentum(log)], *held])
+    return np.array([*forces.T[_carried(log)], *held]).reshape(-1, len(forces)).T
+
+
+def _carried(log: Log) -> np.ndarray:
+    """Whether walls alone balance the weight of the discs, along x and y: (2,) bool; a heat bath holds them too."""
+    return ~kept_momentum(log) & (log.scene.properties.bath is None)
 
 
 def _weight(log: Log) -> np.ndarray:
@@ -140,11 +145,13 @@ def _average(
 ) -> Estimate:
     """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error.
 
-    balances: see `_balances`; None for a changing state. The part of a force that goes with them fluctuates much, but
-    its mean is only off by the change of what is stored.
+    theory: what balances the force. balances: see `_balances`; None for a changing state. The part of a force that goes
+    with them fluctuates much, but its mean is only off by the change of what is stored.
     """
     there = exposed > 0
     given, exposed = given[there], exposed[there]
+    if theory is not None:
+        return mean_of_flux(given / exposed, np.full(len(given), theory), theory)
     if balances is None:
         pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
         return mean_of_replicates([ratio(*piece) for piece in pieces])
@@ -152,7 +159,7 @@ def _average(
         return ratio(given, exposed)
     force = given / exposed
     part = balances[there] @ np.linalg.lstsq(balances[there], force - force.mean())[0]
-    return mean_of_flux(force, force - part, theory)
+    return mean_of_flux(force, force - part)
 
 
 def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | None) -> tuple[WallForce, ...]:
@@ -160,7 +167,7 @@ def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | N
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
-    all_time, known = np.ones(len(given)), ~kept_momentum(log) & (balances is not None)
+    all_time, known = np.ones(len(given)), _carried(log) & (balances is not None)
     weight = [float(force) if balanced else None for force, balanced in zip(_weight(log), known, strict=True)]
 
     def force(name: str, series: np.ndarray, theory: Sequence[float | None] = (None, None)) -> WallForce:

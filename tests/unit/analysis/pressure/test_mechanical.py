@@ -81,6 +81,21 @@ def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
     assert pressure(make("piston={ velocity = -0.05 }"), start=20.0).area == pytest.approx(6 * 6.5)
 
 
+def test_a_piston_is_held_in_a_gas_that_cools_too(make):
+    up = "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }"
+    walls = {wall.name: wall.pressure for wall in pressure(make(up, "restitution.normal=0.99")).mechanical.walls}
+    assert walls["top wall"].theory == 2.0
+    assert walls["top wall"].standard_error < 0.2 * walls["left wall"].standard_error
+
+
+def test_a_disc_that_meets_nothing_presses_on_nothing(make):
+    periodic = [f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top")]
+    log = make("species.count=1", "log.events=false", "log.pressure=true", "log.snapshot_every=0.1", *periodic)
+    found = pressure(log).mechanical
+    assert found.walls == ()
+    assert found.forces[-1].x.value == 0.0
+
+
 def test_smooth_walls_have_no_stress_and_rough_ones_do(make):
     gravity = "gravity.acceleration=[0, -0.3]"
     assert all(wall.stress is None for wall in pressure(make(gravity)).mechanical.walls)
