@@ -10,7 +10,9 @@ import numpy as np
 from idealgas.analysis.cooling.theory import (
     CUMULANT_ERROR,
     LOSS_ERROR,
+    PER_RESTITUTION,
     RATIO_ERROR,
+    TESTED_FROM,
     TIME_ERROR,
     collision_rate,
     degrees_of_freedom,
@@ -18,6 +20,7 @@ from idealgas.analysis.cooling.theory import (
     grains_of,
 )
 from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
 from idealgas.analysis.core.window import span
@@ -28,6 +31,9 @@ from idealgas.errors import NotApplicableError
 from idealgas.log import Log, LogState
 
 INSTANTS = 257
+FEW = 10
+"""Number of discs below which the laws are said to be those of many."""
+
 FEWEST = 16
 """Least number of instants in the window of the averages."""
 
@@ -145,7 +151,7 @@ def cooling(
         early,
         late,
         together,
-        premises=tuple(_premises(early.value, late.value, together.value, counted.number)),
+        premises=(*_few(log), *narrow(log), *_premises(early.value, late.value, together.value, counted.number)),
     )
 
 
@@ -169,12 +175,13 @@ def _averages(
     energy = course.temperature + spin_weight * course.spin
     temperature = energy * (course.temperature / energy).mean()  # without what goes to and fro between motion and spin
     lost, apart = -np.diff(np.log(temperature)), np.diff(course.collisions)
-    loss = ratio(lost, apart, _theory(granular.cooling_per_collision(grains), LOSS_ERROR))
+    untested = PER_RESTITUTION * max(TESTED_FROM - grains.normal, 0.0)
+    loss = ratio(lost, apart, _theory(granular.cooling_per_collision(grains), LOSS_ERROR + untested))
     slopes = np.diff(temperature**-0.5) / np.diff(course.time)  # the same at all times
     tau = None if rate is None else granular.cooling_time(grains, rate)
-    haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(tau, TIME_ERROR))
+    haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(tau, TIME_ERROR + untested))
     if not grains.rough:
-        a2 = _theory(granular.fourth_cumulant(grains.normal), CUMULANT_ERROR)
+        a2 = _theory(granular.fourth_cumulant(grains.normal), CUMULANT_ERROR + 5 * untested)
         return loss, haff, mean(course.cumulant, a2), None
     share = mean(course.spin / course.temperature, _theory(granular.temperature_ratio(grains), RATIO_ERROR))
     return loss, haff, mean(course.cumulant), share
@@ -182,6 +189,12 @@ def _averages(
 
 def _theory(value: float | None, relative: float) -> Theory | None:
     return None if value is None else Theory(value, relative * abs(value), "homogeneous cooling")
+
+
+def _few(log: Log) -> tuple[str, ...]:
+    """Sentence on a gas of few discs."""
+    number = len(log.discs)
+    return (f"The laws are those of many discs, and here are {number}.",) if number < FEW else ()
 
 
 def _premises(early: float, late: float, flow: float, cells: int) -> Iterator[str]:

@@ -15,6 +15,9 @@ As simulations found: 20 runs each of 300 discs at φ = 0.05, with e = 0.8 to 0.
 and β = 0, 0.5 and 0.9.
 """
 
+TESTED_FROM, PER_RESTITUTION = 0.8, 0.2
+"""Restitution coefficient from which on the errors are known, and what each of them grows by per unit below it."""
+
 CUMULANT_ERROR = 0.05
 """Relative error of a₂: terms of higher order in it."""
 

@@ -91,12 +91,10 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
     leave it unknown, and for a single disc, which cannot share its energy.
     """
     properties, gas = log.scene.properties, log.discs
-    if not properties.fixed_walls or not properties.elastic or log.periodic[1 - axis] or len(gas) == 1:
+    if not properties.fixed_walls or not properties.lossless or log.periodic[1 - axis] or len(gas) == 1:
         return None
     if baths := properties.temperatures:
         return min(baths) if len(baths) == 1 else None
-    if not properties.lossless:
-        return None
     g = log.gravity[axis]
     start = log.state_at(log.start_time)
     freedom, energy = 2.0 * len(gas), gas.kinetic_energy

@@ -19,6 +19,9 @@ MOST = 6
 NAMED = 3
 """Largest number of logs that one sentence names."""
 
+WIDE, WIDE_PERIODIC = 20.0, 5.0
+"""Diameters of the discs by which a box is wide between walls, which take a twentieth of it, and if it is periodic."""
+
 
 def of_log(log: Log) -> tuple[str, ...]:
     """Sentences on premises of every average over time that the gas of a log takes away."""
@@ -86,3 +89,18 @@ def named(paths: Sequence[str]) -> str:
     """Paths in one line; of many the first few and the number of the others."""
     rest = len(paths) - NAMED
     return ", ".join(paths[:NAMED]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def narrow(log: Log) -> tuple[str, ...]:
+    """Sentence on a box that is too narrow for theory of a wide one; none for discs without positions."""
+    if not log.has_positions:
+        return ()
+    diameter = 2 * float(log.discs.radius.max())
+    for size, periodic in zip(log.box, log.periodic, strict=True):
+        if size < (WIDE_PERIODIC if periodic else WIDE) * diameter:
+            between = "to its own image" if periodic else "between walls"
+            return (
+                f"The box is {size / diameter:.3g} diameters wide {between}; theory is that of a wide one "
+                f"({WIDE:g} diameters between walls, {WIDE_PERIODIC:g} if periodic).",
+            )
+    return ()

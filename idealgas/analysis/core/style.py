@@ -94,6 +94,8 @@ class Panel(Axes):
         if len(entries) > (most := LEGEND_ROWS * columns):
             shown = list(entries.items())[: most - 1]
             entries = dict(shown) | {f"and {len(entries) - most + 1} more": Line2D([], [], linestyle="none")}
+        if not entries:  # matplotlib makes no legend of given lists without entries
+            return super().legend(handles=[])
         below = self.transAxes + ScaledTranslation(0, -BELOW / 72, self.figure.dpi_scale_trans)
         place = {"loc": "upper left", "bbox_to_anchor": (-0.02, 0), "bbox_transform": below, "ncols": columns}
         style = {"handles": list(entries.values()), "labels": list(entries), "frameon": False, "fontsize": 9}

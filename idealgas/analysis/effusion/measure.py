@@ -85,11 +85,15 @@ def effusion(
     log, if the gate is as high as the box, or if the chambers are in balance.
     """
     discs, equilibrium = composition(log.discs), ensemble(log)
-    opening, across, place, width = _slit(log)
+    (opening, closing), across, line, width = _slit(log)
+    place = line
     radius, number, slit = discs.radius[0], len(log.discs), width - 2 * discs.radius[0]
     if opening >= log.end_time:
         raise UserError(f"{log.path}: no effusion: the gate opens at t = {opening:g}, the log ends at {log.end_time:g}")
-    time = np.linspace(opening if start is None else start, log.end_time if end is None else end, INSTANTS)
+    first, last = max(opening, start or 0.0), min(closing, log.end_time if end is None else end)
+    if not first < last:
+        raise UserError(f"{log.path}: no effusion: the gate is open from t = {opening:g} to {closing:g}")
+    time = np.linspace(first, last, INSTANTS)
     beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
     for k, state in enumerate(log.frames(time)):
         side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
@@ -112,23 +116,24 @@ def effusion(
     speed = passed / (slit * drive)
     error = math.sqrt(expected * slit * both) / (slit * drive)
     found = Estimate(speed, error, math.inf, expected, expected * (LAW_OFF + LAW_OFF_PER_PATH * paths))
+    said = _others(log, across, line)
     here = (str(log.path), number / inner, equilibrium.temperature, time, beyond)
     if paths > 1:
         sentence = (
             f"The slit is {paths:.2g} mean free paths wide: discs stream out together, not one by one, and ⟨v⟩/π is no "
             "theory of that."
         )
-        return Effusion(*here, None, replace(found, theory=None, theory_error=0.0), premises=(sentence,))
+        return Effusion(*here, None, replace(found, theory=None, theory_error=0.0), premises=(sentence, *said))
     rate = expected * slit
     course = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
-    return Effusion(*here, course, found)
+    return Effusion(*here, course, found, premises=said)
 
 
-def _slit(log: Log) -> tuple[float, int, float, float]:
-    """Time at which the slit opens, axis across it (0 or 1), its coordinate on this axis, and its width, length.
+def _slit(log: Log) -> tuple[tuple[float, float], int, float, float]:
+    """From when to when the slit is open, axis across it (0 or 1), its coordinate on this axis, and its width, length.
 
     Raises:
-        UserError: unless there is one slit along an axis, in a wall, for discs of one species.
+        UserError: unless there is one slit along an axis, in a wall from side to side, for discs of one species.
     """
     gates = [wall for wall in walls_inside(log.scene) if 0 < wall.absence[0] < math.inf]
     if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
@@ -143,7 +148,28 @@ def _slit(log: Log) -> tuple[float, int, float, float]:
             f"{log.path}: no effusion: the gate opens the box from side to side, so that the gas expands freely; "
             "`idealgas evolution` follows it"
         )
-    return max(gates[0].absence[0], log.start_time), across, float(ends[0, across]), width
+    if log.periodic[across] or (gap := _widest_gap(log, across, float(ends[0, across]))) >= 2 * log.discs.radius[0]:
+        around = "through the periodic sides" if log.periodic[across] else f"through a gap of {gap:.4g} beside it"
+        raise UserError(f"{log.path}: no effusion: discs pass {around}, not by the gate alone")
+    opens, closes = gates[0].absence
+    return (max(opens, log.start_time), closes), across, float(ends[0, across]), width
+
+
+def _widest_gap(log: Log, across: int, place: float) -> float:
+    """Widest gap that walls and gate at a coordinate leave between two sides of the box, length."""
+    lines = [np.array([wall.start, wall.end]) for wall in walls_inside(log.scene)]
+    parts = sorted(np.sort(line[:, 1 - across]).tolist() for line in lines if (line[:, across] == place).all())
+    reached, gaps = 0.0, [0.0]
+    for low, high in [*parts, (log.box[1 - across], math.inf)]:
+        gaps.append(low - reached)
+        reached = max(reached, high)
+    return max(gaps)
+
+
+def _others(log: Log, across: int, place: float) -> tuple[str, ...]:
+    """Sentence on walls in the chambers, beside the one with the slit."""
+    walls = [w.name for w in walls_inside(log.scene) if {w.start[across], w.end[across]} != {place}]
+    return (f"The law is that of empty chambers, and in these there is {', '.join(walls)}.",) if walls else ()
 
 
 def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:

@@ -13,6 +13,9 @@ from idealgas.log import Log
 SLOW = 0.05
 """Largest speed of a piston, relative to the mean speed of the discs, at which the adiabat is a good law."""
 
+FEW = 5
+"""Number of discs below which energy and place of a piston are not shared as theory takes it."""
+
 STEPS = 128
 """Number of steps in the integration of the adiabat."""
 
@@ -132,7 +135,7 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     across = log.box[1 - table.axis]
     first = float(room(log, log.observables["piston_position"][1][:1])[0])
     lengths = np.linspace(min(areas.min() / across, first), max(areas.max() / across, first), STEPS + 1)
-    if gas.packing_fraction * gas.area > hard_discs.HIGHEST * lengths[0] * across:
+    if _crowded(log, lengths[0]):
         return None
     temperature = _kinetic(log) / len(gas)
     pressure = np.array([push(log, length) for length in lengths]) * len(gas) * temperature / across
@@ -142,46 +145,61 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     return StateLines(lengths * across, pressure, adiabat)
 
 
+def _crowded(log: Log, length: float) -> bool:
+    """Whether the gas is no fluid in a room of this length below the piston."""
+    table, gas = log.scene.piston, log.discs
+    across = gas.box[1 if table is None else 1 - table.axis]
+    return bool(gas.packing_fraction * gas.area > hard_discs.HIGHEST * length * across)
+
+
 def _work(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
     """Work ∫ F dL/NT of the gas on a piston from the length grid[0] to others, at rising grid points."""
     slope = np.array([push(log, length) for length in (grid[1:] + grid[:-1]) / 2])
     return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
 
 
-def _adiabat(log: Log, time: np.ndarray) -> Law:
-    """Adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the collisions of the discs."""
+def _adiabat(log: Log, time: np.ndarray) -> Law | None:
+    """Adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the collisions of the discs.
+
+    None if the gas does not remain a fluid.
+    """
     at, places = log.observables["piston_position"]
     lengths = room(log, np.interp(time, at, places))
     first = float(room(log, places[:1])[0])
     grid = np.linspace(min(lengths.min(), first), max(lengths.max(), first), STEPS + 1)
+    if _crowded(log, grid[0]):
+        return None
     exponent = _work(log, grid, first) - _work(log, grid, lengths)
     fastest = float(np.abs(log.observables["piston_velocity"][1]).max())
-    share = fastest / hard_discs.mean_speed(log.discs.temperature, float(log.discs.mass[0]))
+    at_first = _kinetic(log) / len(log.discs)
+    share = fastest / hard_discs.mean_speed(at_first, float(log.discs.mass[0]))
     said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
     text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
-    temperature = log.discs.temperature * np.exp(exponent)
-    return Law(text, temperature, premises=(said,) if share > SLOW else ())
+    return Law(text, at_first * np.exp(exponent), premises=(said,) if share > SLOW else ())
 
 
 def _at_rest(log: Log, one: np.ndarray) -> Law | None:
     """Mean position of a piston with a mass, and the temperature there: the energy is N T + T/2 + P L X.
 
     These are the energies of the discs, of the motion of the piston and of its position X. At fixed energy E the
-    position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean.
+    position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean. None for a few discs, and
+    where the end stop holds the piston.
     """
     table = log.scene.piston
-    if table is None or not table.pressure:
+    if table is None or not table.pressure or len(log.discs) < FEW:
         return None
     n, diameter = len(log.discs), 2 * float(log.discs.radius[0])
     force = table.pressure * log.box[1 - table.axis]
     start = float(room(log, log.observables["piston_position"][1][:1])[0])
     speed = float(log.observables["piston_velocity"][1][0])
-    energy = log.discs.kinetic_energy + (table.mass or 0.0) * speed**2 / 2 + force * (start - diameter)
+    energy = _kinetic(log) + (table.mass or 0.0) * speed**2 / 2 + force * (start - diameter)
     length, t = start, 0.0
     for _ in range(100):
         z = push(log, length) * (length - diameter)
         t = energy / (n + 0.5 + n * z + 1)
         length = diameter + (n * z + 1) * t / force
     piston = length if table.outward > 0 else log.box[table.axis] - length
+    if _crowded(log, length) or table.outward * piston >= table.outward * table.stop(log.box):
+        return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
     return Law(text, t * one, None, piston, table.pressure)

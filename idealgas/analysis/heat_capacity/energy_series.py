@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.equilibrium import drift
 from idealgas.analysis.core.window import after_gates, first_steady, measure
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -22,8 +23,8 @@ class EnergySeries:
     """Energies of a gas at n sampled times after equilibration.
 
     kinetic: (n,), kinetic energy of translation of the discs. energy: (n,), energy of the discs by motion, spin and
-    position, including that of a piston with a mass. position: (n,), coordinate of the piston, length; None without
-    one. start: time of the first sample.
+    position, including that of a piston with a mass. Both are relative to the gas as a whole where nothing stops its
+    motion. position: (n,), coordinate of the piston, length; None without one. start: time of the first sample.
     """
 
     kinetic: np.ndarray
@@ -52,7 +53,9 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         step = np.diff(time).max()
         grid = np.arange(first_time, last + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid, "right") - 1)
-    kinetic, energy = (observed[name][1][at] for name in ("kinetic_energy", "energy"))
+    frame = drift(log)
+    common = log.discs.mass.sum() * (frame @ frame) / 2
+    kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
     if scene.piston and scene.piston.mass:
         position, velocity = (observed[name][1][at] for name in ("piston_position", "piston_velocity"))

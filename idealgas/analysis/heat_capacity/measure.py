@@ -97,7 +97,7 @@ def heat_capacity(
     that lose energy, a piston that is driven, a gas without positions.
     """
     scene, properties, n = log.scene, log.scene.properties, len(log.discs)
-    settles = properties.elastic and not properties.driven and len(properties.temperatures) <= 1
+    settles = properties.lossless and not properties.driven and len(properties.temperatures) <= 1
     if not settles or not log.has_positions:
         raise UserError(f"{log.path}: no equilibrium, or none known, and so no heat capacity")
     kinds = []

@@ -13,6 +13,9 @@ from idealgas.log import Log
 
 MAXWELL = "Maxwell-Boltzmann"
 
+FEWEST_DOF = 3
+"""Degrees of freedom of a gas of fixed energy up to which its velocities have no density that is bounded."""
+
 
 @dataclass(frozen=True)
 class Premise:
@@ -56,6 +59,9 @@ def premise(log: Log, start: float | None, end: float | None) -> Premise:
     if ensemble:
         if not ensemble.temperature > 0:
             raise UserError(f"{log.path}: no disc moves")
+        if ensemble.dof <= FEWEST_DOF:
+            few = f"{ensemble.dof} degrees of freedom are too few for a law"
+            return Premise(None, None, ensemble.temperature, few)
         return Premise(ensemble, ensemble.temperature, ensemble.temperature, "")
     why_not = why_no_equilibrium(log)
     if len(log.discs) == 1 and not why_not:
@@ -91,5 +97,5 @@ def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) ->
             return distributions.SpeedLaw(temperature, mass, dof)
         return distributions.ComponentLaw(temperature, mass, dof)
 
-    finite = {f"fixed energy, D = {dof}": law(dof)} if 3 < dof < np.inf else {}
+    finite = {f"fixed energy, D = {dof}": law(dof)} if FEWEST_DOF < dof < np.inf else {}
     return {MAXWELL: law(np.inf), **finite}

@@ -33,6 +33,7 @@ SAMPLED = 256  # largest number of discs of a species whose velocities are teste
 INTERVALS = 10_000  # approximate number of intervals that are tested
 FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
+FEW = 30  # discs below which free paths do not follow the law of many
 TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
 
 
@@ -207,11 +208,10 @@ def _some_discs(gas: Gas, species: int) -> np.ndarray:
 
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
     discs, path = composition(log.discs), quantity == "free-path"
-    temperature, rates, why_not = _free_flight_rates(log, discs, start, end)
+    temperature, rates, speed, why_not = _free_flight_rates(log, discs, start, end)
     rate = rates.sum(axis=1)
-    high = 10 / rate
-    if path:
-        high *= mean_speed(temperature, discs.mass)
+    average = speed / rate if path else 1 / rate
+    high = 10 * average
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
     window = measure(log, [tally], start, end, progress)
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
@@ -220,15 +220,15 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     found = []
     for s, name in enumerate(discs.name):
         dilute = law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
-        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, dilute.mean)
+        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
         found.append(_intervals(name, tally, s, blocks, high[s], possible, expected))
     return window, found, why_not
 
 
 def _free_flight_rates(
     log: Log, discs: Composition, start: float | None, end: float | None
-) -> tuple[float, np.ndarray, str]:
-    """Temperature and collision rates (S, S) of free flights, and why no law holds; empty if one does.
+) -> tuple[float, np.ndarray, np.ndarray, str]:
+    """Temperature, collision rates (S, S) and mean speeds (S,) of free flights; why no law holds, empty if one does.
 
     Without a law they are means over the gas that only set the range of the histogram.
     """
@@ -238,17 +238,21 @@ def _free_flight_rates(
         why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"
     if log.scene.properties.kicks:
         why_not = why_not or "a heat bath changes velocities in flight"
+    if known.ensemble and known.ensemble.dof < 2 * FEW:
+        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
     if known.ensemble and not why_not:
+        gas = known.ensemble
         theory = theory_of(log, discs) if log.has_positions else None
-        rates = expected_rates(discs, log.box, known.ensemble, theory).rate
+        rates = expected_rates(discs, log.box, gas, theory).rate
+        share = discs.mass * gas.temperature / gas.of_species
         if (rates.sum(axis=1) > 0).all():
-            return known.ensemble.temperature, rates, ""
+            return gas.temperature, rates, mean_speed(gas.temperature, share, gas.dof), ""
         why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
     time, collisions = log.observables["disc_collisions"]
     if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
         raise UserError(f"{log.path}: too few collisions of discs for a distribution")
     rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
-    return known.scale, np.diag(np.full(len(discs.name), rate)), why_not
+    return known.scale, np.diag(np.full(len(discs.name), rate)), mean_speed(known.scale, discs.mass), why_not
 
 
 def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:

@@ -19,8 +19,14 @@ from idealgas.log import Log
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for an estimate of its temperature."""
 
-DILUTE = 0.02
-"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
+FEW = 20
+"""Number of discs of a fixed energy below which their temperature falls with height, by 5 % and more."""
+
+DILUTE, LAYERED = 0.02, 0.1
+"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %.
+
+And that of a gas from which on layers at walls are said.
+"""
 
 
 @dataclass(frozen=True)
@@ -111,7 +117,7 @@ def profile(
     spinning = log.inertia is not None
     species = tuple(_of_species(name, sums[:, s], edges, strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
-    premises = (*_unknown_strips(species), *_not_dilute(log, species, expected))
+    premises = (*_unknown_strips(species), *_not_dilute(log, axis, species, expected), *_few(log, axis, expected))
     return Profile(window, axis, edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
 
 
@@ -125,15 +131,26 @@ def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
             )
 
 
-def _not_dilute(log: Log, species: Sequence[SpeciesProfile], expected: Expected | None) -> tuple[str, ...]:
-    """Sentence on a law for dilute gases beside a gas that is not dilute."""
-    if expected is None or not expected.dilute:
+def _not_dilute(log: Log, axis: int, species: Sequence[SpeciesProfile], expected: Expected | None) -> tuple[str, ...]:
+    """Sentence on a law for dilute gases, or on one without layers at walls, beside a gas that is dense."""
+    if expected is None:
         return ()
+    if not expected.dilute:
+        if log.periodic[axis] or log.discs.packing_fraction <= LAYERED:
+            return ()
+        return ("Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them.",)
     density = np.array([[found.value for found in entry.density] for entry in species])
     densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
     if densest <= DILUTE:
         return ()
     return (f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}.",)
+
+
+def _few(log: Log, axis: int, expected: Expected | None) -> tuple[str, ...]:
+    """Sentence on few discs of a fixed energy under gravity, which is shared with their heights."""
+    if expected is None or not log.gravity[axis] or not log.scene.properties.isolated or len(log.discs) >= FEW:
+        return ()
+    return (f"The barometric law is that of many discs; {len(log.discs)} of a fixed energy are colder higher up.",)
 
 
 def _collect(

@@ -65,7 +65,10 @@ def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tupl
     properties = log.scene.properties
     low, high = (properties.emits[side] for side in sides_across(axis))
     if len(properties.temperatures) == 2 and low is not None and high is not None:
-        if not properties.straight_flight or not properties.elastic or low == high:
+        others = properties.bath is not None or any(
+            properties.emits[side] is not None for side in sides_across(1 - axis)
+        )
+        if not properties.straight_flight or not properties.lossless or low == high or others:
             return None
         power = low**1.5 + (high**1.5 - low**1.5) * places / log.box[axis]
         temperature = power ** (2 / 3)

@@ -70,7 +70,7 @@ def acceptance(log: Log) -> Acceptance | None:
     v_ref = mean_reference_speed(raises, number)
     fixed = equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
     expected = {
-        "Maxwell-Boltzmann": equilibrium_acceptance(log, v_ref, log.discs.temperature),
+        "Maxwell-Boltzmann": equilibrium_acceptance(log, v_ref, equilibrium.temperature * equilibrium.dof / (2 * n)),
         f"fixed energy and momentum, D = {equilibrium.dof}": fixed,
     }
     acceptance = Estimate(share, error, float(number), theory=fixed)

@@ -50,6 +50,9 @@ MEMORY = 2 / 3
 """Time for which fluctuations of the kurtosis last, in units of the relaxation time on the whole way: 2 over 3."""
 
 
+MAXWELLIAN = 2.0
+"""Kurtosis of an infinite gas in equilibrium."""
+
 FEW = 100
 """Number of discs below which the error of the relaxation time is not known well."""
 
@@ -155,18 +158,26 @@ def relaxation(
         first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
-        premises=tuple(_doubts(in_collisions, float(collisions[-1]), number)),
+        premises=tuple(_doubts(in_collisions, float(collisions[-1]), number, float(kurtosis[0]))),
     )
 
 
-def _doubts(fit: Estimate | None, seen: float, number: int) -> Iterator[str]:
-    """Sentences on a relaxation time, in collisions per disc, fitted to `number` discs followed for `seen` of these."""
+def _doubts(fit: Estimate | None, seen: float, number: int, kurtosis: float) -> Iterator[str]:
+    """Sentences on a relaxation time, in collisions per disc, fitted to `number` discs followed for `seen` of these.
+
+    kurtosis: at the start.
+    """
     if fit is None:
         return
     if seen < fit.value:
         yield (
             f"The log is followed for {seen:.2g} collisions per disc, less than the relaxation time that was fitted, "
             f"{fit.value:.2g}: that is an extrapolation."
+        )
+    if kurtosis > MAXWELLIAN:
+        yield (
+            f"The error of the relaxation time is that of a start with equal speeds; here a few discs are faster than "
+            f"most (kurtosis {kurtosis:.3g}, in equilibrium 2), and chance decides how soon they meet others."
         )
     if number < FEW:
         yield f"The error of the relaxation time was calibrated with 200 and 500 discs; here are {number}."

@@ -9,6 +9,7 @@ import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.trajectories import sample_trajectories
@@ -119,7 +120,7 @@ def sound(
         waves.append(_wave(log, axes, expected, step * np.arange(lags), _amplitudes(log, times, axes, progress)))
         frames += len(times)
     premises = [sentence for wave in waves for sentence in _premises(log, window, wave)]
-    return Sound(window, frames, tuple(waves), premises=tuple(premises))
+    return Sound(window, frames, tuple(waves), premises=(*narrow(log), *premises))
 
 
 def _steps(log: Log, window: Window, expected: Expected) -> tuple[float, int]:

@@ -13,6 +13,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.settling import why_never_stationary, why_no_equilibrium
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.window import Window, measure
+from idealgas.analysis.theory.conserved import is_ergodic
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -99,15 +100,14 @@ def temperature(
     if equilibrium is not None:
         shares = equilibrium.of_species.tolist()
         expected = float(discs.number @ equilibrium.of_species / discs.number.sum())
-    sums = moments.flights[:, :, 1:3] / window.width
+    sums, shared = moments.flights[:, :, 1:3] / window.width, is_ergodic(log.scene, log.discs)
 
     def entry(name: str, number: int, expected: float | None, directions: np.ndarray) -> SpeciesTemperature:
         """Temperatures of one species from sums (B, 2) of m vx² and m vy² over its discs."""
         means = directions / number
         x, y = means[window.first :].T
-        return SpeciesTemperature(
-            name, number, mean(x, expected), mean(y, expected), mean((x + y) / 2, expected), means
-        )
+        along = expected if shared else None
+        return SpeciesTemperature(name, number, mean(x, along), mean(y, along), mean((x + y) / 2, expected), means)
 
     entries = [
         entry(name, int(number), shares[s], sums[:, s])

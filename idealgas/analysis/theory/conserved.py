@@ -62,15 +62,18 @@ def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
 
 
 def is_ergodic(scene: Scene, gas: Gas) -> bool:
-    """Whether a gas reaches all states of its energy. False only for two equal discs that start without momentum.
+    """Whether a gas reaches all states of its energy. False for one disc, and two equal discs without momentum.
 
-    Between walls their velocities then remain equal in every component except for signs. As long as they meet with
-    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
+    One disc keeps its speed along x and along y. The velocities of the two remain equal in every component except for
+    signs between walls, and as long as they meet with opposite velocities only, the sum of their positions, unfolded at
+    the walls, is conserved.
     """
     properties, walled = scene.properties, ~np.array(scene.properties.periodic)
-    if len(gas) != 2 or not walled.any() or np.ptp(gas.mass) > 0:
+    if len(gas) > 2 or not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
         return True
-    if not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
+    if len(gas) == 1:
+        return properties.grip
+    if not walled.any() or np.ptp(gas.mass) > 0:
         return True
     speeds = np.abs(gas.velocity[:, walled])
     return bool(np.abs(speeds[0] - speeds[1]).max() > 1e-9 * speeds.max())
@@ -79,7 +82,9 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
 def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
     """Sentences on what the start of a gas, `gas`, takes from every average over time."""
     found = []
-    if not is_ergodic(scene, gas):
+    if len(gas) == 1 and not is_ergodic(scene, gas):
+        found.append("A single disc keeps its speed along x and along y; it comes to no common temperature of both.")
+    elif not is_ergodic(scene, gas):
         found.append(
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
             "temperatures along x and y may differ for ever. Give them velocities of their own."

@@ -22,6 +22,9 @@ BYTES_A_ROW = {"gzip": 38, "none": 49}
 MORE_BYTES = {"angular_velocity": {"gzip": 7, "none": 8}, "image": {"gzip": 2, "none": 8}}
 """Bytes that each further column adds to an event row, by the kind of compression."""
 
+BYTES_A_SNAPSHOT, BYTES_A_DISC = 800, {"gzip": 31, "none": 36}
+"""Bytes of a snapshot in the log, and of each disc in it, by the kind of compression."""
+
 
 @dataclass(frozen=True)
 class SpeciesForecast:
@@ -135,7 +138,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         duration=duration,
         events=events,
         rows=rows,
-        bytes=None if rows is None else rows * _bytes_a_row(scene),
+        bytes=_bytes(scene, len(gas), rows, duration),
         species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
         premises=(*conserved.premises(scene, gas), *conserved.lost_motion(scene, gas)),
@@ -147,6 +150,16 @@ def _has_room(gas: Gas, periodic: tuple[bool, bool]) -> bool:
     """Whether every disc can move between the sides."""
     least = min((length for length, on in zip(gas.box, periodic, strict=True) if not on), default=math.inf)
     return 2 * float(gas.radius.max()) < least
+
+
+def _bytes(scene: Scene, number: int, rows: float | None, duration: float | None) -> float | None:
+    """Size of the log from its rows and snapshots; None where their number is unknown."""
+    every = scene.log.snapshot_every
+    if rows is None or (every and duration is None):
+        return None
+    snapshots = duration / every if every and duration else 0.0
+    a_snapshot = BYTES_A_SNAPSHOT + BYTES_A_DISC[scene.log.compression] * number
+    return rows * _bytes_a_row(scene) + snapshots * a_snapshot
 
 
 def _bytes_a_row(scene: Scene) -> int:

@@ -180,7 +180,7 @@ def box_theory(
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     try:
-        if not ergodic:
+        if not ergodic and number.sum() > 1:
             raise NoTheoryError("two equal discs that start without momentum do not reach all states between walls")
         if math.pi * float((number * radius**2).sum()) / (box[0] * box[1]) < THINNEST:
             raise NoTheoryError(f"the packing fraction is below {THINNEST:g}, where rounding takes the digits of Z - 1")

@@ -42,6 +42,7 @@ FEWEST_SEGMENTS, MOST_SEGMENTS = 8, 64
 MOST_SAMPLES = 2**21  # largest number of discs times instants
 FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
 LEAST_LAG = 10.0  # mean free times; D from shorter lags is too small, as velocities still remember where they came from
+LEAST_MEMORIES = 5.0  # velocity correlation times; the same for discs that keep their velocity for longer
 FREE_SHARE = 0.05  # largest displacement, relative to the box between two walls, that walls hardly change
 
 
@@ -181,7 +182,11 @@ def transport(
         diffusion=diffusion,
         collective=whole,
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
-        premises=(*_short_lags(rates, diffusion), *_reflected(log, diffusion)),
+        premises=(
+            *_short_lags(rates, diffusion),
+            *_short_currents(whole, longest / free_time),
+            *_reflected(log, diffusion),
+        ),
     )
 
 
@@ -208,18 +213,34 @@ def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: flo
         diffusion=(),
         collective=whole,
         pair_distributions=(),
+        premises=tuple(_short_currents(whole, longest / free_time)),
     )
 
 
 def _short_lags(rates: Sequence[CollisionRate], diffusion: Sequence[Diffusion]) -> Iterator[str]:
     """Sentence for each species whose displacement is followed for too short a time."""
     for entry in diffusion:
-        free_times = float(entry.lag[-1]) * sum(found.rate.value for found in rates if found.species == entry.species)
+        longest, found = float(entry.lag[-1]), entry.velocity_correlation_time
+        free_times = longest * sum(found.rate.value for found in rates if found.species == entry.species)
         if free_times < LEAST_LAG:
             yield (
                 f"The window is short: {entry.species} is followed for {free_times:.2g} mean free times at most; its "
                 f"diffusion coefficient and velocity correlation time take {LEAST_LAG:g}."
             )
+        elif longest < LEAST_MEMORIES * (memory := max(found.value, found.theory or 0.0)):
+            yield (
+                f"{entry.species} keeps its velocity for about {memory:.3g}, and is followed for {longest:.3g}: its "
+                f"diffusion coefficient and velocity correlation time take {LEAST_MEMORIES:g} times as long (--lag)."
+            )
+
+
+def _short_currents(whole: Collective | None, free_times: float) -> Iterator[str]:
+    """Sentence on currents that are followed for too short a time."""
+    if whole and free_times < LEAST_LAG:
+        yield (
+            f"The window is short: currents are followed for {free_times:.2g} mean free times at most; viscosities and "
+            f"heat conductivity take {LEAST_LAG:g}."
+        )
 
 
 def _reflected(log: Log, diffusion: Sequence[Diffusion]) -> Iterator[str]:
@@ -311,7 +332,7 @@ def _of_species(
         correlation.std(axis=0, ddof=1) / square / count,
         displacement.mean(axis=0),
         displacement.std(axis=0, ddof=1) / count,
-        tail=_tail(np.maximum(lag, 1e-300), expected) if expected else None,
+        tail=np.append(math.inf, _tail(lag[1:], expected)) if expected else None,
         running=running.mean(axis=0),
         running_error=running.std(axis=0, ddof=1) / count,
         coefficient=mean(slope, theory=coefficient),

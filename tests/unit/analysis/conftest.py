@@ -1,6 +1,9 @@
 """Logs for the tests of analyses."""
 
+import zlib
+
 import pytest
+from small_gases import GAS
 
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -19,4 +22,22 @@ def make(request, tmp_path):
 
     yield run
     for log in logs:
+        log.close()
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Logs of `small_gases.GAS` with overrides, each made once. Unless given, the seed follows from the overrides."""
+    folder, logs = tmp_path_factory.mktemp("premises"), {}
+
+    def run(*overrides):
+        if overrides not in logs:
+            path = folder / f"{len(logs)}.h5"
+            seed = zlib.crc32("\n".join(overrides).encode())
+            simulate(parse_scene(GAS, overrides=(f"scene.seed={seed}", *overrides)), path)
+            logs[overrides] = open_log(path)
+        return logs[overrides]
+
+    yield run
+    for log in logs.values():
         log.close()

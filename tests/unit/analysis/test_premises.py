@@ -2,11 +2,11 @@
 
 import json
 import math
-import zlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_gases import PERIODIC, SLIT, TWO, WHOLE, only, silent
 
 from idealgas.analysis import registry
 from idealgas.analysis.core import premises
@@ -16,58 +16,11 @@ from idealgas.analysis.info import info
 from idealgas.analysis.report.sections import make_sections
 from idealgas.analysis.status import status
 from idealgas.errors import UserError
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
-
-GAS = """
-box.size = [8, 8]
-species = [{name = "gas", count = 40, radius = 0.1, temperature = 1.0}]
-run.collisions_per_disc = 30
-"""
-PERIODIC = 'box = {size=[8, 8], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
-TWO = "species = [{name='gas', count=2, radius=0.5, temperature=1.0}]"
-SLIT = (
-    "species.gas.region=[0, 0, 4, 8]",
-    "species.gas.radius=0.03",
-    "wall=[{from=[4, 0], to=[4, 3]}, {from=[4, 5], to=[4, 8]}, {from=[4, 3], to=[4, 5], opens_at=1.0}]",
-    "run.collisions_per_disc=",
-    "run.until=20",
-)
-WHOLE = ("species.gas.region=[0, 0, 4, 8]", "wall=[{from=[4, 0], to=[4, 8], opens_at=1.0}]", *SLIT[3:])
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """Logs of GAS with overrides, each made once. Unless given, the seed follows from the overrides."""
-    folder, logs = tmp_path_factory.mktemp("premises"), {}
-
-    def run(*overrides):
-        if overrides not in logs:
-            path = folder / f"{len(logs)}.h5"
-            seed = zlib.crc32("\n".join(overrides).encode())
-            simulate(parse_scene(GAS, overrides=(f"scene.seed={seed}", *overrides)), path)
-            logs[overrides] = open_log(path)
-        return logs[overrides]
-
-    yield run
-    for log in logs.values():
-        log.close()
 
 
 def combined(name, *logs):
     analysis = registry.find(name)
     return analysis.combine([analysis.measure(log) for log in logs])
-
-
-def only(found, words):
-    """The sentence of a result that has these words; there is one."""
-    (sentence,) = (each for each in found.premises if words in each)
-    return sentence
-
-
-def silent(found, words):
-    return not any(words in each for each in found.premises)
 
 
 # ── where sentences are shown ──

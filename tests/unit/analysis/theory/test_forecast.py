@@ -5,6 +5,7 @@ import pytest
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.forecast import forecast
 from idealgas.gas.build import make_gas
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 GAS = """
@@ -89,6 +90,17 @@ def test_size_of_the_log():
     assert forecast_of("log.events=false").bytes == 0
     turning = forecast_of("log.compression=none", "rotation.roughness=1")
     assert turning.bytes == pytest.approx((49 + 8) * turning.rows)
+
+
+@pytest.mark.parametrize("compression", ["gzip", "none"])
+def test_size_of_a_log_with_snapshots_is_that_of_the_file(compression, tmp_path):
+    scene = parse_scene(
+        "scene.seed = 1\nbox.size = [20, 20]\nspecies = [{ name = 'a', count = 200, radius = 0.1, temperature = 1 }]\n"
+        f"run.until = 10\nlog = {{ snapshot_every = 0.01, compression = '{compression}' }}"
+    )
+    simulate(scene, tmp_path / "run.h5")
+    expected = forecast(scene, make_gas(scene)).bytes
+    assert expected == pytest.approx((tmp_path / "run.h5").stat().st_size, rel=0.1)
 
 
 def test_a_gas_at_rest_has_no_events():

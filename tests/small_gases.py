@@ -1,0 +1,27 @@
+"""Small gases that violate premises of analyses or not, as overrides of one scene, and what is asked of sentences."""
+
+GAS = """
+box.size = [8, 8]
+species = [{name = "gas", count = 40, radius = 0.1, temperature = 1.0}]
+run.collisions_per_disc = 30
+"""
+PERIODIC = 'box = {size=[8, 8], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
+TWO = "species = [{name='gas', count=2, radius=0.5, temperature=1.0}]"
+SLIT = (
+    "species.gas.region=[0, 0, 4, 8]",
+    "species.gas.radius=0.03",
+    "wall=[{from=[4, 0], to=[4, 3]}, {from=[4, 5], to=[4, 8]}, {from=[4, 3], to=[4, 5], opens_at=1.0}]",
+    "run.collisions_per_disc=",
+    "run.until=20",
+)
+WHOLE = ("species.gas.region=[0, 0, 4, 8]", "wall=[{from=[4, 0], to=[4, 8], opens_at=1.0}]", *SLIT[3:])
+
+
+def only(found, words):
+    """The sentence of a result that has these words; there is one."""
+    (sentence,) = (each for each in found.premises if words in each)
+    return sentence
+
+
+def silent(found, words):
+    return not any(words in each for each in found.premises)

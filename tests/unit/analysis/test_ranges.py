@@ -1,0 +1,154 @@
+"""Where laws and theories end: for each a gas of which they say nothing or less, and one within their range."""
+
+import json
+
+import numpy as np
+import pytest
+from small_gases import PERIODIC, SLIT, TWO, only, silent
+
+from idealgas.analysis import registry
+from idealgas.analysis.heat_capacity.energy_series import energy_series
+from idealgas.errors import UserError
+
+SPIN = "rotation={inertia=0.5, roughness=0}"
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({2: "wall=[{from=[4, 3], to=[4, 5], opens_at=1.0}]"}, "discs pass through a gap of 3 beside it"),
+        (
+            {2: SLIT[2].replace("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}")},
+            "discs pass through a gap of 0.5 beside it",
+        ),
+        ({5: 'box={size=[8, 8], left="periodic", right="periodic"}'}, "discs pass through the periodic sides"),
+    ],
+    ids=["no wall", "second slit", "periodic"],
+)
+def test_effusion_takes_a_wall_that_divides_the_box(change, words, made):
+    with pytest.raises(UserError, match=words):
+        registry.analyse(
+            made(*(change.get(k, part) for k, part in enumerate((*SLIT, "log.compression='none'")))), "effusion"
+        )
+
+
+def test_effusion_takes_empty_chambers_and_an_open_gate(made):
+    more = SLIT[2].replace("wall=[", "wall=[{name='plate', from=[5, 3], to=[5, 5]}, ")
+    only(registry.analyse(made(*SLIT[:2], more, *SLIT[3:]), "effusion"), "there is plate.")
+    closing = SLIT[2].replace("opens_at=1.0", "opens_at=1.0, closes_at=6.0")
+    found = registry.analyse(made(*SLIT[:2], closing, *SLIT[3:]), "effusion", start=0.0)
+    assert (found.time[0], found.time[-1]) == (1.0, 6.0)
+    with pytest.raises(UserError, match="the gate is open from t = 1 to inf"):
+        registry.analyse(made(*SLIT), "effusion", end=0.5)
+
+
+@pytest.mark.parametrize("axes", ["both", "one"])
+def test_heat_capacity_is_that_of_heat(made, axes):
+    """Fluctuations of a gas that moves as a whole are those of the same gas at rest."""
+    sides = PERIODIC if axes == "both" else 'box={size=[8, 8], bottom="periodic", top="periodic"}'
+    velocities = np.random.default_rng(3).normal((0, 3), 1, (40, 2)).tolist()
+    moving = f"species=[{{name='gas', count=40, radius=0.1, velocities={velocities}}}]"
+    scene = (sides, "rotation={inertia=0.5, roughness=1}", "log.snapshot_every=0.5", "run.collisions_per_disc=100")
+    found = energy_series(made(*scene, moving), start=5.0)
+    assert 0.4 < found.kinetic.mean() / 40 < 1.6  # 5.5 with the motion
+
+
+def test_laws_of_heat_take_collisions_that_lose_none(made):
+    bath = "box={size=[8, 8], " + ", ".join(f"{s}={{thermal=1}}" for s in ("left", "right", "bottom", "top")) + "}"
+    with pytest.raises(UserError, match="no equilibrium, or none known"):
+        registry.analyse(made(bath, SPIN), "heat-capacity")
+    floor = ("box={size=[8, 8], bottom={thermal=1}}", "gravity.acceleration=[0, -0.2]")
+    assert registry.analyse(made(*floor), "profile", start=0.0).law is not None
+    assert registry.analyse(made(*floor, SPIN), "profile", start=0.0).law is None
+    two = "box={size=[8, 8], left={thermal=1}, right={thermal=4}%s}"
+    assert "Fourier" in registry.analyse(made(two % ""), "profile", start=0.0).law
+    assert registry.analyse(made(two % ", bottom={thermal=1}"), "profile", start=0.0).law is None
+    assert registry.analyse(made(two % "", "thermostat={temperature=1, rate=1}"), "profile", start=0.0).law is None
+
+
+def test_laws_of_many_discs_take_many(made):
+    few = ("species.gas.count=10", PERIODIC)
+    path = registry.analyse(made(*few), "histogram", quantity="free-path")
+    assert path.no_law == "the law is that of many discs, and here are 10"
+    many = registry.analyse(made(PERIODIC), "histogram", quantity="free-path")
+    assert many.no_law == ""
+    assert many.distributions[0].mean.theory == pytest.approx(
+        registry.analyse(made(PERIODIC), "transport").free_paths[0].path.theory
+    )
+    two = registry.analyse(made(TWO, PERIODIC), "histogram")
+    assert two.no_law == "2 degrees of freedom are too few for a law"
+    one = made("species.gas.count=1", "run.collisions_per_disc=", "run.until=50")
+    assert registry.analyse(one, "histogram", quantity="vx").no_law == "2 degrees of freedom are too few for a law"
+    found = registry.analyse(one, "temperature")
+    only(found, "A single disc keeps its speed along x and along y")
+    assert (found.species[0].x.theory, found.species[0].both.theory) == (None, 1.0)
+    assert registry.find("transport").figure(registry.analyse(one, "transport")).axes
+    column = ("gravity.acceleration=[0, -0.1]", "species.gas.radius=0.02", "run.collisions_per_disc=", "run.until=60")
+    only(
+        registry.analyse(made(*column, "species.gas.count=4"), "profile", bins=2, start=0.0),
+        "of a fixed energy are colder",
+    )
+    assert silent(registry.analyse(made(*column), "profile", bins=2, start=0.0), "of a fixed energy")
+
+
+def test_a_uniform_density_takes_no_layers(made):
+    dense = made("species.gas.radius=0.4", "run.collisions_per_disc=20")
+    only(registry.analyse(dense, "profile", start=0.0), "lie in layers at walls")
+    assert silent(registry.analyse(made(), "profile", start=0.0), "layers")
+
+
+def test_currents_and_heavy_discs_take_long_lags(made):
+    log = made(PERIODIC, "species.gas.radius=0.3", "run.collisions_per_disc=400")
+    short = registry.analyse(log, "transport", start=0.0, end=log.end_time / 40)
+    only(short, "currents are followed for")
+    assert registry.analyse(log, "transport").premises == ()
+    light, heavy = (
+        "{name='a', count=36, radius=0.3, temperature=1}",
+        "{name='b', count=4, radius=0.3, mass=50, temperature=1}",
+    )
+    mixed = registry.analyse(
+        made(PERIODIC, f"species=[{light}, {heavy}]", "run.collisions_per_disc=800"), "transport", start=0.0
+    )
+    only(mixed, "b keeps its velocity for about")
+
+
+def test_theory_of_a_wide_box_takes_one(made):
+    cooling = ("restitution={normal=0.95}", "run.collisions_per_disc=80")
+    channel = 'box={size=[32, 2], left="periodic", right="periodic"}'
+    only(
+        registry.analyse(made(channel, *cooling, "species.gas.radius=0.2"), "cooling"),
+        "The box is 5 diameters wide between walls",
+    )
+    assert silent(registry.analyse(made(PERIODIC, *cooling), "cooling"), "diameters wide")
+
+
+def test_laws_of_cooling_know_less_of_strong_losses(made):
+    def error(normal):
+        loss = registry.analyse(
+            made(PERIODIC, f"restitution.normal={normal}", "run.collisions_per_disc=60"), "cooling"
+        ).loss
+        return loss.theory_error / loss.theory
+
+    assert error(0.9) == pytest.approx(0.015)
+    assert error(0.4) == pytest.approx(0.095)
+
+
+def test_a_relaxation_time_takes_a_start_like_that_of_its_error(made):
+    fast = "species=[{name='gas', count=190, radius=0.05, speed=0.1}, {name='hot', count=10, radius=0.05, speed=10}]"
+    only(registry.analyse(made(fast), "relaxation"), "a few discs are faster than most")
+    equal = "species=[{name='gas', count=200, radius=0.05, speed=1}]"
+    assert silent(registry.analyse(made(equal), "relaxation"), "faster than most")
+
+
+def test_a_law_of_a_piston_takes_a_fluid(made):
+    piston = (
+        "piston={side='right', position=8, velocity=-0.4}",
+        "species.gas.radius=0.4",
+        "run.collisions_per_disc=",
+        "run.until=10",
+    )
+    found = registry.analyse(made(*piston), "evolution")
+    assert found.law is None
+    assert json.dumps(found.as_dict(), allow_nan=False)
+    stopped = ("piston={side='right', position=7, mass=5, pressure=0.01}", "run.collisions_per_disc=", "run.until=20")
+    assert registry.analyse(made(*stopped), "evolution").law is None  # the gas pushes it to its end stop
