@@ -95,8 +95,8 @@ def test_size_of_the_log():
 @pytest.mark.parametrize("compression", ["gzip", "none"])
 def test_size_of_a_log_with_snapshots_is_that_of_the_file(compression, tmp_path):
     scene = parse_scene(
-        "scene.seed = 1\nbox.size = [20, 20]\nspecies = [{ name = 'a', count = 200, radius = 0.1, temperature = 1 }]\n"
-        f"run.until = 10\nlog = {{ snapshot_every = 0.01, compression = '{compression}' }}"
+        "scene.seed = 1\nbox.size = [20, 20]\nspecies = [{ name = 'a', count = 600, radius = 0.1, temperature = 1 }]\n"
+        f"run.until = 20\nlog = {{ snapshot_every = 0.01, compression = '{compression}' }}"
     )
     simulate(scene, tmp_path / "run.h5")
     expected = forecast(scene, make_gas(scene)).bytes
