@@ -169,7 +169,8 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = known.laws(quantity, discs, s, measured)
-        spacing = int(np.ceil(ensemble_inefficiency(snapshots)))
+        # A light disc among heavy ones keeps its speed for longer than its direction.
+        spacing = int(np.ceil(max(ensemble_inefficiency(snapshots), ensemble_inefficiency(snapshots**2))))
         expected = list(possible.values())[-1].mean if possible and measured is None else None
         found.append(
             _distribution(

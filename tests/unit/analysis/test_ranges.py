@@ -152,3 +152,13 @@ def test_a_law_of_a_piston_takes_a_fluid(made):
     assert json.dumps(found.as_dict(), allow_nan=False)
     stopped = ("piston={side='right', position=7, mass=5, pressure=0.01}", "run.collisions_per_disc=", "run.until=20")
     assert registry.analyse(made(*stopped), "evolution").law is None  # the gas pushes it to its end stop
+
+
+def test_tests_of_a_light_disc_take_samples_of_other_speeds(made):
+    """Its speed, which heavy discs hardly change, lasts far longer than the direction in which it flies."""
+    heavy = "{name='heavy', count=40, radius=0.2, temperature=1}"
+    log = made(f"species=[{heavy}, {{name='light', count=8, radius=0.1, mass=0.001, temperature=1}}]")
+    vx, speed = (
+        registry.analyse(log, "histogram", quantity=one, start=0.0).distributions[1] for one in ("vx", "speed")
+    )
+    assert vx.correlation_time >= speed.correlation_time / 2
