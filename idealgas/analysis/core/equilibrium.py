@@ -61,7 +61,7 @@ def ensemble(log: Log) -> Ensemble:
 def known_ensemble(log: Log) -> Ensemble | None:
     """Ensemble of the gas of a log; None if the energy is neither conserved nor set by heat of one temperature.
 
-    None too for a single disc whose momentum is conserved, as none of its energy is heat.
+    None too for a single disc whose momentum is conserved, as none of its energy is heat, or whose spin has some of it.
     """
     properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
     if not properties.conserves_energy or len(properties.temperatures) > 1:
@@ -73,7 +73,8 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
-    if dof == 0:
+    alone = len(gas) == 1 and properties.isolated
+    if dof == 0 or (alone and log.inertia is not None):
         return None
     share = 1 - kept * mass[:, None] / gas.mass.sum()
     if properties.temperatures:  # a heat bath has no limit to its energy

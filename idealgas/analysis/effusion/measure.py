@@ -1,7 +1,7 @@
 """Flow of discs through a gate that opens, compared with n⟨v⟩/π."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,10 +12,11 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.window import span
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.scene.walls import walls_inside
+from idealgas.scene.walls import NumberedWall, walls_inside
 
 INSTANTS = 256
 
@@ -90,7 +91,8 @@ def effusion(
     radius, number, slit = discs.radius[0], len(log.discs), width - 2 * discs.radius[0]
     if opening >= log.end_time:
         raise UserError(f"{log.path}: no effusion: the gate opens at t = {opening:g}, the log ends at {log.end_time:g}")
-    first, last = max(opening, start or 0.0), min(closing, log.end_time if end is None else end)
+    first, last = span(log, start, end)
+    first, last = max(opening, first), min(closing, last)
     if not first < last:
         raise UserError(f"{log.path}: no effusion: the gate is open from t = {opening:g} to {closing:g}")
     time = np.linspace(first, last, INSTANTS)
@@ -142,33 +144,57 @@ def _slit(log: Log) -> tuple[tuple[float, float], int, float, float]:
     across = int(np.ptp(ends[:, 0]) != 0)
     if np.ptp(ends[:, across]) != 0:
         raise UserError(f"{log.path}: no effusion: the gate is not along an axis")
-    width = float(np.ptp(ends[:, 1 - across]))
-    if width + 2 * log.discs.radius[0] >= log.box[1 - across]:  # what remains of the wall is shorter than a disc
+    width, radius = float(np.ptp(ends[:, 1 - across])), log.discs.radius[0]
+    if width + 2 * radius >= log.box[1 - across]:  # what remains of the wall is shorter than a disc
         raise UserError(
             f"{log.path}: no effusion: the gate opens the box from side to side, so that the gas expands freely; "
             "`idealgas evolution` follows it"
         )
-    if log.periodic[across] or (gap := _widest_gap(log, across, float(ends[0, across]))) >= 2 * log.discs.radius[0]:
-        around = "through the periodic sides" if log.periodic[across] else f"through a gap of {gap:.4g} beside it"
-        raise UserError(f"{log.path}: no effusion: discs pass {around}, not by the gate alone")
+    low, high = sorted(ends[:, 1 - across].tolist())
+    beside = _beside(log, gates[0], across)
+    gap = _widest_gap([*beside, (low, high)], log.box[1 - across])
+    why = ""
+    if log.periodic[across]:
+        why = "discs pass through the periodic sides, not by the gate alone"
+    elif any(min(end, high) - max(start, low) > radius for start, end in beside):
+        why = "a wall stands in the gate"
+    elif gap >= 2 * radius:
+        why = f"the gate is in no straight wall from side to side: beside it is a gap of {gap:.4g}"
+    if why:
+        raise UserError(f"{log.path}: no effusion: {why}")
     opens, closes = gates[0].absence
     return (max(opens, log.start_time), closes), across, float(ends[0, across]), width
 
 
-def _widest_gap(log: Log, across: int, place: float) -> float:
-    """Widest gap that walls and gate at a coordinate leave between two sides of the box, length."""
-    lines = [np.array([wall.start, wall.end]) for wall in walls_inside(log.scene)]
-    parts = sorted(np.sort(line[:, 1 - across]).tolist() for line in lines if (line[:, across] == place).all())
-    reached, gaps = 0.0, [0.0]
-    for low, high in [*parts, (log.box[1 - across], math.inf)]:
-        gaps.append(low - reached)
-        reached = max(reached, high)
-    return max(gaps)
+def _beside(log: Log, gate: NumberedWall, across: int) -> list[tuple[float, float]]:
+    """From where to where there are walls in the line of a gate for as long as it is open, length.
+
+    Those that are off by less than half of a radius are in its line: no disc passes between.
+    """
+    opens, closes = gate.absence[0], min(gate.absence[1], log.end_time)
+    near, found = log.discs.radius[0] / 2, []
+    for wall in walls_inside(log.scene):
+        line = np.array([wall.start, wall.end])
+        there = wall.absence[0] >= closes or wall.absence[1] <= opens
+        if there and (np.abs(line[:, across] - gate.start[across]) <= near).all() and wall != gate:
+            found.append((float(line[:, 1 - across].min()), float(line[:, 1 - across].max())))
+    return found
+
+
+def _widest_gap(parts: Sequence[tuple[float, float]], size: float) -> float:
+    """Widest gap that parts of a line leave between its ends, at 0 and at `size`, length."""
+    reached, widest = 0.0, 0.0
+    for low, high in [*sorted(parts), (size, math.inf)]:
+        widest, reached = max(widest, low - reached), max(reached, high)
+    return widest
 
 
 def _others(log: Log, across: int, place: float) -> tuple[str, ...]:
     """Sentence on walls in the chambers, beside the one with the slit."""
-    walls = [w.name for w in walls_inside(log.scene) if {w.start[across], w.end[across]} != {place}]
+    near = log.discs.radius[0] / 2
+    walls = [
+        w.name for w in walls_inside(log.scene) if max(abs(w.start[across] - place), abs(w.end[across] - place)) > near
+    ]
     return (f"The law is that of empty chambers, and in these there is {', '.join(walls)}.",) if walls else ()
 
 

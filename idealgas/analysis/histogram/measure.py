@@ -262,7 +262,7 @@ def _waits(log: Log, start: float | None, end: float | None, progress: Progress)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
     why_not = why_never_stationary(log)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible = {} if why_not else {"exponential": law}
     return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None)], why_not

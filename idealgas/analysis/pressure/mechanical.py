@@ -1,7 +1,7 @@
 """Mechanical pressure of every wall, for gases whose pressure follows from no equation of state."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -167,11 +167,12 @@ def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | N
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
-    all_time, known = np.ones(len(given)), _carried(log) & (balances is not None)
+    all_time, known = np.ones(len(given)), ~kept_momentum(log) & (balances is not None)
     weight = [float(force) if balanced else None for force, balanced in zip(_weight(log), known, strict=True)]
+    bounded = _carried(log)
 
     def force(name: str, series: np.ndarray, theory: Sequence[float | None] = (None, None)) -> WallForce:
-        x, y = (_average(series[:, k], all_time, balances, theory[k]) for k in range(2))
-        return WallForce(name, x, y)
+        x, y = (_average(series[:, k], all_time, balances, theory[k] if bounded[k] else None) for k in range(2))
+        return WallForce(name, replace(x, theory=theory[0]), replace(y, theory=theory[1]))
 
     return (*(force(name, series) for name, series in by_wall), force("all walls", given.sum(axis=1), weight))

@@ -9,7 +9,7 @@ import numpy as np
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.log import Log
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
@@ -67,10 +67,13 @@ def acceptance(log: Log) -> Acceptance | None:
     share = collisions / max(number, 1)
     error = float(np.sqrt(share * (1 - share) / max(number, 1)))
     equilibrium, raises = ensemble(log), raises_of(log)
+    still = conserved.share_of_motion(log.discs, equilibrium.drift) <= conserved.SAID_FROM
     v_ref = mean_reference_speed(raises, number)
     fixed = equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
     expected = {
-        "Maxwell-Boltzmann": equilibrium_acceptance(log, v_ref, equilibrium.temperature * equilibrium.dof / (2 * n)),
+        "Maxwell-Boltzmann": equilibrium_acceptance(
+            log, v_ref, log.discs.temperature if still else equilibrium.temperature
+        ),
         f"fixed energy and momentum, D = {equilibrium.dof}": fixed,
     }
     acceptance = Estimate(share, error, float(number), theory=fixed)

@@ -64,15 +64,15 @@ def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
 def is_ergodic(scene: Scene, gas: Gas) -> bool:
     """Whether a gas reaches all states of its energy. False for one disc, and two equal discs without momentum.
 
-    One disc keeps its speed along x and along y. The velocities of the two remain equal in every component except for
-    signs between walls, and as long as they meet with opposite velocities only, the sum of their positions, unfolded at
-    the walls, is conserved.
+    One disc keeps its speed along x and along y, or hands it to and fro between few motions at rough walls. The
+    velocities of the two remain equal in every component except for signs between walls, and as long as they meet with
+    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
     """
     properties, walled = scene.properties, ~np.array(scene.properties.periodic)
     if len(gas) > 2 or not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
         return True
     if len(gas) == 1:
-        return properties.grip
+        return False
     if not walled.any() or np.ptp(gas.mass) > 0:
         return True
     speeds = np.abs(gas.velocity[:, walled])
@@ -83,7 +83,8 @@ def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
     """Sentences on what the start of a gas, `gas`, takes from every average over time."""
     found = []
     if len(gas) == 1 and not is_ergodic(scene, gas):
-        found.append("A single disc keeps its speed along x and along y; it comes to no common temperature of both.")
+        if not all(scene.properties.periodic):
+            found.append("A single disc does not share its energy evenly: its motions have no common temperature.")
     elif not is_ergodic(scene, gas):
         found.append(
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "

@@ -42,7 +42,7 @@ FEWEST_SEGMENTS, MOST_SEGMENTS = 8, 64
 MOST_SAMPLES = 2**21  # largest number of discs times instants
 FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
 LEAST_LAG = 10.0  # mean free times; D from shorter lags is too small, as velocities still remember where they came from
-LEAST_MEMORIES = 5.0  # velocity correlation times; the same for discs that keep their velocity for longer
+LEAST_MEMORIES = 4.0  # velocity correlation times; the same for discs that keep their velocity for longer
 FREE_SHARE = 0.05  # largest displacement, relative to the box between two walls, that walls hardly change
 
 
@@ -227,10 +227,10 @@ def _short_lags(rates: Sequence[CollisionRate], diffusion: Sequence[Diffusion]) 
                 f"The window is short: {entry.species} is followed for {free_times:.2g} mean free times at most; its "
                 f"diffusion coefficient and velocity correlation time take {LEAST_LAG:g}."
             )
-        elif longest < LEAST_MEMORIES * (memory := max(found.value, found.theory or 0.0)):
+        elif longest < (least := LEAST_MEMORIES * (found.theory or found.value)):
             yield (
-                f"{entry.species} keeps its velocity for about {memory:.3g}, and is followed for {longest:.3g}: its "
-                f"diffusion coefficient and velocity correlation time take {LEAST_MEMORIES:g} times as long (--lag)."
+                f"{entry.species} is followed for {longest:.3g}, and keeps its velocity for a time: its diffusion "
+                f"coefficient and velocity correlation time take {least:.3g}, by a larger --lag."
             )
 
 

@@ -88,6 +88,14 @@ def test_a_piston_is_held_in_a_gas_that_cools_too(make):
     assert walls["top wall"].standard_error < 0.2 * walls["left wall"].standard_error
 
 
+def test_a_heat_bath_carries_no_weight_on_average(make):
+    found = pressure(make("gravity.acceleration=[0, -0.3]", "thermostat={ temperature = 1.5, rate = 2 }")).mechanical
+    alone = pressure(make("gravity.acceleration=[0, -0.3]")).mechanical
+    assert found.forces[-1].y.theory == alone.forces[-1].y.theory == pytest.approx(-9.0)
+    assert found.forces[-1].y.standard_error > 3 * alone.forces[-1].y.standard_error  # its kicks are no bounded store
+    assert abs(found.forces[-1].y.deviation) < 4
+
+
 def test_a_disc_that_meets_nothing_presses_on_nothing(make):
     periodic = [f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top")]
     log = make("species.count=1", "log.events=false", "log.pressure=true", "log.snapshot_every=0.1", *periodic)
