@@ -1,7 +1,7 @@
 """Flow of discs through a gate that opens, compared with n⟨v⟩/π."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,10 +13,10 @@ from idealgas.analysis.core.equilibrium import ensemble
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.window import span
+from idealgas.analysis.effusion.slit import Slit, slit_of
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.scene.walls import NumberedWall, walls_inside
 
 INSTANTS = 256
 
@@ -86,16 +86,10 @@ def effusion(
     log, if the gate is as high as the box, or if the chambers are in balance.
     """
     discs, equilibrium = composition(log.discs), ensemble(log)
-    (opening, closing), across, line, width = _slit(log)
-    place = line
-    radius, number, slit = discs.radius[0], len(log.discs), width - 2 * discs.radius[0]
-    if opening >= log.end_time:
-        raise UserError(f"{log.path}: no effusion: the gate opens at t = {opening:g}, the log ends at {log.end_time:g}")
-    first, last = span(log, start, end)
-    first, last = max(opening, first), min(closing, last)
-    if not first < last:
-        raise UserError(f"{log.path}: no effusion: the gate is open from t = {opening:g} to {closing:g}")
-    time = np.linspace(first, last, INSTANTS)
+    gate = slit_of(log)
+    across, place = gate.across, gate.place
+    radius, number, slit = discs.radius[0], len(log.discs), gate.width - 2 * discs.radius[0]
+    time = _instants(log, gate, start, end)
     beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: the sum of the speeds, below and above
     for k, state in enumerate(log.frames(time)):
         side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
@@ -118,7 +112,8 @@ def effusion(
     speed = passed / (slit * drive)
     error = math.sqrt(expected * slit * both) / (slit * drive)
     found = Estimate(speed, error, math.inf, expected, expected * (LAW_OFF + LAW_OFF_PER_PATH * paths))
-    said = _others(log, across, line)
+    inside = f"The law is that of empty chambers, and in these there is {', '.join(gate.others)}."
+    said = (inside,) if gate.others else ()
     here = (str(log.path), number / inner, equilibrium.temperature, time, beyond)
     if paths > 1:
         sentence = (
@@ -131,71 +126,20 @@ def effusion(
     return Effusion(*here, course, found, premises=said)
 
 
-def _slit(log: Log) -> tuple[tuple[float, float], int, float, float]:
-    """From when to when the slit is open, axis across it (0 or 1), its coordinate on this axis, and its width, length.
+def _instants(log: Log, gate: Slit, start: float | None, end: float | None) -> np.ndarray:
+    """Instants (INSTANTS,) between two times at which the gate is open.
 
     Raises:
-        UserError: unless there is one slit along an axis, in a wall from side to side, for discs of one species.
+        UserError: if there are none.
     """
-    gates = [wall for wall in walls_inside(log.scene) if 0 < wall.absence[0] < math.inf]
-    if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
-        raise UserError(f"{log.path}: no effusion: it takes one gate, one species and the events")
-    ends = np.array([gates[0].start, gates[0].end])
-    across = int(np.ptp(ends[:, 0]) != 0)
-    if np.ptp(ends[:, across]) != 0:
-        raise UserError(f"{log.path}: no effusion: the gate is not along an axis")
-    width, radius = float(np.ptp(ends[:, 1 - across])), log.discs.radius[0]
-    if width + 2 * radius >= log.box[1 - across]:  # what remains of the wall is shorter than a disc
+    if gate.opens >= log.end_time:
         raise UserError(
-            f"{log.path}: no effusion: the gate opens the box from side to side, so that the gas expands freely; "
-            "`idealgas evolution` follows it"
+            f"{log.path}: no effusion: the gate opens at t = {gate.opens:g}, the log ends at {log.end_time:g}"
         )
-    low, high = sorted(ends[:, 1 - across].tolist())
-    beside = _beside(log, gates[0], across)
-    gap = _widest_gap([*beside, (low, high)], log.box[1 - across])
-    why = ""
-    if log.periodic[across]:
-        why = "discs pass through the periodic sides, not by the gate alone"
-    elif any(min(end, high) - max(start, low) > radius for start, end in beside):
-        why = "a wall stands in the gate"
-    elif gap >= 2 * radius:
-        why = f"the gate is in no straight wall from side to side: beside it is a gap of {gap:.4g}"
-    if why:
-        raise UserError(f"{log.path}: no effusion: {why}")
-    opens, closes = gates[0].absence
-    return (max(opens, log.start_time), closes), across, float(ends[0, across]), width
-
-
-def _beside(log: Log, gate: NumberedWall, across: int) -> list[tuple[float, float]]:
-    """From where to where there are walls in the line of a gate for as long as it is open, length.
-
-    Those that are off by less than half of a radius are in its line: no disc passes between.
-    """
-    opens, closes = gate.absence[0], min(gate.absence[1], log.end_time)
-    near, found = log.discs.radius[0] / 2, []
-    for wall in walls_inside(log.scene):
-        line = np.array([wall.start, wall.end])
-        there = wall.absence[0] >= closes or wall.absence[1] <= opens
-        if there and (np.abs(line[:, across] - gate.start[across]) <= near).all() and wall != gate:
-            found.append((float(line[:, 1 - across].min()), float(line[:, 1 - across].max())))
-    return found
-
-
-def _widest_gap(parts: Sequence[tuple[float, float]], size: float) -> float:
-    """Widest gap that parts of a line leave between its ends, at 0 and at `size`, length."""
-    reached, widest = 0.0, 0.0
-    for low, high in [*sorted(parts), (size, math.inf)]:
-        widest, reached = max(widest, low - reached), max(reached, high)
-    return widest
-
-
-def _others(log: Log, across: int, place: float) -> tuple[str, ...]:
-    """Sentence on walls in the chambers, beside the one with the slit."""
-    near = log.discs.radius[0] / 2
-    walls = [
-        w.name for w in walls_inside(log.scene) if max(abs(w.start[across] - place), abs(w.end[across] - place)) > near
-    ]
-    return (f"The law is that of empty chambers, and in these there is {', '.join(walls)}.",) if walls else ()
+    first, last = span(log, start, end)
+    if not max(gate.opens, first) < min(gate.closes, last):
+        raise UserError(f"{log.path}: no effusion: the gate is open from t = {gate.opens:g} to {gate.closes:g}")
+    return np.linspace(max(gate.opens, first), min(gate.closes, last), INSTANTS)
 
 
 def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
