@@ -10,7 +10,6 @@ import numpy as np
 from idealgas.analysis.cooling.theory import (
     CUMULANT_ERROR,
     LOSS_ERROR,
-    PER_RESTITUTION,
     RATIO_ERROR,
     TESTED_FROM,
     TIME_ERROR,
@@ -151,7 +150,11 @@ def cooling(
         early,
         late,
         together,
-        premises=(*_few(log), *narrow(log), *_premises(early.value, late.value, together.value, counted.number)),
+        premises=(
+            *_untested(log, grains),
+            *narrow(log),
+            *_premises(early.value, late.value, together.value, counted.number),
+        ),
     )
 
 
@@ -175,26 +178,29 @@ def _averages(
     energy = course.temperature + spin_weight * course.spin
     temperature = energy * (course.temperature / energy).mean()  # without what goes to and fro between motion and spin
     lost, apart = -np.diff(np.log(temperature)), np.diff(course.collisions)
-    untested = PER_RESTITUTION * max(TESTED_FROM - grains.normal, 0.0)
-    loss = ratio(lost, apart, _theory(granular.cooling_per_collision(grains), LOSS_ERROR + untested))
+    loss = ratio(lost, apart, _theory(grains, granular.cooling_per_collision(grains), LOSS_ERROR))
     slopes = np.diff(temperature**-0.5) / np.diff(course.time)  # the same at all times
     tau = None if rate is None else granular.cooling_time(grains, rate)
-    haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(tau, TIME_ERROR + untested))
+    haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(grains, tau, TIME_ERROR))
     if not grains.rough:
-        a2 = _theory(granular.fourth_cumulant(grains.normal), CUMULANT_ERROR + 5 * untested)
+        a2 = _theory(grains, granular.fourth_cumulant(grains.normal), CUMULANT_ERROR)
         return loss, haff, mean(course.cumulant, a2), None
-    share = mean(course.spin / course.temperature, _theory(granular.temperature_ratio(grains), RATIO_ERROR))
+    share = mean(course.spin / course.temperature, _theory(grains, granular.temperature_ratio(grains), RATIO_ERROR))
     return loss, haff, mean(course.cumulant), share
 
 
-def _theory(value: float | None, relative: float) -> Theory | None:
-    return None if value is None else Theory(value, relative * abs(value), "homogeneous cooling")
+def _theory(grains: Grains, value: float | None, relative: float) -> Theory | None:
+    if value is None or grains.normal < TESTED_FROM:
+        return None
+    return Theory(value, relative * abs(value), "homogeneous cooling")
 
 
-def _few(log: Log) -> tuple[str, ...]:
-    """Sentence on a gas of few discs."""
-    number = len(log.discs)
-    return (f"The laws are those of many discs, and here are {number}.",) if number < FEW else ()
+def _untested(log: Log, grains: Grains) -> Iterator[str]:
+    """Sentences on a gas of few discs, and on losses beyond the range of the laws."""
+    if (number := len(log.discs)) < FEW:
+        yield f"The laws are those of many discs, and here are {number}."
+    if grains.normal < TESTED_FROM:
+        yield f"There is no theory of collisions that lose more than those with e = {TESTED_FROM:g}."
 
 
 def _premises(early: float, late: float, flow: float, cells: int) -> Iterator[str]:

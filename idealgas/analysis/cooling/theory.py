@@ -15,8 +15,11 @@ As simulations found: 20 runs each of 300 discs at φ = 0.05, with e = 0.8 to 0.
 and β = 0, 0.5 and 0.9.
 """
 
-TESTED_FROM, PER_RESTITUTION = 0.8, 0.2
-"""Restitution coefficient from which on the errors are known, and what each of them grows by per unit below it."""
+TESTED_FROM = 0.8
+"""Restitution coefficient from which on the errors are known; below it there is no theory, as clusters soon form.
+
+Eight runs of 300 discs at φ = 0.05 had 0.91 of the loss at e = 0.6, and 0.74 at 0.4.
+"""
 
 CUMULANT_ERROR = 0.05
 """Relative error of a₂: terms of higher order in it."""

@@ -53,7 +53,7 @@ def ensemble(log: Log) -> Ensemble:
     found = known_ensemble(log)
     if found is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
-        given = f"under {', '.join(causes)}" if causes else "for a single disc that nothing can stop"
+        given = f"under {', '.join(causes)}" if causes else "for a single disc, which shares it with no other"
         raise NotApplicableError(f"{log.path}: no temperature is known beforehand {given}")
     return found
 
@@ -73,8 +73,7 @@ def known_ensemble(log: Log) -> Ensemble | None:
         dof += len(gas)
         spin = log.state_at(log.start_time).angular_velocity
         energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
-    alone = len(gas) == 1 and properties.isolated
-    if dof == 0 or (alone and log.inertia is not None):
+    if dof == 0 or (len(gas) == 1 and properties.isolated and log.inertia is not None):
         return None
     share = 1 - kept * mass[:, None] / gas.mass.sum()
     if properties.temperatures:  # a heat bath has no limit to its energy

@@ -131,15 +131,14 @@ def test_theory_of_a_wide_box_takes_one(made):
     assert silent(registry.analyse(made(PERIODIC, *cooling), "cooling"), "diameters wide")
 
 
-def test_laws_of_cooling_know_less_of_strong_losses(made):
-    def error(normal):
-        loss = registry.analyse(
-            made(PERIODIC, f"restitution.normal={normal}", "run.collisions_per_disc=60"), "cooling"
-        ).loss
-        return loss.theory_error / loss.theory
+def test_laws_of_cooling_end_at_strong_losses(made):
+    def found(normal):
+        return registry.analyse(made(PERIODIC, f"restitution.normal={normal}", "run.collisions_per_disc=60"), "cooling")
 
-    assert error(0.9) == pytest.approx(0.015)
-    assert error(0.4) == pytest.approx(0.095)
+    assert found(0.9).loss.theory_error / found(0.9).loss.theory == pytest.approx(0.015)
+    assert silent(found(0.9), "no theory of collisions that lose more")
+    assert (found(0.6).loss.theory, found(0.6).haff.theory, found(0.6).fourth.theory) == (None, None, None)
+    only(found(0.6), "no theory of collisions that lose more than those with e = 0.8")
 
 
 def test_a_relaxation_time_takes_a_start_like_that_of_its_error(made):
