@@ -114,6 +114,24 @@ def tie_at_a_border() -> tuple[Gas, Effects]:
     return gas_of((24.0, 194.0), discs[:, :2], discs[:, 2:4], discs[:, 4], discs[:, 5]), Effects()
 
 
+def tie_with_a_disc_that_comes_late() -> tuple[Gas, Effects]:
+    """Discs 0 and 1 hit walls at t = 3; disc 0 comes to the strip of disc 1 at 2.5, held up by much that disc 3 does.
+
+    Disc 2 merely goes to another cell at 3.5, so that the strip's latest event is one without rows.
+    """
+    row = 24 / 23
+    discs = np.array(
+        [  # x, y, vx, vy, mass
+            (6.75, 11 * row - 0.625, 0.25, 0.25, 1.0),
+            (1.25, 19.0, -0.25, 0.0, 1.0),
+            (4.0, 18 * row - 0.875, 0.0, 0.25, 1.0),
+            (1.0, 0.501, 0.0, 0.25, 1.0),
+            (1.0, 1.502, 0.0, 0.0, 1e9),
+        ]
+    )
+    return gas_of((8.0, 24.0), discs[:, :2], discs[:, 2:4], 0.5, discs[:, 4]), Effects()
+
+
 def wind(seed: int) -> tuple[Gas, Effects]:
     """Columns of discs that fly upwards round a box, all but one without a collision: all go from strip to strip."""
     draw = np.random.default_rng(seed)

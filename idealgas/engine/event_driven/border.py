@@ -49,6 +49,7 @@ OWN = np.dtype(
         ("late_inside", "f8"), ("late_at_border", "f8"),  # the same when a disc was posted last
         ("low", "f8"), ("high", "f8"),  # latest event at each border, if no disc was posted since
         ("last", "f8"),  # last event, if no disc was posted since
+        ("row_time", "f8"), ("posted", "i8"),  # latest event with rows; how many such may follow a disc that was posted
         ("at_once", "i8"),  # events in a row at that time
         ("held", "i8"), ("idle", "i8"),  # borders that are locked; whether there is no event up to the limit
         ("draw", "u8"),  # state of the delays
@@ -159,6 +160,7 @@ def absorb(ids, state, until, b):
         own.late_inside = own.inside
         own.late_at_border = own.at_border
         own.low = own.high = own.last = LATE
+        own.posted = 2  # maybe within an event whose rows are still to be noted
         if own.idle and time <= until:
             own.idle = 0
             add(b.words, ACTIVE, np.int64(1))

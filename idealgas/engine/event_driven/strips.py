@@ -134,6 +134,7 @@ def reset(borders: list[Border]) -> None:
         b.words[mail_word(b, k, 0)] = b.words[mail_word(b, k, 1)] = -1
     for border in borders:
         own = border.own
-        for name in ("clock", "horizon", "inside", "at_border", "late_inside", "late_at_border", "low", "high", "last"):
-            own[name] = LATE
-        own["at_once"] = own["held"] = own["idle"] = 0
+        for name in OWN.names or ():
+            if OWN[name] == np.float64:
+                own[name] = LATE
+        own["at_once"] = own["held"] = own["idle"] = own["posted"] = 0

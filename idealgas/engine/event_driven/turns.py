@@ -77,9 +77,23 @@ def count_at_one_time(time, now, events_at_this_time, n, border):
     """Time of the latest event, after one at `time`, and number of events in a row then; n: number of discs."""
     if border is None:
         return time, check_clock(time, now, events_at_this_time, n)
+    note_rows(time, border)
     if time < now:  # the clock was set back
         return now, events_at_this_time
     return time, (events_at_this_time + 1 if time == now else 0)
+
+
+@inline
+def note_rows(time, b):
+    """Note an event with rows. It is too late if one of its time came before a disc was posted that may be in it.
+
+    Which of the two comes first was then not asked, and both rows may stand side by side.
+    """
+    own = b.own[0]
+    if own.posted and time == own.row_time:
+        abandon(b, TIE)
+    own.posted = max(own.posted - 1, 0)
+    own.row_time = time
 
 
 @inline
@@ -196,8 +210,6 @@ def is_in_order(record, ids, state, i, time, where, b):
             return False
         own.inside = max(own.inside, time)
         return True
-    if time == max(own.late_inside, own.late_at_border):  # their rows would have come in another order
-        return False
     if time <= own.late_inside and depth_of(record, ids, state, i, where, b) > DEEPEST:
         return False
     for side in (LOW, HIGH):
