@@ -106,7 +106,7 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
     if n < 2:
         return Spread(math.nan, float(n))
     if is_constant(series):
-        return Spread(math.nan if _changes(series) else 0.0, float(n))
+        return Spread(math.nan if changes(series) else 0.0, float(n))
     block = max(n // BLOCKS, 1)
     coarse = series[n % block :].reshape(-1, block).mean(axis=1)
     return process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
@@ -114,10 +114,10 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
 
 def is_constant(series: np.ndarray) -> bool:
     """Whether a series changes by rounding only, or so little that squares of the changes are 0."""
-    return not (_changes(series) and np.ptp(series) > LEAST)
+    return not (changes(series) and np.ptp(series) > LEAST)
 
 
-def _changes(series: np.ndarray) -> bool:
+def changes(series: np.ndarray) -> bool:
     """Whether a series changes by more than rounding."""
     return bool(np.ptp(series) > NOISE * np.abs(series).max())
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy import special
 
-from idealgas.analysis.core.autoregression import error_of_mean, is_constant
+from idealgas.analysis.core.autoregression import changes, error_of_mean, is_constant
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
@@ -165,7 +165,8 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory |
     influence = np.zeros(columns.shape[1])
     with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives not a number
         for k, column in enumerate(columns):
-            if (step := 1e-3 * (column.std() or np.ptp(column))) > 0:  # squares of tiny numbers are 0
+            step = 1e-3 * (column.std() or np.ptp(column))  # squares of tiny numbers are 0
+            if step > 0 and changes(column):
                 shift = np.zeros(len(means))
                 shift[k] = step
                 slope = (function(*(means + shift)) - function(*(means - shift))) / (2 * step)

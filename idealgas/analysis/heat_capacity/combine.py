@@ -128,7 +128,8 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
         error = spread**-0.5
     other = 1.5 / members[0].number if PISTON in members[0].kind else 0.0
     samples = sum(min(m.energy.independent_samples, m.temperature.independent_samples) for m in members)
-    return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]))
+    doubt = sum(m.theory_error for m in members) / len(members)
+    return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]), doubt)
 
 
 def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:

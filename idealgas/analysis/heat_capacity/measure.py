@@ -18,6 +18,8 @@ from idealgas.analysis.core.statistics import Estimate, estimate, inefficiency, 
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import LARGEST_ERROR as LARGEST_THEORY_ERROR
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -26,6 +28,15 @@ LEAST_SAMPLES = 32
 
 LARGEST_ERROR = 0.5
 """Largest standard error of such a heat capacity, relative to it."""
+
+FEW_IN_COLUMN = 0.47
+"""Relative error, times N, of the heat capacity of many discs under gravity for N discs of a fixed energy.
+
+The largest part of it over all heights of the box, by exact integration over the states of 2 to 20 points.
+"""
+
+SOURCE = "degrees of freedom"
+"""Name of the theory."""
 
 CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
 
@@ -37,7 +48,7 @@ class Measured(Result):
     path: of the log. kind: kind of gas, such as a closed box or a heat bath. number: of discs. energy: mean energy per
     disc from an arbitrary zero, energy. temperature: energy (k_B = 1). thermometer: how the temperature was measured.
     routes: heat capacity per disc (k_B = 1) by the name of each route. theory: heat capacity per disc by theory.
-    excess: C_P - C_A per disc by theory, None without a piston.
+    excess: C_P - C_A per disc by theory, None without a piston. theory_error: error of the theory.
     """
 
     path: str
@@ -49,6 +60,7 @@ class Measured(Result):
     routes: dict[str, Estimate]
     theory: float | None
     excess: float | None
+    theory_error: float = 0.0
 
     @classmethod
     def from_dict(cls, found: dict[str, Any]) -> "Measured":
@@ -63,6 +75,7 @@ class Measured(Result):
             {name: Estimate.from_dict(route) for name, route in found["routes"].items()},
             found["theory"],
             found["excess"],
+            found.get("theory_error", 0.0),  # results of before have none
         )
 
     def as_dict(self) -> dict[str, Any]:
@@ -77,6 +90,7 @@ class Measured(Result):
             "routes": {name: route.as_dict() for name, route in self.routes.items()},
             "theory": self.theory,
             "excess": self.excess,
+            "theory_error": self.theory_error,
         }
 
 
@@ -125,7 +139,8 @@ def heat_capacity(
         found, fluctuating = _kinetic_fluctuations(series, n, dof, capacity, PISTON in kinds), series.kinetic
     lacking = too_few(route, found, len(fluctuating) / inefficiency(fluctuating))
     routes, measured = {} if lacking else {route: found}, (_mean_energy(series.energy / n), temperature, thermometer)
-    return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, capacity, excess, premises=lacking)
+    value, error = (None, 0.0) if capacity is None else (capacity.value, capacity.error)
+    return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, value, excess, error, premises=lacking)
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:
@@ -147,14 +162,15 @@ def too_few(route: str, found: Estimate, samples: float) -> tuple[str, ...]:
     return (f"No heat capacity from {route}: {why}; a longer run, or samples at shorter times, would give one.",)
 
 
-def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, float | None]:
+def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:
     """Heat capacity C per disc by theory, and C_P - C_A per disc with a piston (k_B = 1); None where theory is unknown.
 
     Each degree of freedom adds 1/2. The position of a disc under gravity adds 1 - x² eˣ/(eˣ - 1)² with x = m g h/T and
-    the height h that its centre can reach. A piston adds Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
+    the height h that its centre can reach; N discs of a fixed energy differ from that by a part 1/N. A piston adds
+    Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas = log.scene, log.discs
-    per_disc = 1.5 if scene.properties.spins else 1.0
+    per_disc, part = 1.5 if scene.properties.spins else 1.0, 0.0
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
     if pull.any() and (not (scene.properties.fixed_walls and scene.properties.empty) or pull.all() or equilibrated):
@@ -164,8 +180,11 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
         temperature = float(series.kinetic.mean() / len(gas))
         x = float(gas.mass[0] * abs(pull[axis]) * (gas.box[axis] - 2 * gas.radius[0]) / temperature)
         per_disc += 1 - x * x * math.exp(-x) / math.expm1(-x) ** 2
+        part = FEW_IN_COLUMN / len(gas) if scene.properties.isolated else 0.0
+        if part > LARGEST_THEORY_ERROR:
+            return None, None
     if series.position is None or scene.piston is None:
-        return per_disc, None
+        return Theory(per_disc, part * per_disc, SOURCE), None
     if equilibrated:
         return None, None
     across = gas.box[1 - scene.piston.axis]
@@ -176,7 +195,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[float | None, flo
     z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
     slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
     excess = z * z / (z + phi * slope)
-    return per_disc + excess, excess
+    return Theory(per_disc + excess, part * per_disc, SOURCE), excess
 
 
 def _closed_box(
@@ -193,13 +212,11 @@ def _closed_box(
     error = energy * t.standard_error / t.value**2
     per_disc = Estimate(energy / t.value, error, t.independent_samples, 1.0, relative)
     exact = Estimate(energy, 0.0, math.inf)
-    routes = {"E/T": per_disc}
-    return Measured(
-        str(log.path), CLOSED, n, exact, t, "pressure on the walls", routes, 1.0, None, premises=measured.premises
-    )
+    routes, how, said = {"E/T": per_disc}, "pressure on the walls", measured.premises
+    return Measured(str(log.path), CLOSED, n, exact, t, how, routes, 1.0, None, relative, premises=said)
 
 
-def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: float | None, piston: bool) -> Estimate:
+def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: Theory | None, piston: bool) -> Estimate:
     """Heat capacity C = Var(E)/T² per disc in a heat bath, corrected for the variance of the mean of the series."""
     energy = series.energy - series.energy.mean()
     lost = mean(energy).standard_error ** 2
@@ -209,7 +226,7 @@ def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: floa
     )
 
 
-def _kinetic_fluctuations(series: EnergySeries, n: int, dof: int, capacity: float | None, piston: bool) -> Estimate:
+def _kinetic_fluctuations(series: EnergySeries, n: int, dof: int, capacity: Theory | None, piston: bool) -> Estimate:
     """Heat capacity per disc from the variance of the kinetic energy K at fixed energy E, exact at finite N.
 
     All states of one energy are equally probable, so that K/E follows Beta(a, b) with a = D/2 and a + b = C, and

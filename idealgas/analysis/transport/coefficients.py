@@ -170,7 +170,7 @@ def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | N
     """
     first, second = np.bincount(gas.species, minlength=2)
     apart = {"x": flow[:, APART_X], "y": flow[:, APART_Y]}
-    return _coefficient(apart, lags, first * second / len(gas), "length²/time", len(gas), theory)
+    return _coefficient(apart, lags, first * second / len(gas), "length²/time", gas, theory)
 
 
 def _coefficients(
@@ -180,19 +180,19 @@ def _coefficients(
     whole = flow.sum(axis=1).T
     shear = {"xy": whole[XY], "(xx - yy)/2": (whole[XX] - whole[YY]) / 2}
     heat, trace = {"x": whole[HEAT_X], "y": whole[HEAT_Y]}, {"(xx + yy)/2": (whole[XX] + whole[YY]) / 2}
-    number, factor = len(gas), 1 / (gas.area * temperature)
-    found = {"viscosity": _coefficient(shear, lags, factor, "mass/time", number, enskog.viscosity if enskog else None)}
+    factor = 1 / (gas.area * temperature)
+    found = {"viscosity": _coefficient(shear, lags, factor, "mass/time", gas, enskog.viscosity if enskog else None)}
     if conducts:
         theory = enskog.conductivity if enskog else None
-        found["heat_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", number, theory)
+        found["heat_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", gas, theory)
     found["bulk_viscosity"] = _coefficient(
-        trace, lags, factor, "mass/time", number, enskog.bulk_viscosity if enskog else None
+        trace, lags, factor, "mass/time", gas, enskog.bulk_viscosity if enskog else None
     )
     return found
 
 
 def _coefficient(
-    currents: dict[str, np.ndarray], lags: Lags, factor: float, unit: str, number: int, theory: Theory | None
+    currents: dict[str, np.ndarray], lags: Lags, factor: float, unit: str, gas: Gas, theory: Theory | None
 ) -> Coefficient:
     found = growth(np.array([*currents.values()]), lags)
     return Coefficient(
@@ -202,13 +202,15 @@ def _coefficient(
         factor * found.error,
         mean(factor * found.series.mean(axis=0), theory),
         {name: mean(factor * series) for name, series in zip(currents, found.series, strict=True)},
-        _difference(factor * found.series, number) if len(currents) > 1 else None,
+        _difference(factor * found.series, gas) if len(currents) > 1 else None,
     )
 
 
-def _difference(series: np.ndarray, number: int) -> Estimate:
-    """Difference of two routes, from the series of both; theory: none but for the box of N discs."""
-    return mean(series[0] - series[1], Theory(0.0, DIRECTIONS / number * abs(float(series.mean())), "isotropy"))
+def _difference(series: np.ndarray, gas: Gas) -> Estimate:
+    """Difference of two routes, from the series of both; its theory, none but for the box of N discs, is of squares."""
+    error = DIRECTIONS / len(gas) * abs(float(series.mean()))
+    theory = Theory(0.0, error, "isotropy") if gas.box[0] == gas.box[1] else None
+    return mean(series[0] - series[1], theory)
 
 
 def _pressure(current: np.ndarray, log: Log, equilibrium: Ensemble, z: Theory | None) -> dict[str, Estimate]:

@@ -170,3 +170,34 @@ def test_tests_of_a_light_disc_take_samples_of_other_speeds(made):
         registry.analyse(log, "histogram", quantity=one, start=0.0).distributions[1] for one in ("vx", "speed")
     )
     assert vx.correlation_time >= speed.correlation_time / 2
+
+
+def test_a_heat_capacity_under_gravity_is_that_of_many_discs(made):
+    """Few of a fixed energy have another, by 0.47/N at most; between walls of a temperature they have the same."""
+    pull, often = "gravity.acceleration=[0, -0.3]", "log.snapshot_every=1"
+
+    def theory(*scene):
+        return registry.analyse(made(pull, often, "run.collisions_per_disc=100", *scene), "heat-capacity", start=5.0)
+
+    few = theory("species.gas.count=8")
+    assert few.theory_error / few.theory == pytest.approx(0.47 / 8)
+    assert theory("species.gas.count=4").theory is None
+    bath = theory("species.gas.count=4", "thermostat={temperature=1, rate=1}")
+    assert (bath.theory is not None, bath.theory_error) == (True, 0.0)
+
+
+def test_samples_of_the_energy_begin_in_the_window(made):
+    log = made("gravity.acceleration=[0, -0.3]", "run.collisions_per_disc=800")
+    first = log.observables["energy"][0][1]
+    assert energy_series(log, start=0.9 * first).start == first
+
+
+def test_directions_are_alike_in_a_square_box(made):
+    long = "run.collisions_per_disc=200"
+    assert (
+        registry.analyse(made(PERIODIC, long), "transport").collective.coefficients["viscosity"].difference.theory == 0
+    )
+    oblong = PERIODIC.replace("[8, 8]", "[16, 4]")
+    found = registry.analyse(made(oblong, long), "transport").collective.coefficients
+    assert found["viscosity"].difference.theory is None
+    assert found["heat_conductivity"].difference.theory is None
