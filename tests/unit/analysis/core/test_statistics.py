@@ -111,7 +111,7 @@ def test_inefficiency_of_a_known_process(memory, expected):
 def test_constant_and_short_series():
     constant = statistics.mean(np.full(50, 2.5), theory=2.5)
     assert (constant.value, constant.standard_error, constant.deviation) == (2.5, 0.0, None)
-    rounded = statistics.mean(2.5 + np.spacing(2.5) * np.random.default_rng(1).integers(0, 3, 50), theory=2.5)
+    rounded = statistics.mean(2.5 + np.spacing(2.5) * np.random.default_rng(1).integers(0, 4000, 50), theory=2.5)
     assert (rounded.standard_error, rounded.deviation) == (0.0, None)
     assert np.isnan(statistics.mean(np.array([1.0])).standard_error)
 
