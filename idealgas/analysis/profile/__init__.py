@@ -9,7 +9,7 @@ ANALYSIS = Analysis(
     help="""Measure density and temperature in strips along an axis, and the heat given by walls.
 
     Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and T^(3/2) linear in the
-    position between two thermal sides, without the temperature jump at a thermal side.
+    position between two thermal sides, with the temperature jumps at them.
     """,
     options=(
         Option(

@@ -13,6 +13,7 @@ from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -179,26 +180,28 @@ def _of_species(
 ) -> SpeciesProfile:
     """Profiles of one species from its sums (F, K, 3); strip: area of a strip, length²."""
     strips = range(sums.shape[1])
-    n, t = (None, None) if expected is None else (expected.density, expected.temperature)
 
     def per_disc(k: int, column: int) -> Estimate:
         if np.count_nonzero(sums[:, k, 0]) < FEWEST_FRAMES:
             return Estimate(np.nan, np.nan, 0.0)
-        return ratio(sums[:, k, column], sums[:, k, 0], None if t is None else float(t[s, k]))
+        return ratio(sums[:, k, column], sums[:, k, 0], expected.of_temperature(s, k) if expected else None)
 
     return SpeciesProfile(
         name,
-        tuple(mean(sums[:, k, 0] / strip, None if n is None else float(n[s, k])) for k in strips),
+        tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None) for k in strips),
         tuple(per_disc(k, 1) for k in strips),
         tuple(per_disc(k, 2) for k in strips) if spinning else None,
-        _gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, None if t is None else t[s]),
+        _gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s),
     )
 
 
 def _gradient(
-    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: np.ndarray | None
+    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int
 ) -> Estimate | None:
-    """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T."""
+    """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T.
+
+    Theory may be too high at one end and too low at the other.
+    """
     known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
     if np.count_nonzero(known) < 2:
         return None
@@ -210,7 +213,9 @@ def _gradient(
     influence = (energies - temperature * counts) / weight
     theory = None
     if expected is not None:
-        theory = float(lever @ expected[known]) if np.ptp(expected[known]) > 0 else 0.0
+        along = expected.temperature[s, known]
+        slope = float(lever @ along) if np.ptp(along) > 0 else 0.0
+        theory = Theory(slope, 2 * expected.error / float(np.ptp(place)), expected.law)
     return mean(lever @ temperature + influence @ lever, theory)
 
 

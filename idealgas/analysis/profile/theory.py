@@ -6,6 +6,8 @@ import numpy as np
 
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import column_temperature, known_ensemble
+from idealgas.analysis.profile.conduction import conduct
+from idealgas.analysis.theory.values import Theory
 from idealgas.log import Log
 from idealgas.sides import sides_across
 
@@ -28,6 +30,16 @@ class Expected:
     dilute: bool
     density: np.ndarray
     temperature: np.ndarray
+    error: float
+
+    def of_density(self, s: int, k: int) -> Theory:
+        """Density of species s in strip k."""
+        density = float(self.density[s, k])
+        return Theory(density, density * self.error / float(self.temperature[s, k]), self.law)
+
+    def of_temperature(self, s: int, k: int) -> Theory:
+        """Temperature of species s in strip k."""
+        return Theory(float(self.temperature[s, k]), self.error, self.law)
 
 
 def natural_axis(log: Log) -> int:
@@ -52,33 +64,49 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     found = _course(log, axis, places, discs)
     if found is None:
         return None
-    law, weight, temperature = found
+    law, weight, temperature, error = found
     parts = weight.mean(axis=2) * size
     number = discs.number[:, None] * parts / parts.sum(axis=1, keepdims=True)
     strips = np.diff(edges) * log.box[1 - axis]
-    return Expected(law, law != UNIFORM, number / strips, (weight * temperature).mean(axis=2) / weight.mean(axis=2))
+    mean_temperature = (weight * temperature).mean(axis=2) / weight.mean(axis=2)
+    return Expected(law, law != UNIFORM, number / strips, mean_temperature, error)
 
 
-def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> tuple[str, np.ndarray, np.ndarray] | None:
-    """Name of the law, and relative density and temperature at the coordinates `places` (S, K, P); None if unknown."""
+Course = tuple[str, np.ndarray, np.ndarray, float]
+
+
+def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Course | None:
+    """Name of the law, relative density and temperature at the coordinates `places` (S, K, P), and the error of T.
+
+    None if unknown.
+    """
     one = np.ones_like(places)
     properties = log.scene.properties
     low, high = (properties.emits[side] for side in sides_across(axis))
     if len(properties.temperatures) == 2 and low is not None and high is not None:
-        others = properties.bath is not None or any(
-            properties.emits[side] is not None for side in sides_across(1 - axis)
-        )
-        if not properties.straight_flight or not properties.lossless or low == high or others:
-            return None
-        power = low**1.5 + (high**1.5 - low**1.5) * places / log.box[axis]
-        temperature = power ** (2 / 3)
-        return "T^(3/2) in a straight line between the walls, nT the same (Fourier)", 1 / temperature, temperature
+        return None if low == high else _conduction(log, axis, places, (low, high))
     if log.gravity[axis]:
         if (t := column_temperature(log, axis, discs)) is None:
             return None
         weight = np.exp(discs.mass[:, None, None] * log.gravity[axis] * (places - log.box[axis] / 2) / t)
-        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one
+        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one, 0.0
     equilibrium = known_ensemble(log)
     if equilibrium is None:
         return None
-    return UNIFORM, one, equilibrium.of_species[:, None, None] * one
+    return UNIFORM, one, equilibrium.of_species[:, None, None] * one, 0.0
+
+
+def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, float]) -> Course | None:
+    """Fourier's law between two thermal sides across an axis, for equal discs without spin and no other heat."""
+    properties, gas = log.scene.properties, log.discs
+    others = properties.bath is not None or any(properties.emits[side] is not None for side in sides_across(1 - axis))
+    alike = properties.straight_flight and properties.lossless and not properties.spins
+    if others or not alike or len(gas.species_names) > 1:
+        return None
+    found = conduct(*sides, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
+    if found is None:
+        return None
+    power = found.low**1.5 + (found.high**1.5 - found.low**1.5) * places / log.box[axis]
+    temperature = power ** (2 / 3)
+    law = "T^(3/2) in a straight line and nT the same (Fourier), from {:.6g} to {:.6g} beside the walls".format(*found)
+    return law, 1 / temperature, temperature, found.error

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -74,6 +75,15 @@ def test_common_motion_is_no_temperature(made):
 
 
 # ── runs that count once ──
+
+
+def test_time_steps_are_said(made):
+    steps = made(PERIODIC, "run.method='time_driven'", "run.dt=0.01")
+    assert re.search(
+        r"0\.0[89]\d* diameters closer: Z - 1 is too small", only(registry.analyse(steps, "pressure"), "time steps")
+    )
+    assert "time steps" in "".join(status(steps).premises)
+    assert silent(registry.analyse(made(PERIODIC), "pressure"), "time steps")
 
 
 @pytest.mark.parametrize("name", ["pressure", "heat-capacity", "effusion"])

@@ -65,9 +65,23 @@ def test_laws_of_heat_take_collisions_that_lose_none(made):
     assert registry.analyse(made(*floor), "profile", start=0.0).law is not None
     assert registry.analyse(made(*floor, SPIN), "profile", start=0.0).law is None
     two = "box={size=[8, 8], left={thermal=1}, right={thermal=4}%s}"
-    assert "Fourier" in registry.analyse(made(two % ""), "profile", start=0.0).law
-    assert registry.analyse(made(two % ", bottom={thermal=1}"), "profile", start=0.0).law is None
-    assert registry.analyse(made(two % "", "thermostat={temperature=1, rate=1}"), "profile", start=0.0).law is None
+
+    def law(*scene):
+        return registry.analyse(made("species.gas.count=160", *scene), "profile", start=0.0).law
+
+    assert "Fourier" in law(two % "")
+    assert law(two % "", SPIN.replace("0}", "1}")) is None
+    assert law(two % ", bottom={thermal=1}") is None
+    assert law(two % "", "thermostat={temperature=1, rate=1}") is None
+
+
+def test_fourier_s_law_takes_many_mean_free_paths(made):
+    two = ("box={size=[16, 4], left={thermal=1}, right={thermal=2}}", "run.collisions_per_disc=300")
+    found = registry.analyse(made("species.gas.count=160", *two), "profile")
+    for entry in (*found.species[0].temperature, *found.species[0].density, found.species[0].gradient):
+        assert abs(entry.deviation) < 4
+        assert entry.theory_error > 0
+    assert registry.analyse(made("species.gas.count=10", *two), "profile").law is None
 
 
 def test_laws_of_many_discs_take_many(made):
