@@ -21,6 +21,12 @@ LEAST_STRAIN = 1e-9
 MANY_HITS = 100.0
 """Hits of a disc at rest in a mean free time of the gas, above which `check` warns of them."""
 
+ROUGH_REST = (
+    "warning: Rough collisions take the energy of motion in the end, and discs then bounce ever lower and more often; "
+    "no contact duration bounds that. Collisions of discs become rare: end such a run by `run.until`."
+)
+"""What `check` says of discs that a constant force presses to walls where roughness alone loses energy."""
+
 
 @click.command(epilog="Example: idealgas check gas.toml --set species.count=500")
 @scene_argument
@@ -59,6 +65,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
+    if scene.properties.isolated and scene.properties.elastic and not scene.properties.lossless and any(scene.press):
+        echo(ROUGH_REST)
     echo(f"threads: {threads.number} ({threads.because})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
     echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")

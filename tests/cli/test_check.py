@@ -147,3 +147,11 @@ def test_discs_that_may_come_to_rest(override, said, warned, tmp_path):
     assert warned in result.stdout
     found = json.loads(called("check", "scene.toml", "--json", "--set", override, folder=tmp_path).stdout)
     assert (found["rest"] is None) == (not said and not warned)
+
+
+def test_rough_discs_that_come_to_rest(tmp_path):
+    (tmp_path / "scene.toml").write_text(RESTING.replace("restitution.wall = 0.9", "rotation.wall_roughness = 0.5"))
+    warned = "warning: Rough collisions take the energy"
+    assert warned in called("check", "scene.toml", folder=tmp_path).stdout
+    for override in ("rotation.wall_roughness=1", "gravity=", "box.bottom={ thermal = 1 }"):
+        assert warned not in called("check", "scene.toml", "--set", override, folder=tmp_path).stdout
