@@ -22,10 +22,10 @@ MANY_HITS = 100.0
 """Hits of a disc at rest in a mean free time of the gas, above which `check` warns of them."""
 
 ROUGH_REST = (
-    "warning: Rough collisions take the energy of motion in the end, and discs then bounce ever lower and more often; "
-    "no contact duration bounds that. Collisions of discs become rare: end such a run by `run.until`."
+    "Rough collisions take the energy of motion in the end; discs on which a force presses then collide ever more "
+    "often, which no contact duration bounds. The run may end where a disc collides without end, before `run.until`."
 )
-"""What `check` says of discs that a constant force presses to walls where roughness alone loses energy."""
+"""What `check` warns of where a constant force presses discs that roughness slows down."""
 
 
 @click.command(epilog="Example: idealgas check gas.toml --set species.count=500")
@@ -51,7 +51,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         sharing = {"threads": threads.number, "threads_because": threads.because}
         shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
-        data(json.dumps({"scene": tables, **effects, **sharing, "lattice": shape, **asdict(expected)}, indent=2))
+        others = {"lattice": shape, "warning": ROUGH_REST if _rests_roughly(scene) else None}
+        data(json.dumps({"scene": tables, **effects, **sharing, **others, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
     print_tables([_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until)])
@@ -65,8 +66,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
-    if scene.properties.isolated and scene.properties.elastic and not scene.properties.lossless and any(scene.press):
-        echo(ROUGH_REST)
+    if _rests_roughly(scene):
+        echo(f"warning: {ROUGH_REST}")
     echo(f"threads: {threads.number} ({threads.because})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
     echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
@@ -95,6 +96,13 @@ def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:
             f"warning: A disc at rest makes up to {rest.per_free_time:.3g} times the events of a disc of the gas at "
             f"first, all {number} together {number * most:.3g} per time; a longer contact duration bounds them."
         )
+
+
+def _rests_roughly(scene: "Scene") -> bool:
+    """Whether a constant force presses discs that roughness slows down, and no heat bath keeps moving."""
+    if scene.rotation is None or scene.thermostat or not any(scene.press):
+        return False
+    return any(-1 < roughness < 1 for roughness in (scene.rotation.roughness, scene.rotation.wall_roughness))
 
 
 def _absent(scene: "Scene") -> tuple[str, ...]:

@@ -4,13 +4,10 @@ An analysis tests its own premises and puts a sentence for each one that does no
 are those that all analyses share, and those of several logs together.
 """
 
-import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from idealgas.analysis.core.result import Origin, Result
-from idealgas.analysis.theory import conserved
+from idealgas.analysis.theory import conserved, time_steps
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.scene import Scene
@@ -28,20 +25,7 @@ WIDE, WIDE_PERIODIC = 20.0, 5.0
 
 def of_log(log: Log) -> tuple[str, ...]:
     """Sentences on premises of every average over time that the gas of a log, or how it was made, takes away."""
-    return (*conserved.premises(log.scene, log.discs), *_in_steps(log))
-
-
-def _in_steps(log: Log) -> tuple[str, ...]:
-    """Sentence on a log that was made by time steps."""
-    step = log.scene.run.dt
-    if log.scene.run.method != "time_driven" or step is None:
-        return ()
-    moved = math.sqrt(2) * step * float(np.linalg.norm(log.discs.velocity, axis=1).mean())
-    part = moved / (2 * float(log.discs.radius.mean()))
-    return (
-        f"Made by time steps, in which discs come {part:.2g} diameters closer: Z - 1 is too small by one to two times "
-        "that part, rates by less; `idealgas accuracy` measures it.",
-    )
+    return (*conserved.premises(log.scene, log.discs), *time_steps.premises(log.scene, log.discs))
 
 
 def origin_of(scene: Scene, path: str) -> Origin:

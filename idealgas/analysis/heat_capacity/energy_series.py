@@ -51,9 +51,9 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         at = np.flatnonzero(np.isin(time, every * np.arange(last // every + 1)) & (time >= first_time) & (time <= last))
     else:
         step = np.diff(time).max()
-        grid = np.arange(first_time, last, step)
-        at = np.unique(time.searchsorted(grid))
-        at = at[at < time.searchsorted(last, "right")]
+        grid = np.arange(first_time, last + 1e-9 * step, step)
+        at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample at a point of the grid, but for rounding
+        at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(last, "right"))]
     frame = drift(log)
     common = log.discs.mass.sum() * (frame @ frame) / 2
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))

@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.equilibrium import drift, kept_momentum
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, inefficiency, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import LARGEST_ERROR as LARGEST_THEORY_ERROR
+from idealgas.analysis.theory import hard_discs, values
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -122,8 +121,7 @@ def heat_capacity(
         kinds.append(PISTON)
     if not kinds:
         return _closed_box(log, start, end, progress)
-    series = energy_series(log, start, end)
-    dof = 2 * n - int(kept_momentum(log).sum())
+    series, dof = energy_series(log, start, end), _degrees_of_freedom(log)
     capacity, excess = expected_capacity(log, series)
     if BATH in kinds:
         (bath,) = properties.temperatures
@@ -141,6 +139,11 @@ def heat_capacity(
     routes, measured = {} if lacking else {route: found}, (_mean_energy(series.energy / n), temperature, thermometer)
     value, error = (None, 0.0) if capacity is None else (capacity.value, capacity.error)
     return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, value, excess, error, premises=lacking)
+
+
+def _degrees_of_freedom(log: Log) -> int:
+    """Degrees of freedom of the motion of the discs relative to that of the gas as a whole."""
+    return 2 * len(log.discs) - int(kept_momentum(log).sum())
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:
@@ -165,23 +168,24 @@ def too_few(route: str, found: Estimate, samples: float) -> tuple[str, ...]:
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:
     """Heat capacity C per disc by theory, and C_P - C_A per disc with a piston (k_B = 1); None where theory is unknown.
 
-    Each degree of freedom adds 1/2. The position of a disc under gravity adds 1 - x² eˣ/(eˣ - 1)² with x = m g h/T and
-    the height h that its centre can reach; N discs of a fixed energy differ from that by a part 1/N. A piston adds
-    Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
+    Each degree of freedom adds 1/2; a conserved momentum takes one away. The position of a disc under gravity adds
+    1 - x² eˣ/(eˣ - 1)² with x = m g h/T and the height h that its centre can reach; N discs of a fixed energy differ
+    from that by a part 1/N. A piston adds Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
     """
-    scene, gas = log.scene, log.discs
-    per_disc, part = 1.5 if scene.properties.spins else 1.0, 0.0
+    scene, gas, part = log.scene, log.discs, 0.0
+    motion = _degrees_of_freedom(log) / (2 * len(gas))
+    per_disc = motion + (0.5 if scene.properties.spins else 0.0)
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
     if pull.any() and (not (scene.properties.fixed_walls and scene.properties.empty) or pull.all() or equilibrated):
         return None, None
     if pull.any():
         axis = int(np.flatnonzero(pull)[0])
-        temperature = float(series.kinetic.mean() / len(gas))
+        temperature = float(series.kinetic.mean() / (len(gas) * motion))
         x = float(gas.mass[0] * abs(pull[axis]) * (gas.box[axis] - 2 * gas.radius[0]) / temperature)
         per_disc += 1 - x * x * math.exp(-x) / math.expm1(-x) ** 2
         part = FEW_IN_COLUMN / len(gas) if scene.properties.isolated else 0.0
-        if part > LARGEST_THEORY_ERROR:
+        if part > values.LARGEST_ERROR:
             return None, None
     if series.position is None or scene.piston is None:
         return Theory(per_disc, part * per_disc, SOURCE), None
@@ -195,7 +199,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
     z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
     slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
     excess = z * z / (z + phi * slope)
-    return Theory(per_disc + excess, part * per_disc, SOURCE), excess
+    return Theory(per_disc + excess, 0.0, SOURCE), excess
 
 
 def _closed_box(
@@ -208,12 +212,14 @@ def _closed_box(
         raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
-    n, energy = measured.number, log.discs.kinetic_energy / measured.number
+    n, whole, expected = measured.number, drift(log), _degrees_of_freedom(log) / (2 * measured.number)
+    energy = (log.discs.kinetic_energy - log.discs.mass.sum() * (whole @ whole) / 2) / n
     error = energy * t.standard_error / t.value**2
-    per_disc = Estimate(energy / t.value, error, t.independent_samples, 1.0, relative)
+    per_disc = Estimate(energy / t.value, error, t.independent_samples, expected, relative * expected)
     exact = Estimate(energy, 0.0, math.inf)
     routes, how, said = {"E/T": per_disc}, "pressure on the walls", measured.premises
-    return Measured(str(log.path), CLOSED, n, exact, t, how, routes, 1.0, None, relative, premises=said)
+    theory = expected, None, relative * expected
+    return Measured(str(log.path), CLOSED, n, exact, t, how, routes, *theory, premises=said)
 
 
 def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: Theory | None, piston: bool) -> Estimate:

@@ -38,15 +38,16 @@ def conduct(low: float, high: float, size: float, density: float, diameter: floa
     size: distance of the sides, length. density: mean number density, 1/length². diameter: of a disc, length. T^(3/2)
     changes evenly from side to side, as the conductivity goes with √T, and nT is the same everywhere.
     """
-    a, b = low, high
+    ratio = high / low
+    a, b = 1.0, ratio  # in units of the lower side's
     for _ in range(ROUNDS):
-        if (b - a) / (high - low) < LEAST_INSIDE / 2:
+        if (b - a) / (ratio - 1) < LEAST_INSIDE / 2:
             return None
-        rise = b**1.5 - a**1.5
-        pressure = density * rise / (3 * (math.sqrt(b) - math.sqrt(a)))  # density over the mean of 1/T
-        jump = JUMP * hard_discs.mean_free_path(diameter, pressure, 0.0) * 2 / 3 * rise / size
-        a += STEP * (low + jump * math.sqrt(a) - a)
-        b += STEP * (high - jump * math.sqrt(b) - b)
-    if (b - a) / (high - low) < LEAST_INSIDE:
+        pressure = density * (a + math.sqrt(a * b) + b) / 3  # density over the mean of 1/T
+        gradient = (b**1.5 - a**1.5) / size  # of T^(3/2)
+        jump = JUMP * hard_discs.mean_free_path(diameter, pressure, 0.0) * 2 / 3 * gradient
+        a += STEP * (1.0 + jump * math.sqrt(a) - a)
+        b += STEP * (ratio - jump * math.sqrt(b) - b)
+    if (b - a) / (ratio - 1) < LEAST_INSIDE:
         return None
-    return Conduction(a, b, JUMP_ERROR * (abs(a - low) + abs(b - high)) / 2)
+    return Conduction(low * a, low * b, JUMP_ERROR * low * (abs(a - 1.0) + abs(b - ratio)) / 2)

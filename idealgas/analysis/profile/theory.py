@@ -1,5 +1,6 @@
 """Profiles of density and temperature by theory, for dilute gases of discs that are small compared with a strip."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +24,8 @@ class Expected:
     """Profiles by theory for S species and K strips.
 
     law: name of the law. dilute: whether it holds in dilute gases only. density: (S, K), mean number density of each
-    strip, 1/length². temperature: (S, K), mean temperature of each degree of freedom, energy.
+    strip, 1/length². temperature: (S, K), mean temperature of each degree of freedom, energy. error: of temperatures,
+    energy.
     """
 
     law: str
@@ -33,9 +35,10 @@ class Expected:
     error: float
 
     def of_density(self, s: int, k: int) -> Theory:
-        """Density of species s in strip k."""
-        density = float(self.density[s, k])
-        return Theory(density, density * self.error / float(self.temperature[s, k]), self.law)
+        """Density of species s in strip k; errors of all temperatures change the pressure, which all strips have."""
+        density, cold = self.density[s], self.error / self.temperature[s]
+        error = math.hypot(cold[k], density @ cold / density.sum())
+        return Theory(float(density[k]), float(density[k] * error), self.law)
 
     def of_temperature(self, s: int, k: int) -> Theory:
         """Temperature of species s in strip k."""
@@ -108,5 +111,6 @@ def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, flo
         return None
     power = found.low**1.5 + (found.high**1.5 - found.low**1.5) * places / log.box[axis]
     temperature = power ** (2 / 3)
-    law = "T^(3/2) in a straight line and nT the same (Fourier), from {:.6g} to {:.6g} beside the walls".format(*found)
+    beside = f"from {found.low:.6g} to {found.high:.6g} beside the walls"
+    law = f"T^(3/2) in a straight line and nT the same (Fourier), {beside}"
     return law, 1 / temperature, temperature, found.error

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.theory import conserved, hard_discs
+from idealgas.analysis.theory import conserved, hard_discs, time_steps
 from idealgas.analysis.theory.column import DENSEST, barometric_temperature, column_rates
 from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
@@ -141,7 +141,11 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         bytes=_bytes(scene, len(gas), rows, duration),
         species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
-        premises=(*conserved.premises(scene, gas), *conserved.lost_motion(scene, gas)),
+        premises=(
+            *conserved.premises(scene, gas),
+            *conserved.lost_motion(scene, gas),
+            *time_steps.premises(scene, gas),
+        ),
         rest=scene.rest,
     )
 

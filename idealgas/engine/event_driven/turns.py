@@ -85,9 +85,9 @@ def count_at_one_time(time, now, events_at_this_time, n, border):
 
 @inline
 def note_rows(time, b):
-    """Note an event with rows. It is too late if one of its time came before a disc was posted that may be in it.
+    """Note an event with rows; give up if it has the time of the one before, and a disc was posted in between.
 
-    Which of the two comes first was then not asked, and both rows may stand side by side.
+    If that disc is in this event, nobody has asked which of the two comes first, and their rows stand side by side.
     """
     own = b.own[0]
     if own.posted and time == own.row_time:

@@ -80,7 +80,8 @@ def test_common_motion_is_no_temperature(made):
 def test_time_steps_are_said(made):
     steps = made(PERIODIC, "run.method='time_driven'", "run.dt=0.01")
     assert re.search(
-        r"0\.0[89]\d* diameters closer: Z - 1 is too small", only(registry.analyse(steps, "pressure"), "time steps")
+        r"0\.0[89]\d* diameters relative to each other at the start, Z - 1 is too small",
+        only(registry.analyse(steps, "pressure"), "time steps"),
     )
     assert "time steps" in "".join(status(steps).premises)
     assert silent(registry.analyse(made(PERIODIC), "pressure"), "time steps")

@@ -76,11 +76,11 @@ def test_laws_of_heat_take_collisions_that_lose_none(made):
 
 
 def test_fourier_s_law_takes_many_mean_free_paths(made):
-    two = ("box={size=[16, 4], left={thermal=1}, right={thermal=2}}", "run.collisions_per_disc=300")
-    found = registry.analyse(made("species.gas.count=160", *two), "profile")
-    for entry in (*found.species[0].temperature, *found.species[0].density, found.species[0].gradient):
-        assert abs(entry.deviation) < 4
-        assert entry.theory_error > 0
+    """In all strips deviations are as large as errors; without the jumps of T at the walls their rms would be 1.4."""
+    two = ("box={size=[16, 4], left={thermal=1}, right={thermal=2}}", "run.collisions_per_disc=1500")
+    (found,) = registry.analyse(made("species.gas.count=160", *two), "profile").species
+    deviations = np.array([entry.deviation for entry in (*found.temperature, *found.density)])
+    assert 0.6 < np.sqrt((deviations**2).mean()) < 1.2
     assert registry.analyse(made("species.gas.count=10", *two), "profile").law is None
 
 
@@ -198,6 +198,20 @@ def test_a_heat_capacity_under_gravity_is_that_of_many_discs(made):
     assert theory("species.gas.count=4").theory is None
     bath = theory("species.gas.count=4", "thermostat={temperature=1, rate=1}")
     assert (bath.theory is not None, bath.theory_error) == (True, 0.0)
+
+
+def test_a_conserved_momentum_is_no_degree_of_freedom(made):
+    """Nor is the motion that goes with it heat: theory is exact, and measured within 4 standard errors."""
+    drifting = np.random.default_rng(3).normal((3, 0), 1, (8, 2)).tolist()
+    gas = f"species=[{{name='gas', count=8, radius=0.1, velocities={drifting}}}]"
+    channel = 'box={size=[8, 8], left="periodic", right="periodic"}'
+    (route,) = registry.analyse(made(channel, gas, "run.collisions_per_disc=1000"), "heat-capacity").routes.values()
+    assert route.theory == 1 - 1 / 16
+    assert abs(route.deviation) < 4
+    rough = (PERIODIC, "rotation={inertia=0.5, roughness=1}", "species.gas.count=8", "log.snapshot_every=1")
+    (route,) = registry.analyse(made(*rough, "run.collisions_per_disc=1000"), "heat-capacity").routes.values()
+    assert route.theory == 1.5 - 1 / 8
+    assert abs(route.deviation) < 4
 
 
 def test_samples_of_the_energy_begin_in_the_window(made):
