@@ -11,7 +11,6 @@ from idealgas.analysis.cooling.theory import (
     CUMULANT_ERROR,
     LOSS_ERROR,
     RATIO_ERROR,
-    TESTED_FROM,
     TIME_ERROR,
     collision_rate,
     degrees_of_freedom,
@@ -128,7 +127,9 @@ def cooling(
     if len(window) < FEWEST:
         needs = f"the averages begin after {settled:.3g}; --from T sets a start by hand"
         raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions a disc ({needs})")
-    law = expected_course(grains, rate, t0, s0, time)
+    share = dof / (2 * len(log.discs))  # a conserved momentum leaves as much heat to fewer degrees of freedom
+    fast = None if rate is None else rate / share
+    law = expected_course(grains, fast, t0, s0, time)
     tenths = collisions / collisions[-1]
     early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
     together = mean_of_part(flow, tenths >= 0.9)
@@ -146,7 +147,7 @@ def cooling(
         None if law is None or log.inertia is None else law[1],
         float(time[window[0]]),
         float(time[-1]),
-        *_averages(grains, rate, t0, Course(*(series[window] for series in everything)), len(log.discs) / dof),
+        *_averages(grains, fast, t0, Course(*(series[window] for series in everything)), dof, len(log.discs)),
         early,
         late,
         together,
@@ -169,19 +170,23 @@ class Course(NamedTuple):
 
 
 def _averages(
-    grains: Grains, rate: float | None, t0: float, course: Course, spin_weight: float
+    grains: Grains, rate: float | None, t0: float, course: Course, dof: int, n: int
 ) -> tuple[Estimate, Estimate, Estimate, Estimate | None]:
     """Loss per collision, Haff's time, a₂ and the temperature ratio.
 
-    t0: temperature at time 0. spin_weight: degrees of freedom of spin over those of motion.
+    rate: collision rate of a disc of a gas that keeps no momentum, 1/time. t0: temperature at time 0. dof: degrees of
+    freedom of the motion of the n discs.
     """
-    energy = course.temperature + spin_weight * course.spin
+    energy, few = course.temperature + n / dof * course.spin, 1 / dof
     temperature = energy * (course.temperature / energy).mean()  # without what goes to and fro between motion and spin
     lost, apart = -np.diff(np.log(temperature)), np.diff(course.collisions)
-    loss = ratio(lost, apart, _theory(grains, granular.cooling_per_collision(grains), LOSS_ERROR))
+    expected = granular.cooling_per_collision(grains) * 2 * n / dof
+    loss = ratio(lost, apart, _theory(grains, expected, math.hypot(LOSS_ERROR, few)))
     slopes = np.diff(temperature**-0.5) / np.diff(course.time)  # the same at all times
     tau = None if rate is None else granular.cooling_time(grains, rate)
-    haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(grains, tau, TIME_ERROR))
+    haff = estimate(
+        lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(grains, tau, math.hypot(TIME_ERROR, few))
+    )
     if not grains.rough:
         a2 = _theory(grains, granular.fourth_cumulant(grains.normal), CUMULANT_ERROR)
         return loss, haff, mean(course.cumulant, a2), None
@@ -190,7 +195,7 @@ def _averages(
 
 
 def _theory(grains: Grains, value: float | None, relative: float) -> Theory | None:
-    if value is None or grains.normal < TESTED_FROM:
+    if value is None or grains.normal < granular.TESTED_FROM:
         return None
     return Theory(value, relative * abs(value), "homogeneous cooling")
 
@@ -199,8 +204,8 @@ def _untested(log: Log, grains: Grains) -> Iterator[str]:
     """Sentences on a gas of few discs, and on losses beyond the range of the laws."""
     if (number := len(log.discs)) < FEW:
         yield f"The laws are those of many discs, and here are {number}."
-    if grains.normal < TESTED_FROM:
-        yield f"There is no theory of collisions that lose more than those with e = {TESTED_FROM:g}."
+    if grains.normal < granular.TESTED_FROM:
+        yield f"There is no theory of collisions that lose more than those with e = {granular.TESTED_FROM:g}."
 
 
 def _premises(early: float, late: float, flow: float, cells: int) -> Iterator[str]:

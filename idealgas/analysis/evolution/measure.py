@@ -13,6 +13,7 @@ from idealgas.analysis.core.steadiness import steady_from
 from idealgas.analysis.core.window import span
 from idealgas.analysis.evolution.course import PressureCourse, pressure_course
 from idealgas.analysis.evolution.theory import Law, expected_course
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
@@ -175,7 +176,11 @@ def _rest(log: Log, course: PressureCourse | None, law: Law | None) -> Estimate 
         return None
     places = course.track[1]
     start = steady_from([places])
-    return None if start is None else mean(places[start:], law.piston if law else None)
+    if start is None:
+        return None
+    if law is None or law.piston is None:
+        return mean(places[start:])
+    return mean(places[start:], Theory(law.piston, law.piston_error, law.text))
 
 
 Series = dict[str, np.ndarray]

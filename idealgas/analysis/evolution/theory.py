@@ -19,6 +19,12 @@ FEW = 5
 STEPS = 128
 """Number of steps in the integration of the adiabat."""
 
+REST_ERROR = 0.12
+"""Error of the length of a gas below a piston at rest, relative to it and times N.
+
+30 runs of 10 discs had 1.1 % more than theory, 50 discs at a packing fraction of 0.5 had 0.15 % more.
+"""
+
 
 @dataclass(frozen=True)
 class Law:
@@ -26,7 +32,7 @@ class Law:
 
     text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
     coordinate of the piston at rest, length. pressure: outer pressure on it, energy/length². premises: sentences on
-    what it takes and does not hold.
+    what it takes and does not hold. piston_error: error of the coordinate, length.
     """
 
     text: str
@@ -35,6 +41,7 @@ class Law:
     piston: float | None = None
     pressure: float | None = None
     premises: tuple[str, ...] = ()
+    piston_error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -96,8 +103,12 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     table = log.scene.restitution
     if table is None or table.wall < 1 or not log.discs.kinetic_energy > 0:
         return None
+    if table.normal < granular.TESTED_FROM:
+        return None
     tau = haff_time(log)
-    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", _kinetic(log) / len(log.discs) / (1 + time / tau) ** 2)
+    said = "Haff's law is that of a uniform gas; `idealgas cooling` tells whether this one remains so."
+    temperature = _kinetic(log) / len(log.discs) / (1 + time / tau) ** 2
+    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", temperature, premises=(said,))
 
 
 def _kinetic(log: Log) -> float:
@@ -202,4 +213,4 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
     if _crowded(log, length) or table.outward * piston >= table.outward * table.stop(log.box):
         return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
-    return Law(text, t * one, None, piston, table.pressure)
+    return Law(text, t * one, None, piston, table.pressure, piston_error=REST_ERROR / n * length)

@@ -262,6 +262,8 @@ def _waits(log: Log, start: float | None, end: float | None, progress: Progress)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
     why_not = why_never_stationary(log)
+    if log.has_positions and len(log.discs) < FEW:
+        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible = {} if why_not else {"exponential": law}

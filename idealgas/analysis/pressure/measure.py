@@ -206,7 +206,15 @@ def _without_theory(
         free_paths=(),
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
         mechanical=found,
+        premises=_ends(log),
     )
+
+
+def _ends(log: Log) -> tuple[str, ...]:
+    """Sentence on faces of walls inside the box, where no events tell the ends of a wall from its faces."""
+    if log.has_events or not log.scene.wall:
+        return ()
+    return ("Without events the pressure on a face has also what discs give to the ends of its wall.",)
 
 
 def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:

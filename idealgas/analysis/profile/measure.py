@@ -13,6 +13,7 @@ from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
+from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -23,11 +24,11 @@ FEWEST_FRAMES = 32
 FEW = 20
 """Number of discs of a fixed energy below which their temperature falls with height, by 5 % and more."""
 
-DILUTE, LAYERED = 0.02, 0.1
-"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %.
+DILUTE = 0.02
+"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
 
-And that of a gas from which on layers at walls are said.
-"""
+LAYERED = 0.02
+"""Part by which layers at walls may raise the density of the strips there without being said, about (Z - 1) R/width."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,11 @@ def profile(
     spinning = log.inertia is not None
     species = tuple(_of_species(name, sums[:, s], edges, strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
-    premises = (*_unknown_strips(species), *_not_dilute(log, axis, species, expected), *_few(log, axis, expected))
+    premises = (
+        *_unknown_strips(species),
+        *_not_dilute(log, axis, float(edges[1] - edges[0]), species, expected),
+        *_few(log, axis, expected),
+    )
     return Profile(window, axis, edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
 
 
@@ -132,12 +137,18 @@ def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
             )
 
 
-def _not_dilute(log: Log, axis: int, species: Sequence[SpeciesProfile], expected: Expected | None) -> tuple[str, ...]:
-    """Sentence on a law for dilute gases, or on one without layers at walls, beside a gas that is dense."""
+def _not_dilute(
+    log: Log, axis: int, width: float, species: Sequence[SpeciesProfile], expected: Expected | None
+) -> tuple[str, ...]:
+    """Sentence on a law for dilute gases, or on one without layers at walls, beside a gas that is dense.
+
+    width: of a strip, length.
+    """
     if expected is None:
         return ()
     if not expected.dilute:
-        if log.periodic[axis] or log.discs.packing_fraction <= LAYERED:
+        crowding = float(hard_discs.compressibility(min(log.discs.packing_fraction, hard_discs.HIGHEST))) - 1
+        if log.periodic[axis] or crowding * min(log.discs.radius.max() / width, 1.0) <= LAYERED:
             return ()
         return ("Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them.",)
     density = np.array([[found.value for found in entry.density] for entry in species])

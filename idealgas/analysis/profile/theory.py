@@ -15,6 +15,12 @@ from idealgas.sides import sides_across
 UNIFORM = "uniform"
 """Name of the law of a gas that is the same everywhere."""
 
+FEW_ERROR = 1.5
+"""Error of the temperature in strips of an isolated column, relative to it and times the number of discs.
+
+Three runs each of 20 and of 30 discs were 8 and 6 % colder at the top.
+"""
+
 POINTS = 64
 """Number of points in a strip over which the theory is averaged."""
 
@@ -91,8 +97,9 @@ def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Cour
     if log.gravity[axis]:
         if (t := column_temperature(log, axis, discs)) is None:
             return None
+        few = FEW_ERROR / len(log.discs) if properties.isolated else 0.0
         weight = np.exp(discs.mass[:, None, None] * log.gravity[axis] * (places - log.box[axis] / 2) / t)
-        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one, 0.0
+        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one, few * t
     equilibrium = known_ensemble(log)
     if equilibrium is None:
         return None

@@ -158,7 +158,10 @@ def relaxation(
         first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
-        premises=tuple(_doubts(in_collisions, float(collisions[-1]), number, float(kurtosis[0]))),
+        premises=(
+            *_doubts(in_collisions, float(collisions[-1]), number, float(kurtosis[0])),
+            *_late(in_collisions, first > log.start_time),
+        ),
     )
 
 
@@ -181,6 +184,13 @@ def _doubts(fit: Estimate | None, seen: float, number: int, kurtosis: float) -> 
         )
     if number < FEW:
         yield f"The error of the relaxation time was calibrated with 200 and 500 discs; here are {number}."
+
+
+def _late(fit: Estimate | None, late: bool) -> tuple[str, ...]:
+    """Sentence on a course that begins after the start of the log, by chance nearer to equilibrium or farther."""
+    if fit is None or not late:
+        return ()
+    return ("The error of the relaxation time is that of a start with equal speeds; later courses scatter more.",)
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

@@ -83,6 +83,9 @@ KNOWN = ("uniform", "conserves_energy")
 """Properties that a scene needs for the theory to apply; no heat may come from walls either."""
 
 
+SLOW_BATH = 10.0
+"""Kicks of a disc in a run below which a forecast says that the heat bath is slow."""
+
 ROUGH = 0.02
 """Relative error of rates above which a forecast is marked as approximate."""
 
@@ -145,8 +148,20 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
             *conserved.premises(scene, gas),
             *conserved.lost_motion(scene, gas),
             *time_steps.premises(scene, gas),
+            *_slow_bath(scene, gas, duration),
         ),
         rest=scene.rest,
+    )
+
+
+def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...]:
+    """Sentence on a heat bath that takes longer than the run to make the gas as hot as itself."""
+    bath = scene.thermostat
+    if bath is None or duration is None or bath.rate * duration > SLOW_BATH:
+        return ()
+    return (
+        f"The heat bath takes some {1 / bath.rate:.3g} of time to make the gas as hot as itself; until then rates are "
+        f"those of the start, with T = {gas.kinetic_energy / len(gas):.3g}.",
     )
 
 

@@ -19,6 +19,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+TESTED_FROM = 0.8
+"""Restitution coefficient from which on the errors are known; below it there is no theory, as clusters soon form.
+
+Eight runs of 300 discs at φ = 0.05 had 0.91 of the loss at e = 0.6, and 0.74 at 0.4.
+"""
+
 
 class Grains(NamedTuple):
     """Coefficients of the collisions of discs: e, β and κ as above; β is -1 and κ is None for discs without spin."""

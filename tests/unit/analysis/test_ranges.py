@@ -4,11 +4,15 @@ import json
 
 import numpy as np
 import pytest
-from small_gases import PERIODIC, SLIT, TWO, only, silent
+from small_gases import GAS, PERIODIC, SLIT, TWO, only, silent
 
 from idealgas.analysis import registry
 from idealgas.analysis.heat_capacity.energy_series import energy_series
+from idealgas.analysis.theory.forecast import forecast
+from idealgas.analysis.theory.granular import Grains, cooling_per_collision
 from idealgas.errors import UserError
+from idealgas.gas.build import make_gas
+from idealgas.scene import parse_scene
 
 SPIN = "rotation={inertia=0.5, roughness=0}"
 
@@ -118,6 +122,46 @@ def test_a_uniform_density_takes_no_layers(made):
     dense = made("species.gas.radius=0.4", "run.collisions_per_disc=20")
     only(registry.analyse(dense, "profile", start=0.0), "lie in layers at walls")
     assert silent(registry.analyse(made(), "profile", start=0.0), "layers")
+    only(registry.analyse(made("species.gas.count=120"), "profile", start=0.0, bins=40), "lie in layers at walls")
+
+
+def test_a_barometric_law_is_that_of_many_discs(made):
+    (column,) = registry.analyse(made("gravity.acceleration=[0, -0.2]"), "profile", start=0.0, bins=4).species
+    for entry in column.temperature:
+        assert entry.theory_error == pytest.approx(1.5 / 40 * entry.theory)
+    floor = ("gravity.acceleration=[0, -0.2]", "box={size=[8, 8], bottom={thermal=1}}")
+    (column,) = registry.analyse(made(*floor), "profile", start=0.0).species
+    assert column.temperature[0].theory_error == 0
+
+
+def test_a_slit_takes_a_thin_gas(made):
+    thick = (*SLIT[:1], "species.gas.radius=0.15", SLIT[2].replace("to=[4, 5], opens", "to=[4, 3.4], opens"), *SLIT[3:])
+    thick = tuple(part.replace("{from=[4, 5]", "{from=[4, 3.4]") for part in thick)
+    found = registry.analyse(made(*thick), "effusion")
+    only(found, "discs crowd in the slit")
+    assert (found.speed.theory, found.expected) == (None, None)
+    thin = registry.analyse(made(*(part.replace("0.15", "0.03") for part in thick)), "effusion")
+    assert silent(thin, "crowd")
+    assert thin.speed.theory_error > 0
+
+
+def test_waits_are_exponential_for_many_discs(made):
+    few = registry.analyse(made("species.gas.count=10"), "histogram", quantity="wait")
+    assert few.distributions[0].tests == ()
+    assert registry.analyse(made(), "histogram", quantity="wait").distributions[0].tests
+
+
+def test_faces_without_events_have_the_ends_too(made):
+    wall = ("wall=[{from=[4, 2], to=[4, 6]}]", "log.pressure=true", "log.snapshot_every=0.2")
+    only(registry.analyse(made(*wall, "log.events=false"), "pressure", start=0.0), "to the ends of its wall")
+    assert silent(registry.analyse(made(*wall), "pressure", start=0.0), "to the ends of its wall")
+
+
+def test_a_heat_bath_takes_time(made):
+    hot = "species=[{name='gas', count=40, radius=0.1, temperature=100}]"
+    for rate, slow in ((0.001, True), (10.0, False)):
+        scene = parse_scene(GAS, overrides=(hot, f"thermostat={{temperature=1, rate={rate}}}"))
+        assert any("heat bath takes some" in said for said in forecast(scene, make_gas(scene)).premises) == slow
 
 
 def test_currents_and_heavy_discs_take_long_lags(made):
@@ -149,10 +193,16 @@ def test_laws_of_cooling_end_at_strong_losses(made):
     def found(normal):
         return registry.analyse(made(PERIODIC, f"restitution.normal={normal}", "run.collisions_per_disc=60"), "cooling")
 
-    assert found(0.9).loss.theory_error / found(0.9).loss.theory == pytest.approx(0.015)
+    known = found(0.9).loss
+    assert known.theory_error / known.theory == pytest.approx(np.hypot(0.015, 1 / 78))
+    assert known.theory == pytest.approx(cooling_per_collision(Grains(0.9)) * 40 / 39)
     assert silent(found(0.9), "no theory of collisions that lose more")
     assert (found(0.6).loss.theory, found(0.6).haff.theory, found(0.6).fourth.theory) == (None, None, None)
     only(found(0.6), "no theory of collisions that lose more than those with e = 0.8")
+    course = {e: registry.analyse(made(PERIODIC, f"restitution.normal={e}"), "evolution") for e in (0.9, 0.6)}
+    assert "Haff" in course[0.9].law.text
+    only(course[0.9], "Haff's law is that of a uniform gas")
+    assert course[0.6].law is None
 
 
 def test_a_relaxation_time_takes_a_start_like_that_of_its_error(made):
@@ -160,6 +210,8 @@ def test_a_relaxation_time_takes_a_start_like_that_of_its_error(made):
     only(registry.analyse(made(fast), "relaxation"), "a few discs are faster than most")
     equal = "species=[{name='gas', count=200, radius=0.05, speed=1}]"
     assert silent(registry.analyse(made(equal), "relaxation"), "faster than most")
+    assert silent(registry.analyse(made(equal), "relaxation"), "later courses")
+    only(registry.analyse(made(equal), "relaxation", start=0.2), "later courses scatter more")
 
 
 def test_a_law_of_a_piston_takes_a_fluid(made):

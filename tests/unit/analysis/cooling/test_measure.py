@@ -57,7 +57,7 @@ def test_clusters_are_said(make):
     assert clusters.startswith("Clusters form: numbers of discs in small cells scatter ")
     assert flow.startswith("Discs move together: ")
     assert found.last_scatter.value > 3 * found.first_scatter.value
-    assert found.temperature[-1] > 2 * found.law[-1]
+    assert found.law is None
 
 
 @pytest.mark.parametrize(
