@@ -51,7 +51,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         sharing = {"threads": threads.number, "threads_because": threads.because}
         shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
-        others = {"lattice": shape, "warning": ROUGH_REST if _rests_roughly(scene) else None}
+        others = {"lattice": shape, "warning": ROUGH_REST if scene.boundless_rest else None}
         data(json.dumps({"scene": tables, **effects, **sharing, **others, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
@@ -66,7 +66,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
-    if _rests_roughly(scene):
+    if scene.boundless_rest:
         echo(f"warning: {ROUGH_REST}")
     echo(f"threads: {threads.number} ({threads.because})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
@@ -96,13 +96,6 @@ def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:
             f"warning: A disc at rest makes up to {rest.per_free_time:.3g} times the events of a disc of the gas at "
             f"first, all {number} together {number * most:.3g} per time; a longer contact duration bounds them."
         )
-
-
-def _rests_roughly(scene: "Scene") -> bool:
-    """Whether a constant force presses discs that roughness slows down, and no heat bath keeps moving."""
-    if scene.rotation is None or scene.thermostat or not any(scene.press):
-        return False
-    return any(-1 < roughness < 1 for roughness in (scene.rotation.roughness, scene.rotation.wall_roughness))
 
 
 def _absent(scene: "Scene") -> tuple[str, ...]:

@@ -40,6 +40,7 @@ from idealgas.analysis.theory.values import SOLID, BoxTheory, NoTheoryError, The
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.gas.state import Gas
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 from idealgas.sides import OUTWARD, SIDES, axis_of
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
@@ -212,7 +213,7 @@ def _without_theory(
 
 def _ends(log: Log) -> tuple[str, ...]:
     """Sentence on faces of walls inside the box, where no events tell the ends of a wall from its faces."""
-    if log.has_events or not log.scene.wall:
+    if log.has_events or not walls_inside(log.scene):
         return ()
     return ("Without events the pressure on a face has also what discs give to the ends of its wall.",)
 

@@ -156,11 +156,11 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
 def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...]:
     """Sentence on a heat bath that takes longer than the run to make the gas as hot as itself."""
-    bath = scene.thermostat
-    if bath is None or duration is None or bath.rate * duration > SLOW_BATH:
+    rate = scene.properties.kicks
+    if not rate or duration is None or rate * duration > SLOW_BATH:
         return ()
     return (
-        f"The heat bath takes some {1 / bath.rate:.3g} of time to make the gas as hot as itself; until then rates are "
+        f"The heat bath takes some {1 / rate:.3g} of time to make the gas as hot as itself; until then rates are "
         f"those of the start, with T = {gas.kinetic_energy / len(gas):.3g}.",
     )
 

@@ -120,6 +120,11 @@ class Document(Table):
             return None
         return restitution.rest(self.restitution, self.contact_duration, self.free_time, self.press)
 
+    @property
+    def boundless_rest(self) -> bool:
+        """Whether a constant force presses discs that roughness slows down, without bounds for their collisions."""
+        return any(self.press) and rotation.loses(self.rotation) and self.thermostat is None
+
 
 CALLS: dict[str, Callable[[Document], Effect | None]] = {
     gravity.NAME: lambda scene: gravity.effect(scene.gravity),

@@ -21,10 +21,14 @@ class Rotation(Table):
     wall_roughness: Real = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")
 
 
+def loses(rotation: Rotation | None) -> bool:
+    """Whether collisions of rough discs, with each other or with walls, lose energy."""
+    return rotation is not None and any(-1 < r < 1 for r in (rotation.roughness, rotation.wall_roughness))
+
+
 def effect(rotation: Rotation | None) -> Effect | None:
     """What spins change, if discs have any."""
     if rotation is None:
         return None
-    lossless = {abs(rotation.roughness), abs(rotation.wall_roughness)} <= {1}
-    properties = Properties(lossless=lossless, inertia=rotation.inertia, grip=rotation.wall_roughness > -1)
+    properties = Properties(lossless=not loses(rotation), inertia=rotation.inertia, grip=rotation.wall_roughness > -1)
     return Effect(NAME, (("rotation",),), properties)
