@@ -77,7 +77,7 @@ def test_a_flow_that_walls_stop_becomes_heat():
     (sentence,) = found.premises
     assert "starts with a common motion (3, 0), 99.9% of its kinetic energy" in sentence
     assert "becomes heat at the walls" in sentence
-    (sentence,) = forecast(*made(STREAM, "thermostat={ temperature = 0.1, rate = 100 }")).premises
+    (sentence,) = forecast(*made(STREAM, "thermostat={ temperature = 0.1, rate = 1 }", "run.events=10000")).premises
     assert "is lost to the heat bath" in sentence
 
 
