@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.equilibrium import drift, energy_of_drift
 from idealgas.log import Log
 
 
@@ -31,7 +31,7 @@ def info(log: Log) -> dict[str, Any]:
             "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom)),
             "kinetic_energy": gas.kinetic_energy,
             "common_motion": frame.tolist(),
-            "temperature": gas.temperature - float(gas.mass.sum() * (frame @ frame)) / (2 * len(gas)),
+            "temperature": (gas.kinetic_energy - energy_of_drift(log)) / len(gas),
             "species": [
                 {"name": name, "number": number, "radius": radius, "mass": mass}
                 for name, number, radius, mass in species

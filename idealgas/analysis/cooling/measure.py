@@ -13,11 +13,10 @@ from idealgas.analysis.cooling.theory import (
     RATIO_ERROR,
     TIME_ERROR,
     collision_rate,
-    degrees_of_freedom,
     expected_course,
     grains_of,
 )
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.equilibrium import degrees_of_freedom, drift
 from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
@@ -184,9 +183,8 @@ def _averages(
     loss = ratio(lost, apart, _theory(grains, expected, math.hypot(LOSS_ERROR, few)))
     slopes = np.diff(temperature**-0.5) / np.diff(course.time)  # the same at all times
     tau = None if rate is None else granular.cooling_time(grains, rate)
-    haff = estimate(
-        lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=_theory(grains, tau, math.hypot(TIME_ERROR, few))
-    )
+    law = _theory(grains, tau, math.hypot(TIME_ERROR, few))
+    haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=law)
     if not grains.rough:
         a2 = _theory(grains, granular.fourth_cumulant(grains.normal), CUMULANT_ERROR)
         return loss, haff, mean(course.cumulant, a2), None

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import kept_momentum
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.analysis.theory.granular import Grains
 from idealgas.errors import NotApplicableError
@@ -54,11 +53,6 @@ def _harmless_walls(log: Log) -> bool:
     return not log.scene.properties.grip and (table is None or table.wall == 1)
 
 
-def degrees_of_freedom(log: Log) -> int:
-    """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
-    return 2 * len(log.discs) - int(kept_momentum(log).sum())
-
-
 def collision_rate(log: Log, temperature: float) -> float | None:
     """Collision rate of a disc with Maxwellian velocities, 1/time; None above the range of theory."""
     gas = log.discs
@@ -71,8 +65,6 @@ def expected_course(
     grains: Grains, rate: float | None, temperature: float, spin: float, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Temperatures of motion and spin (F,) of the uniform gas at times (F,); None without a rate or a theory."""
-    return (
-        None
-        if rate is None or grains.normal < granular.TESTED_FROM
-        else granular.homogeneous_cooling(grains, rate, temperature, spin, time)
-    )
+    if rate is None or grains.normal < granular.TESTED_FROM:
+        return None
+    return granular.homogeneous_cooling(grains, rate, temperature, spin, time)

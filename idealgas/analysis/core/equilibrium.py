@@ -44,6 +44,16 @@ def drift(log: Log) -> np.ndarray:
     return conserved.common_motion(log.scene, log.discs)
 
 
+def energy_of_drift(log: Log) -> float:
+    """Kinetic energy of the motion of the whole gas that is conserved, energy."""
+    return conserved.energy_of_motion(log.scene, log.discs)
+
+
+def degrees_of_freedom(log: Log) -> int:
+    """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
+    return 2 * len(log.discs) - int(kept_momentum(log).sum())
+
+
 def ensemble(log: Log) -> Ensemble:
     """Ensemble of the gas of a log.
 

@@ -48,7 +48,7 @@ class Effusion(Result):
     (INSTANTS,), this number by theory. speed: discs per time and open length, divided by the difference of the
     densities, length/time; each density is multiplied by the mean speed in its chamber over that of the gas. Its theory
     is ⟨v⟩/π; its error is not estimated, but that of a Poisson number of passages in both directions. Both theories are
-    None for a slit wider than a mean free path.
+    None for a slit wider than a mean free path, and for a chamber that is denser than DENSEST.
     """
 
     name: str
@@ -89,7 +89,7 @@ def effusion(
 
     n⟨v⟩/π discs per time and open length of the slit leave a gas of number density n and mean speed ⟨v⟩: that is the
     flux of kinetic theory through a slit much narrower than the mean free path; through a wider one more discs pass,
-    and for one wider than a mean free path there is no theory.
+    and for one wider than a mean free path, or from a dense chamber, there is no theory.
 
     start, end: times; by default from the opening of the slit to the end of the log. progress(done, in all) is called
     as states are read. Raises UserError unless the scene has one gate along an axis, one species and its events in the

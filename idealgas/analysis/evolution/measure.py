@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.equilibrium import drift, energy_of_drift
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.steadiness import steady_from
@@ -134,8 +134,7 @@ Course = tuple[np.ndarray, np.ndarray, np.ndarray | None, dict[str, np.ndarray]]
 def _samples(log: Log, inside: np.ndarray) -> Course:
     """Evolution from the samples stored during the run, for a log without events."""
     time, kinetic = log.observables["kinetic_energy"]
-    frame, n = drift(log), len(log.discs)
-    kinetic = kinetic - log.discs.mass.sum() * (frame @ frame) / 2
+    n, kinetic = len(log.discs), kinetic - energy_of_drift(log)
     spin = None
     if "rotational_energy" in log.observables:
         spin = 2 * log.observables["rotational_energy"][1][inside] / n

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.equilibrium import energy_of_drift
 from idealgas.analysis.core.window import after_gates, first_steady, measure
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -54,8 +54,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         grid = np.arange(first_time, last + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample at a point of the grid, but for rounding
         at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(last, "right"))]
-    frame = drift(log)
-    common = log.discs.mass.sum() * (frame @ frame) / 2
+    common = energy_of_drift(log)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
     if scene.piston and scene.piston.mass:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift, kept_momentum
+from idealgas.analysis.core.equilibrium import degrees_of_freedom, energy_of_drift
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, inefficiency, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
@@ -121,7 +121,7 @@ def heat_capacity(
         kinds.append(PISTON)
     if not kinds:
         return _closed_box(log, start, end, progress)
-    series, dof = energy_series(log, start, end), _degrees_of_freedom(log)
+    series, dof = energy_series(log, start, end), degrees_of_freedom(log)
     capacity, excess = expected_capacity(log, series)
     if BATH in kinds:
         (bath,) = properties.temperatures
@@ -139,11 +139,6 @@ def heat_capacity(
     routes, measured = {} if lacking else {route: found}, (_mean_energy(series.energy / n), temperature, thermometer)
     value, error = (None, 0.0) if capacity is None else (capacity.value, capacity.error)
     return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, value, excess, error, premises=lacking)
-
-
-def _degrees_of_freedom(log: Log) -> int:
-    """Degrees of freedom of the motion of the discs relative to that of the gas as a whole."""
-    return 2 * len(log.discs) - int(kept_momentum(log).sum())
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:
@@ -173,7 +168,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
     from that by a part 1/N. A piston adds Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas, part = log.scene, log.discs, 0.0
-    motion = _degrees_of_freedom(log) / (2 * len(gas))
+    motion = degrees_of_freedom(log) / (2 * len(gas))
     per_disc = motion + (0.5 if scene.properties.spins else 0.0)
     pull = np.array(log.gravity)
     equilibrated = len(gas.species_names) > 1
@@ -212,8 +207,8 @@ def _closed_box(
         raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
-    n, whole, expected = measured.number, drift(log), _degrees_of_freedom(log) / (2 * measured.number)
-    energy = (log.discs.kinetic_energy - log.discs.mass.sum() * (whole @ whole) / 2) / n
+    n, expected = measured.number, degrees_of_freedom(log) / (2 * measured.number)
+    energy = (log.discs.kinetic_energy - energy_of_drift(log)) / n
     error = energy * t.standard_error / t.value**2
     per_disc = Estimate(energy / t.value, error, t.independent_samples, expected, relative * expected)
     exact = Estimate(energy, 0.0, math.inf)

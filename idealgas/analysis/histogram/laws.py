@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble, drift, known_ensemble
+from idealgas.analysis.core.equilibrium import Ensemble, energy_of_drift, known_ensemble
 from idealgas.analysis.core.settling import why_no_equilibrium
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
@@ -75,9 +75,7 @@ def _highest(log: Log, start: float | None, end: float | None) -> float:
     time, kinetic = log.observables["kinetic_energy"]
     first, last = log.start_time if start is None else start, log.end_time if end is None else end
     inside = (time >= first) & (time <= last)
-    frame = drift(log)
-    common = log.discs.mass.sum() * (frame @ frame) / 2
-    highest = (float(kinetic[inside].max(initial=0.0)) - common) / len(log.discs)
+    highest = (float(kinetic[inside].max(initial=0.0)) - energy_of_drift(log)) / len(log.discs)
     highest = max(highest, log.discs.temperature) if not inside.any() else highest
     if not highest > 0:
         raise UserError(f"{log.path}: no disc moves")

@@ -17,7 +17,7 @@ DENSEST = 0.2
 
 LAYERS = 2000
 
-HIGHEST = 60.0
+TOP = 60.0
 """Scale heights above which there is no disc."""
 
 
@@ -79,7 +79,7 @@ def column_rates(
         length: of the box along the acceleration.
         across: of the box across it, length.
     """
-    length = min(length, HIGHEST * temperature / (float(mass.min()) * pull) + 2 * float(radius.max()))
+    length = min(length, TOP * temperature / (float(mass.min()) * pull) + 2 * float(radius.max()))
     layer, wide = length / LAYERS, across - 2 * radius
     above = (np.arange(LAYERS) + 0.5) * layer - radius[:, None]
     inside = (above > 0) & (above < length - 2 * radius[:, None])

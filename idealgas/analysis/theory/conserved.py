@@ -33,6 +33,12 @@ def common_motion(scene: Scene, gas: Gas) -> np.ndarray:
     return np.where(kept_momentum(scene), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
 
 
+def energy_of_motion(scene: Scene, gas: Gas) -> float:
+    """Kinetic energy of the motion of the whole gas that is conserved, energy."""
+    velocity = common_motion(scene, gas)
+    return float(gas.mass.sum() * (velocity @ velocity) / 2)
+
+
 def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
     """Velocity (2,) of the whole gas at its start that is no heat, length/time.
 

@@ -86,6 +86,9 @@ KNOWN = ("uniform", "conserves_energy")
 SLOW_BATH = 10.0
 """Kicks of a disc in a run below which a forecast says that the heat bath is slow."""
 
+NEARLY = 0.05
+"""Part by which the temperature at the start may differ from that of a slow heat bath without being said."""
+
 ROUGH = 0.02
 """Relative error of rates above which a forecast is marked as approximate."""
 
@@ -155,13 +158,15 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
 
 def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...]:
-    """Sentence on a heat bath that takes longer than the run to make the gas as hot as itself."""
-    rate = scene.properties.kicks
-    if not rate or duration is None or rate * duration > SLOW_BATH:
+    """Sentence on a heat bath that takes much of the run to make the gas as hot as itself."""
+    rate, bath = scene.properties.kicks, scene.properties.bath
+    if bath is None or duration is None or rate * duration > SLOW_BATH:
+        return ()
+    if abs(gas.temperature / bath - 1) < NEARLY:
         return ()
     return (
         f"The heat bath takes some {1 / rate:.3g} of time to make the gas as hot as itself; until then rates are "
-        f"those of the start, with T = {gas.kinetic_energy / len(gas):.3g}.",
+        f"those of the start, with T = {gas.temperature:.3g}.",
     )
 
 
@@ -202,8 +207,7 @@ def _spin_energy(scene: Scene) -> float:
 def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     """Rates of a uniform gas; None if a disc has no room to move."""
     freedom = 2 + scene.properties.spins
-    frame = conserved.common_motion(scene, gas)
-    kinetic = gas.kinetic_energy - float(gas.mass.sum() * (frame @ frame)) / 2
+    kinetic = gas.kinetic_energy - conserved.energy_of_motion(scene, gas)
     dof = freedom * len(gas) - int(conserved.kept_momentum(scene).sum())
     temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / max(dof, 1)
     if scene.properties.bath is not None:

@@ -8,12 +8,18 @@ from idealgas.scene import Scene
 
 
 def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Sentence on the time steps by which a gas moves, with how far two discs do so in one at its start, `gas`."""
+    """Sentence on the time steps by which a gas moves, with how far two discs do so in one at its start, `gas`.
+
+    Discs that are at rest there tell nothing of later steps.
+    """
     if scene.run.method != "time_driven" or scene.run.dt is None:
         return ()
-    velocity = conserved.common_motion(scene, gas)
-    heat = gas.kinetic_energy - gas.mass.sum() * (velocity @ velocity) / 2
-    moved = scene.run.dt * math.sqrt(math.pi * max(heat, 0.0) / gas.mass.sum())  # √2 ⟨|v|⟩ dt
+    heat = gas.kinetic_energy - conserved.energy_of_motion(scene, gas)
+    if not heat > 0:
+        return (
+            "By time steps, in which collisions come late or are missed; `idealgas accuracy` measures what that does.",
+        )
+    moved = scene.run.dt * math.sqrt(math.pi * heat / gas.mass.sum())  # √2 ⟨|v|⟩ dt
     part = moved / (2 * float(gas.radius.mean()))
     return (
         f"By time steps, in which two discs move {part:.2g} diameters relative to each other at the start, Z - 1 is "

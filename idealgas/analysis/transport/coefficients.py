@@ -207,7 +207,7 @@ def _coefficient(
 
 
 def _difference(series: np.ndarray, gas: Gas) -> Estimate:
-    """Difference of two routes, from the series of both; its theory, none but for the box of N discs, is of squares."""
+    """Difference of two routes, from the series of both; in a square box theory expects none, but for few discs."""
     error = DIRECTIONS / len(gas) * abs(float(series.mean()))
     theory = Theory(0.0, error, "isotropy") if gas.box[0] == gas.box[1] else None
     return mean(series[0] - series[1], theory)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_gases import PERIODIC, SLIT, TWO, WHOLE, only, silent
+from small_gases import GAS, PERIODIC, SLIT, TWO, WHOLE, only, silent
 
 from idealgas.analysis import registry
 from idealgas.analysis.core import premises
@@ -16,7 +16,10 @@ from idealgas.analysis.core.tables import estimates
 from idealgas.analysis.info import info
 from idealgas.analysis.report.sections import make_sections
 from idealgas.analysis.status import status
+from idealgas.analysis.theory.forecast import forecast
 from idealgas.errors import UserError
+from idealgas.gas.build import make_gas
+from idealgas.scene import parse_scene
 
 
 def combined(name, *logs):
@@ -85,6 +88,22 @@ def test_time_steps_are_said(made):
     )
     assert "time steps" in "".join(status(steps).premises)
     assert silent(registry.analyse(made(PERIODIC), "pressure"), "time steps")
+    velocities = np.random.default_rng(3).normal((50, 0), 1, (40, 2)).tolist()
+    for motion, words in (
+        (f"velocities={velocities}", r"move 0\.0[89]\d* diameters"),
+        ("temperature=0", "come late or are missed"),
+    ):
+        scene = parse_scene(
+            GAS,
+            overrides=(
+                PERIODIC,
+                "run.method='time_driven'",
+                "run.dt=0.01",
+                "run.until=10",
+                f"species=[{{name='gas', count=40, radius=0.1, {motion}}}]",
+            ),
+        )
+        assert re.search(words, forecast(scene, make_gas(scene)).premises[-1])
 
 
 @pytest.mark.parametrize("name", ["pressure", "heat-capacity", "effusion"])

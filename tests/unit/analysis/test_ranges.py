@@ -159,8 +159,8 @@ def test_faces_without_events_have_the_ends_too(made):
 
 def test_a_heat_bath_takes_time(made):
     hot = "species=[{name='gas', count=40, radius=0.1, temperature=100}]"
-    for rate, slow in ((0.001, True), (10.0, False)):
-        scene = parse_scene(GAS, overrides=(hot, f"thermostat={{temperature=1, rate={rate}}}"))
+    for bath, rate, slow in ((1, 0.001, True), (1, 10.0, False), (100, 0.001, False)):
+        scene = parse_scene(GAS, overrides=(hot, f"thermostat={{temperature={bath}, rate={rate}}}"))
         assert any("heat bath takes some" in said for said in forecast(scene, make_gas(scene)).premises) == slow
 
 
@@ -226,6 +226,9 @@ def test_a_law_of_a_piston_takes_a_fluid(made):
     assert json.dumps(found.as_dict(), allow_nan=False)
     stopped = ("piston={side='right', position=7, mass=5, pressure=0.01}", "run.collisions_per_disc=", "run.until=20")
     assert registry.analyse(made(*stopped), "evolution").law is None  # the gas pushes it to its end stop
+    held = ("piston={side='right', position=6, mass=5, pressure=1}", "run.collisions_per_disc=", "run.until=20")
+    law = registry.analyse(made(*held), "evolution").law
+    assert law.piston_error == pytest.approx(0.12 / 40 * law.piston)  # side='right': the gas begins at 0
 
 
 def test_tests_of_a_light_disc_take_samples_of_other_speeds(made):

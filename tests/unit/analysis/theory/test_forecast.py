@@ -198,6 +198,8 @@ def test_a_column_under_gravity():
     assert expected.wall_hit_rate == pytest.approx(flux * n * (m * g / t + 2 / (20 - 0.01)), rel=2e-2)
     assert expected.beyond == ()
     assert "dilute column" in expected.rough
+    towering = forecast_of("box.size=[20, 4e5]", *tall[1:], "gravity.acceleration=[0, -0.2]")
+    assert towering.collision_rate == pytest.approx(expected.collision_rate, rel=2e-3)
     sideways = forecast_of(
         "box.size=[400, 20]", *tall[1:3], "species.region=[360, 0, 400, 20]", "gravity.acceleration=[0.2, 0]"
     )
