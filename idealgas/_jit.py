@@ -27,9 +27,10 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 from numba.core.event import TimingListener, install_listener
 from numba.core.serialize import dumps
 from numba.core.types.containers import BaseTuple
-from numba.extending import overload, register_jitable
+from numba.core.typing.templates import infer_global
+from numba.extending import overload
 
-from idealgas._compiler import Compiler
+from idealgas._compiler import Compiler, Part
 
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
@@ -284,12 +285,25 @@ def njit(function: Callable) -> Any:
     return compiled
 
 
-_INLINE: dict[str, Any] = {"forceinline": True, "no_cfunc_wrapper": True, **_OPTIONS}
+_PART: dict[str, Any] = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True, **_OPTIONS}
+_INLINE: dict[str, Any] = {"forceinline": True, **_PART}
 
 
 def inline(function: Callable) -> Any:
     """Compile a small function that LLVM inserts into the entry points that call it; in Python it stays as it is."""
-    return register_jitable(**_INLINE)(function)
+    return _make_part(function, _INLINE)
+
+
+def out_of_line(function: Callable) -> Any:
+    """Compile a long or seldom function as part of the entry points that call it; in Python it stays as it is."""
+    return _make_part(function, {"forceinline": False, **_PART})
+
+
+def _make_part(function: Callable, options: dict[str, Any]) -> Callable:
+    """Let entry points call a function, compiled with these options."""
+    if not numba.config.DISABLE_JIT:
+        infer_global(function, Part(numba.njit(function, **options)))
+    return function
 
 
 def inline_by_type(function: Callable) -> Callable:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.atomics import LINE, add, exchange, load, store, wait
 from idealgas.engine.event_driven.scheduler import UNSETTLED, reschedule, withdraw
 
@@ -144,7 +144,7 @@ def is_posted(b):
     return found
 
 
-@njit
+@out_of_line
 def absorb(ids, state, until, b):
     """Enter what neighbours have posted; the clock is set back before they go on."""
     own = b.own[0]
@@ -170,7 +170,7 @@ def absorb(ids, state, until, b):
         store(b.words, word, np.int64(-1))
 
 
-@njit
+@out_of_line
 def hand_over(ids, state, i, b):
     """Post disc i to the neighbour beyond the border that is held, and wait until it is in that schedule."""
     own = b.own[0]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import NO_CONTACT, images_of, partner_rank, segment_partner
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
@@ -29,7 +29,7 @@ def wrapped_index(index, count, is_periodic):
     return index, 0
 
 
-@njit
+@out_of_line
 def gather_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
     """Do the work of `gather_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
     for step in range(3):
@@ -167,7 +167,7 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
     return precedes(own, rank, own, partner_rank(ids, prediction.partner))
 
 
-@njit
+@out_of_line
 def resolve_ties(record, ids, state, count, i, effects):
     """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
 

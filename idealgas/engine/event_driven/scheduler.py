@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, njit
+from idealgas._jit import aligned, inline, njit, out_of_line
 from idealgas.engine.event_driven.simultaneous import comes_first, settle_path
 from idealgas.physics.constants import NEVER
 
@@ -168,7 +168,7 @@ def is_settled(tree, time):
     return (tree.time[U(root_of(tree))] != time) | (tree.settled[0] == time)
 
 
-@njit
+@out_of_line
 def settle(tree, predictions, ids, i, j):
     """Put back the next events of disc i and, unless it is -1, of disc j, and settle the tree for their time.
 

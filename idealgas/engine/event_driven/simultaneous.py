@@ -6,14 +6,14 @@ some earliest event, and asks for the order only where the next one has the same
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.prediction import event_ids
 from idealgas.engine.order import precedes
 
 U = np.uintp
 
 
-@njit
+@out_of_line
 def comes_first(predictions, ids, i, j):
     """Whether disc i's next event comes before that of disc j at the same time."""
     a, b = event_ids(predictions[U(i)], ids, i)
@@ -33,7 +33,7 @@ def settle_group(tree, predictions, ids, group, parent):
     tree.winner[U(parent)] = first
 
 
-@njit
+@out_of_line
 def settle_path(tree, predictions, ids, i, time):
     """Settle the groups of disc i on all levels, as far as they have events of a time."""
     group = np.int64(i)

@@ -121,6 +121,7 @@ def test_slices_beyond_the_events_foretold_do_not_keep_threads_from_sharing(monk
 # ── sums are put together ──
 
 
+@np.errstate(over="ignore")  # words wrap around, of which Python warns
 def test_parts_of_sums_add_up_to_the_bit():
     draw = np.random.default_rng(5)
     terms = draw.normal(size=TOGETHER) * 10.0 ** draw.integers(-9, 12, TOGETHER)
