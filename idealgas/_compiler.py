@@ -24,12 +24,19 @@ from numba.extending import models, register_model
 class Part(types.Dispatcher):
     """Type of a function that becomes part of those that call it: compiled for types, whatever the values of literals.
 
-    numba's own way to call a plain Python function from compiled code tries several ways to compile it at every call.
+    numba's own way to call a plain Python function from compiled code tries several ways to compile it at every call,
+    and has clocks that hear of every call of LLVM.
     """
 
     def __init__(self, dispatcher: Any) -> None:
         super().__init__(dispatcher)
         self._kept = dispatcher  # numba refers to it weakly
+        dispatcher.compile = self._compile
+
+    def _compile(self, args: tuple) -> None:
+        """Compile the function for these types of arguments, unless it is."""
+        if args not in self._kept.overloads:
+            self._kept.add_overload(self._kept._compiler.compile(args, None))
 
     def get_call_type(self, context: Any, args: Iterable, kws: Mapping) -> Any:
         """Signature of a call, by numba's types of the arguments; compiles the function for them."""
@@ -43,7 +50,7 @@ register_model(Part)(models.OpaqueModel)
 class _Typing:
     """numba's typing context, where what a function of numba itself makes of some types is looked up only once."""
 
-    _known: ClassVar[dict[tuple, Any]] = {}
+    _known: ClassVar[dict[tuple, tuple]] = {}
 
     def __init__(self, context: Any) -> None:
         self._context = context
@@ -53,14 +60,17 @@ class _Typing:
 
     def resolve_function_type(self, function: Any, args: tuple, kws: Mapping) -> Any:
         """Signature of a call, by numba's types of the arguments; None if there is none."""
-        if isinstance(function, types.Type) and not isinstance(function, types.Function):  # one with a state
+        own: Any = function if isinstance(function, types.Type) else self._context._lookup_global(function)
+        if not isinstance(own, types.Function):
             return self._context.resolve_function_type(function, args, kws)
-        call = function, args, tuple(kws.items())
+        call = own, args, tuple(kws.items())
         if call not in self._known:
-            if (found := self._context.resolve_function_type(function, args, kws)) is None:
+            if (found := self._context.resolve_function_type(own, args, kws)) is None:
                 return None
-            self._known[call] = found
-        return self._known[call]
+            self._known[call] = found, own.get_impl_key(found)
+        signature, implementation = self._known[call]
+        own._impl_keys[signature.args] = implementation  # type: ignore[attr-defined]  # others may have compiled theirs
+        return signature
 
 
 _STEPS: tuple[type[CompilerPass], ...] = (

@@ -21,24 +21,32 @@ LEAST_PATIENCE = 3_000_000
 """Number of refused positions, of all discs together, before which random placement never gives up."""
 
 
+WALL = np.dtype([("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8")], align=True)
+"""Start of a wall, and the way from there to its end, length."""
+
+
 class Grid(NamedTuple):
     """Cells no smaller than the largest diameter, each with a linked list of the discs whose centres it contains.
 
     Attributes:
         first: (columns, rows) i4, index of the first disc of each cell, or -1.
         next: (N,) i4, index of the next disc in the same cell, or -1.
-        size: (2,) f8, width and height of a cell, length.
-        period: (2,) f8, width and height of the box, length; 0 along an axis that is not periodic.
-        wall: (W, 4) f8, x, y of the start and x, y of the end of every wall, images included, length.
+        width: of a cell, length.
+        height: of a cell, length.
+        period_x: width of the box if its left and right sides are periodic, length; else 0.
+        period_y: height of the box if its lower and upper sides are periodic, length; else 0.
+        wall: (W,) WALL, every wall, images included.
         wall_start: (columns * rows + 1,) i8, first entry of each cell in `wall_item`; cell (c, r) is c * rows + r.
         wall_item: i8, rows of `wall` that a disc of a cell may touch, cell by cell.
     """
 
     first: np.ndarray
     next: np.ndarray
-    size: np.ndarray
-    period: np.ndarray
-    wall: np.ndarray
+    width: float
+    height: float
+    period_x: float
+    period_y: float
+    wall: np.recarray
     wall_start: np.ndarray
     wall_item: np.ndarray
 
@@ -65,7 +73,9 @@ def make_grid(
     order = np.argsort(cell, kind="stable")
     start = np.searchsorted(cell[order], np.arange(shape[0] * shape[1] + 1))
     first, behind = np.full(shape, -1, np.int32), np.full(len(radius), -1, np.int32)
-    return Grid(first, behind, size, period, images, start, item[order])
+    made = np.hstack((images[:, :2], images[:, 2:] - images[:, :2])).view(WALL).reshape(-1).view(np.recarray)
+    (width, height), (period_x, period_y) = size.tolist(), period.tolist()
+    return Grid(first, behind, width, height, period_x, period_y, made, start, item[order])
 
 
 def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
@@ -91,7 +101,7 @@ def _cells_near(wall: np.ndarray, shape: list[int], size: np.ndarray, reach: flo
 def _cell(grid, x, y):
     """Column and row of the cell that contains the point (x, y)."""
     columns, rows = grid.first.shape
-    return min(int(x / grid.size[0]), columns - 1), min(int(y / grid.size[1]), rows - 1)
+    return min(int(x / grid.width), columns - 1), min(int(y / grid.height), rows - 1)
 
 
 @inline
@@ -126,12 +136,12 @@ def _is_free(grid, position, radius, x, y, reach, i):
     """Whether a disc of radius `reach` at (x, y) would overlap no wall and no disc of the grid but disc i."""
     columns, rows = grid.first.shape
     column, row = _cell(grid, x, y)
-    for c in range(*_around(column, columns, grid.period[0])):
-        for r in range(*_around(row, rows, grid.period[1])):
+    for c in range(*_around(column, columns, grid.period_x)):
+        for r in range(*_around(row, rows, grid.period_y)):
             k = grid.first[c % columns, r % rows]
             while k >= 0:
-                dx = nearest_image(x - position[k, 0], grid.period[0], grid.period[0] > 0.0)
-                dy = nearest_image(y - position[k, 1], grid.period[1], grid.period[1] > 0.0)
+                dx = nearest_image(x - position[k, 0], grid.period_x, grid.period_x > 0.0)
+                dy = nearest_image(y - position[k, 1], grid.period_y, grid.period_y > 0.0)
                 contact = reach + radius[k]
                 if k != i and dx * dx + dy * dy < contact * contact:
                     return False
@@ -144,13 +154,12 @@ def _is_clear(grid, cell, x, y, reach):
     """Whether a disc of radius `reach` at (x, y), a point of the cell, would overlap no wall."""
     for k in range(grid.wall_start[cell], grid.wall_start[cell + 1]):
         wall = grid.wall[grid.wall_item[k]]
-        along_x = wall[2] - wall[0]
-        along_y = wall[3] - wall[1]
-        dx = x - wall[0]
-        dy = y - wall[1]
-        share = min(max((dx * along_x + dy * along_y) / (along_x * along_x + along_y * along_y), 0.0), 1.0)
-        dx -= share * along_x
-        dy -= share * along_y
+        dx = x - wall.x
+        dy = y - wall.y
+        along = dx * wall.along_x + dy * wall.along_y
+        share = min(max(along / (wall.along_x * wall.along_x + wall.along_y * wall.along_y), 0.0), 1.0)
+        dx -= share * wall.along_x
+        dy -= share * wall.along_y
         if dx * dx + dy * dy < reach * reach:
             return False
     return True

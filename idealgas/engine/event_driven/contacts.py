@@ -191,21 +191,28 @@ def test_segments(record, ids, state, i, segments, effects):
     """Store disc i's contact with a wall segment of its cell if that is its earliest."""
     if segments is not None:
         cell = U(cell_index(state.cells, record[U(i)]))
-        prediction = state.prediction[U(i)]
-        own = np.int64(ids[U(i)])
-        for entry in range(state.walls.start[cell], state.walls.start[cell + U(1)]):
-            k = state.walls.item[U(entry)]
-            images = images_to_item(state.walls, U(entry), ids[U(i)], effects.periodic)
-            if misses_segment(record[U(i)], segments[U(k)], effects.gravity, effects.periodic, images):
-                continue
-            time = segment_contact(
-                record[U(i)], own, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
+        first, last = state.walls.start[cell], state.walls.start[cell + U(1)]
+        if first < last:
+            test_entries(
+                record[U(i)], ids, state.prediction[U(i)], np.int64(ids[U(i)]), state.walls, first, last, effects
             )
-            partner = segment_partner(k)
-            if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
-                prediction.contact = time
-                prediction.partner = partner
-                store_images(prediction, images, effects.periodic)
+
+
+@out_of_line
+def test_entries(disc, ids, prediction, own, walls, first, last, effects):
+    """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
+    for entry in range(first, last):
+        k = walls.item[U(entry)]
+        images = images_to_item(walls, U(entry), own, effects.periodic)
+        segment = effects.segments[U(k)]
+        if misses_segment(disc, segment, effects.gravity, effects.periodic, images):
+            continue
+        time = segment_contact(disc, own, segment, effects.gravity, effects.restitution, effects.periodic, images)
+        partner = segment_partner(k)
+        if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
+            prediction.contact = time
+            prediction.partner = partner
+            store_images(prediction, images, effects.periodic)
 
 
 @inline
