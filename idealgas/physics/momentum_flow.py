@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, njit, out_of_line
+from idealgas._jit import aligned, inline, njit
 from idealgas.physics.exact_sum import TOGETHER, add, add_all
 from idealgas.physics.periodic import shift_by_images
 
@@ -193,7 +193,7 @@ def keep_heat(heat, terms, k, a, b, flights, x, y, vx, vy):
         terms[U(PARTS + 3)].column[k] = gain * y
 
 
-@out_of_line
+@njit
 def settle(flow):
     """Add the terms that wait."""
     number, terms = flow.waiting.number[0], flow.waiting.terms

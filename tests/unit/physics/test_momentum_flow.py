@@ -90,7 +90,6 @@ def test_what_a_collision_adds(gravity):
     assert abs(xx) > 0.5
 
 
-@np.errstate(over="ignore")  # words wrap around, of which Python warns
 def test_collisions_are_added_together_and_one_by_one():
     flow, other = flow_of(), flow_of()
     for _ in range(3 * TOGETHER + 5):
