@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.stats import chi2
 
 from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
@@ -24,7 +26,10 @@ HITS = 32
 """Mean number of hits of walls in a bin, at least, if there is more than one bin."""
 
 GROUP = 16
-"""Number of bins whose scatter about a straight line corrects their error bars."""
+"""Number of bins in a row whose scatter about a straight line is compared with their error bars."""
+
+FAR = 0.999
+"""Share of groups, if all are alike, that are no further beyond their median than those that count."""
 
 ALL_SIDES = "all sides"
 
@@ -121,10 +126,17 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
     """Scatter of bins about straight lines through GROUP of them, over what independent blocks in them let expect.
 
     Sound and pistons push a wall to and fro within a bin, so that the mean of a bin varies less than its blocks tell.
+    Groups far beyond the median of all do not count: a gate opened in them, or a heat bath set in.
     """
-    if len(values) < GROUP or not np.isfinite(errors).all():
+    if len(values) < GROUP:
         return 1.0
     lines, _ = np.linalg.qr(np.vander(np.arange(GROUP), 2))
-    groups = values.reshape(-1, GROUP)
-    off = groups - groups @ lines @ lines.T
-    return float(np.sqrt((off**2).sum() / (errors**2).sum() / (1 - 2 / GROUP)))
+    groups = sliding_window_view(values, GROUP)
+    off = ((groups - groups @ lines @ lines.T) ** 2).sum(axis=1)
+    told = (sliding_window_view(errors, GROUP) ** 2).sum(axis=1)
+    known = np.isfinite(off / told)
+    if not known.any():
+        return 1.0
+    off, told, free = off[known], told[known], GROUP - 2
+    calm = off / told <= np.median(off / told) * chi2.ppf(FAR, free) / chi2.median(free)
+    return math.sqrt(off[calm].sum() / told[calm].sum() * GROUP / free)
