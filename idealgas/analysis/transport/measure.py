@@ -43,6 +43,7 @@ MOST_SAMPLES = 2**21  # largest number of discs times instants
 FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
 LEAST_LAG = 10.0  # mean free times; D from shorter lags is too small, as velocities still remember where they came from
 LEAST_MEMORIES = 4.0  # velocity correlation times; the same for discs that keep their velocity for longer
+LEAST_WINDOW = 16.0  # longest lags; in one of eight, coefficients of the whole gas are too small by up to a fourth
 FREE_SHARE = 0.05  # largest displacement, relative to the box between two walls, that walls hardly change
 
 
@@ -184,7 +185,7 @@ def transport(
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
         premises=(
             *_short_lags(rates, diffusion),
-            *_short_currents(whole, longest / free_time),
+            *_short_currents(whole, longest / free_time, window.duration / longest),
             *_reflected(log, diffusion),
         ),
     )
@@ -213,7 +214,7 @@ def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: flo
         diffusion=(),
         collective=whole,
         pair_distributions=(),
-        premises=tuple(_short_currents(whole, longest / free_time)),
+        premises=tuple(_short_currents(whole, longest / free_time, window.duration / longest)),
     )
 
 
@@ -234,12 +235,17 @@ def _short_lags(rates: Sequence[CollisionRate], diffusion: Sequence[Diffusion]) 
             )
 
 
-def _short_currents(whole: Collective | None, free_times: float) -> Iterator[str]:
-    """Sentence on currents that are followed for too short a time."""
+def _short_currents(whole: Collective | None, free_times: float, lags: float) -> Iterator[str]:
+    """Sentence on currents that are followed for too short a time, or in a window of too few such times."""
     if whole and free_times < LEAST_LAG:
         yield (
             f"The window is short: currents are followed for {free_times:.2g} mean free times at most; viscosities and "
             f"heat conductivity take {LEAST_LAG:g}."
+        )
+    elif whole and lags < LEAST_WINDOW:
+        yield (
+            f"The window is short: {lags:.3g} times as long as currents are followed ({LEAST_WINDOW:g} needed); "
+            "viscosities and heat conductivity may be too small by more than their errors."
         )
 
 

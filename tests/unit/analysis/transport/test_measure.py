@@ -93,3 +93,13 @@ def test_a_species_of_one_disc_has_no_pair_with_itself(tmp_path):
     pairs = [(one.species, one.other) for one in found.pair_distributions]
     assert pairs == [("gas", "gas"), ("gas", "lone")]
     assert json.dumps(found.as_dict(), allow_nan=False)
+
+
+@pytest.mark.parametrize(("collisions", "too_short"), [(120, True), (480, False)])
+def test_a_window_of_few_lags_is_said(tmp_path, collisions, too_short):
+    scene = SCENE.format(x="periodic", y="periodic")
+    simulate(parse_scene(scene, overrides=[f"run.collisions_per_disc={collisions}"]), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = transport(log, start=0.0)
+    said = [sentence for sentence in found.premises if "times as long as currents are followed (16 needed)" in sentence]
+    assert len(said) == too_short
