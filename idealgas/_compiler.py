@@ -21,7 +21,7 @@ from numba.core.types.misc import unliteral
 from numba.extending import models, register_model
 
 
-class Part(types.Dispatcher):
+class PartType(types.Dispatcher):
     """Type of a function that becomes part of those that call it: compiled for types, whatever the values of literals.
 
     numba's own way to call a plain Python function from compiled code tries several ways to compile it at every call,
@@ -44,7 +44,7 @@ class Part(types.Dispatcher):
         return super().get_call_type(context, tuple(map(unliteral, args)), kinds)
 
 
-register_model(Part)(models.OpaqueModel)
+register_model(PartType)(models.OpaqueModel)
 
 
 class _Typing:

@@ -30,7 +30,7 @@ from numba.core.types.containers import BaseTuple
 from numba.core.typing.templates import infer_global
 from numba.extending import overload
 
-from idealgas._compiler import Compiler, Part
+from idealgas._compiler import Compiler, PartType
 
 if numba.config.DISABLE_JIT:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
@@ -302,7 +302,7 @@ def out_of_line(function: Callable) -> Any:
 def _make_part(function: Callable, options: dict[str, Any]) -> Callable:
     """Let entry points call a function, compiled with these options."""
     if not numba.config.DISABLE_JIT:
-        infer_global(function, Part(numba.njit(function, **options)))
+        infer_global(function, PartType(numba.njit(function, **options)))
     return function
 
 
