@@ -120,7 +120,8 @@ def advance_trials(
         i, j = random_pair(number, start)
         a = record[U(i)]
         b = record[U(j)]
-        speed = math.sqrt((a.vx - b.vx) ** 2 + (a.vy - b.vy) ** 2)
+        vx, vy = a.vx - b.vx, a.vy - b.vy
+        speed = math.sqrt(vx * vx + vy * vy)
         rate = (a.r + b.r) * speed
         if rate > fastest:
             excess = rate

@@ -25,7 +25,8 @@ def energy_of(disc, own, rotation):
     """Kinetic energy of a disc, spin included, mass length²/time²."""
     energy = 0.5 * disc.m * (disc.vx * disc.vx + disc.vy * disc.vy)
     if rotation is not None:
-        energy += 0.5 * rotation.inertia[U(own)] * rotation.omega[U(own)] ** 2
+        omega = rotation.omega[U(own)]
+        energy += 0.5 * rotation.inertia[U(own)] * (omega * omega)
     return energy
 
 

@@ -157,10 +157,10 @@ def fly(record, step, box, time, effects):
     cursor = step.cursor
     while cursor < record.shape[0]:
         disc = record[U(cursor)]
-        x = disc.x
-        y = disc.y
+        before_x, before_y = disc.x, disc.y
         advance(disc, time, effects.gravity)
-        furthest = max(furthest, (disc.x - x) ** 2 + (disc.y - y) ** 2)
+        x, y = disc.x - before_x, disc.y - before_y
+        furthest = max(furthest, x * x + y * y)
         side = side_beyond(disc, box, effects.periodic)
         if side >= 0:
             break

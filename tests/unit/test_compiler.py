@@ -4,13 +4,21 @@ import gc
 import operator
 import re
 from types import SimpleNamespace
+from typing import NamedTuple
 
+import numba
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numba.core.caching import NullCache
+from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import DefaultPassBuilder, Flags
 from numba.core.typing import Context
 
-from idealgas._compiler import _STEPS, _EntryPoint, _Part, _Typing
+from idealgas._compiler.code import EntryPoint, Part
+from idealgas._compiler.contexts import Typing
+from idealgas._compiler.steps import STEPS
 from idealgas._jit import inline, njit, out_of_line
 
 
@@ -66,6 +74,7 @@ LEFT_OUT = {
     "InlineClosureLikes",
     "InlineInlinables",
     "InlineOverloads",
+    "IRProcessing",
     "LiteralPropagationSubPipelinePass",
     "LiteralUnroll",
     "MakeFunctionToJitFunction",
@@ -82,9 +91,9 @@ def test_the_steps_are_those_of_numba_without_some():
         step
         for step, _ in DefaultPassBuilder.define_nopython_pipeline(SimpleNamespace(func_ir=None, flags=flags)).passes
     ]
-    assert {step.__name__ for step in steps} - {step.__name__ for step in _STEPS} == LEFT_OUT
+    assert {step.__name__ for step in steps} - {step.__name__ for step in STEPS} == LEFT_OUT
     rest = iter(steps)
-    assert all(step in rest for step in _STEPS)  # in the same order
+    assert all((step if step in steps else step.__base__) in rest for step in STEPS)  # in the same order
 
 
 def _code(entry):
@@ -105,7 +114,7 @@ def test_inlined_functions_are_in_each_caller_and_nowhere_else():
 
 def test_a_part_has_no_machine_code_of_its_own(monkeypatch):
     made = []
-    for kind in (_EntryPoint, _Part):
+    for kind in (EntryPoint, Part):
         finish = kind._finalize_final_module
         monkeypatch.setattr(
             kind, "_finalize_final_module", lambda self, finish=finish: (made.append(self.name), finish(self))
@@ -127,8 +136,8 @@ def test_errors_of_an_inlined_function_arrive():
 
 def test_a_part_is_compiled_once_for_types_whatever_the_literals(monkeypatch):
     compiled_parts = []
-    finish = _Part.finalize
-    monkeypatch.setattr(_Part, "finalize", lambda self: (compiled_parts.append(self.name), finish(self)))
+    finish = Part.finalize
+    monkeypatch.setattr(Part, "finalize", lambda self: (compiled_parts.append(self.name), finish(self)))
 
     @out_of_line
     def product(x, factor):
@@ -149,7 +158,7 @@ def test_what_calls_of_numba_give_is_asked_for_once(monkeypatch):
     monkeypatch.setattr(
         Context, "resolve_function_type", lambda self, *call: (asked.append(call[0]), resolve(self, *call))[1]
     )
-    monkeypatch.setattr(_Typing, "_known", {})
+    monkeypatch.setattr(Typing, "_known", {})
 
     @compiled
     def entry(x, y):
@@ -159,10 +168,120 @@ def test_what_calls_of_numba_give_is_asked_for_once(monkeypatch):
     assert [function.typing_key for function in asked] == [operator.add, operator.mul]
 
 
+@pytest.fixture
+def modules(monkeypatch):
+    """Intermediate code of all functions that are compiled meanwhile, as numba writes it."""
+    texts = []
+    add = JITCodeLibrary.add_ir_module
+    monkeypatch.setattr(
+        JITCodeLibrary, "add_ir_module", lambda self, module: (texts.append(str(module)), add(self, module))[1]
+    )
+    return texts
+
+
+class _Inner(NamedTuple):
+    numbers: np.ndarray
+    scale: float
+
+
+class _Outer(NamedTuple):
+    inner: _Inner
+    absent: None
+    offsets: np.ndarray
+
+
+@inline
+def _element(outer, k):
+    return outer.inner.numbers[k] * outer.inner.scale + outer.offsets[0]
+
+
+@out_of_line
+def _total(outer, first):
+    total = 0.0
+    for k in range(first, outer.inner.numbers.shape[0]):
+        total += _element(outer, k)
+    return total
+
+
+def _outer():
+    return _Outer(_Inner(np.arange(5.0), 0.5), None, np.array([100.0, 7.0]))
+
+
+def test_named_tuples_are_passed_whole(modules):
+    """However many arrays they hold; numba passes the seven numbers of each array."""
+
+    @compiled
+    def entry(outer):
+        return _total(outer, 2)
+
+    assert entry(_outer()) == 0.5 * (2 + 3 + 4) + 3 * 100.0
+    declared = [line for line in "\n".join(modules).splitlines() if re.match(r"(define|declare) .*_total", line)]
+    assert len(declared) == 2  # where it is called, and where it is made
+    for line in declared:
+        assert re.findall(r'"arg\.([\w.]+)"', line) == ["outer", "first"]
+
+
+def test_numba_itself_passes_named_tuples_as_ever():
+    @numba.njit
+    def of_numba(outer):
+        return outer.inner.scale + outer.offsets[1]
+
+    @compiled
+    def entry(outer):
+        return _total(outer, 0)
+
+    assert of_numba(_outer()) == 7.5
+    assert entry(_outer()) == 0.5 * 10 + 5 * 100.0
+    assert numba.njit(lambda outer: of_numba(outer) + 1.0)(_outer()) == 8.5
+
+
+def test_what_is_set_once_takes_no_place_in_memory(modules):
+    @compiled
+    def entry(x, n):
+        once = x * 3.0
+        total = 0.0
+        for k in range(n):
+            within = once + k
+            if within > 4.0:
+                total += within
+        return total + once
+
+    assert entry(1.0, 4) == 3.0 + (5.0 + 6.0)
+    places = {name for name in re.findall(r'%"([\w.]+)" = alloca', "\n".join(modules)) if name[0].isalpha()}
+    assert {name.split(".")[0] for name in places} & {"once", "within", "x", "n"} == set()
+    assert any(name.startswith("total") for name in places)  # set in several places
+
+
+@njit
+def _branches(x, n, early):
+    """Ways on which a variable is set later than it is used, at one of two places, or not at all."""
+    seen = 0.0
+    for k in range(n):
+        if k == early:
+            late = x + k
+        if k > early:
+            seen += late  # set in an earlier round
+        if seen > 50.0:
+            result = -seen
+            break
+    else:
+        result = seen
+    before = result
+    while result > 10.0:
+        half = 0.5 * result
+        result = half if half > x else half - 1.0
+    return result + before * x
+
+
+@given(st.floats(0.0, 20.0), st.integers(0, 12), st.integers(0, 12))
+def test_branches_and_loops_give_what_python_gives(x, n, early):
+    assert _branches(x, n, early) == getattr(_branches, "py_func", _branches)(x, n, early)
+
+
 @pytest.mark.parametrize("collects", [True, False])
 def test_garbage_is_collected_again_afterwards(collects, monkeypatch):
     during = []
-    step = _STEPS[0]
+    step = STEPS[0]
     monkeypatch.setattr(
         step, "run_pass", lambda self, state, run=step.run_pass: (during.append(gc.isenabled()), run(self, state))[1]
     )
