@@ -125,10 +125,15 @@ class Target(CPUContext):
         """How functions are called."""
         return _Convention(self)
 
-    def get_function(self, function: Any, signature: Any, _firstcall: bool = False) -> Any:
-        """Implementation of a function; what numba has learned since is looked for before each compilation only."""
+    def refresh(self) -> None:
+        """Learn of implementations that typing has just brought; all modules that have any are loaded before."""
+        for registry in tuple(self._registries):
+            self.install_registry(registry)
+
+    def get_function(self, function: Any, signature: Any, _firstcall: bool = True) -> Any:
+        """Implementation of a function or operator."""
         own = function.function if isinstance(function, _Operator) else function
-        return super().get_function(own, signature, False)
+        return super().get_function(own, signature, _firstcall)
 
     def _compile_subroutine_no_cache(self, *args: Any, **options: Any) -> Any:
         """Compile a function of numba's, in all of numba's steps."""

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numba.core import types
 from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import DefaultPassBuilder, Flags
 from numba.core.typing import Context
+from numba.extending import intrinsic
 
 from idealgas._compiler.code import EntryPoint, Part
 from idealgas._compiler.contexts import Typing
@@ -126,6 +128,26 @@ def test_a_part_has_no_machine_code_of_its_own(monkeypatch):
 
     assert entry(3.0) == 8.0
     assert made == [entry.py_func.__qualname__]
+
+
+def test_what_typing_has_just_brought_is_known_to_lowering():
+    """As the code of an intrinsic is, which nothing had called before."""
+
+    @intrinsic
+    def half(typingctx, x):
+        return types.float64(types.float64), lambda context, builder, signature, arguments: builder.fmul(
+            arguments[0], arguments[0].type(0.5)
+        )
+
+    @inline
+    def calls(x):
+        return half(x)
+
+    @compiled
+    def entry(x):
+        return calls(x) + 1.0
+
+    assert entry(3.0) == 2.5
 
 
 def test_errors_of_an_inlined_function_arrive():
