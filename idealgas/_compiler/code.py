@@ -6,32 +6,7 @@ from typing import Any
 from numba.core.codegen import JITCodeLibrary
 
 
-class _Definitions:
-    """A module of LLVM that shows the functions that it defines; numba optimizes those that it calls as well."""
-
-    def __init__(self, module: Any) -> None:
-        vars(self)["_module"] = module
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._module, name)
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        setattr(self._module, name, value)
-
-    @property
-    def functions(self) -> list:
-        """Those that it defines."""
-        return [function for function in self._module.functions if not function.is_declaration]
-
-
-class _Code(JITCodeLibrary):
-    """numba's code of a function, where what is only declared is not optimized."""
-
-    def _optimize_functions(self, module: Any) -> None:
-        super()._optimize_functions(_Definitions(module))
-
-
-class Part(_Code):
+class Part(JITCodeLibrary):
     """Intermediate code of a function that only compiled code calls: not optimized with what it calls, nor compiled."""
 
     codegen = SimpleNamespace(set_env=lambda name, environment: None)  # numba would write into that machine code
@@ -45,7 +20,7 @@ class Part(_Code):
         return 0
 
 
-class EntryPoint(_Code):
+class EntryPoint(JITCodeLibrary):
     """Code of an entry point, for which the functions below it are linked, optimized and compiled together."""
 
     def finalize(self) -> None:
