@@ -4,7 +4,13 @@ import numpy as np
 
 from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.cells import cell_index
-from idealgas.engine.event_driven.prediction import NO_CONTACT, images_of, partner_rank, segment_partner
+from idealgas.engine.event_driven.prediction import (
+    NO_CONTACT,
+    SIDE_OF_BOX,
+    images_of,
+    partner_rank,
+    segment_partner,
+)
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
@@ -216,28 +222,31 @@ def test_entries(disc, ids, prediction, own, walls, first, last, effects):
 
 
 @inline
-def predict_contact(record, ids, state, i, now, effects):
-    """Find disc i's earliest contact with a disc in its own cell or the eight around it, or with a wall segment."""
-    prediction = state.prediction[U(i)]
-    prediction.contact = NO_CONTACT
-    prediction.partner = -1
-    disc = record[U(i)]
-    count = gather_block(state, disc, effects.periodic)
-    test_candidates(record, ids, state, count, i, now, effects)
-    test_segments(record, ids, state, i, effects.segments, effects)
+def gather_beyond(state, disc, crossing_code, periodic):
+    """Make the first discs of the three cells that came within reach of a disc the candidates; return their number.
 
-
-@inline
-def extend_contact(record, ids, state, i, crossing_code, now, effects):
-    """Update disc i's contact after it crossed into a new cell: test the three cells that came within reach.
-
-    The contact found before stays valid. crossing_code: direction of the crossing, see PREDICTION.
+    crossing_code: direction in which it crossed into its cell, see PREDICTION.
     """
-    disc = record[U(i)]
     forward = 1 if crossing_code & 1 else -1
     along_y = crossing_code >= 2
     column = np.int64(disc.column) + (-1 if along_y else forward)
     row = np.int64(disc.row) + (forward if along_y else -1)
-    count = gather_line(state, 0, column, row, not along_y, effects.periodic)
+    return gather_line(state, 0, column, row, not along_y, periodic)
+
+
+@inline
+def predict_contact(record, ids, state, i, crossing_code, now, effects):
+    """Find disc i's earliest contact with a disc in its own cell or the eight around it, or with a wall segment.
+
+    crossing_code: direction in which it has just crossed into its cell, see PREDICTION: then the contact found before
+    stays valid, and may only be preceded by one in the cells that came within reach. SIDE_OF_BOX or more otherwise.
+    """
+    if crossing_code < SIDE_OF_BOX:
+        count = gather_beyond(state, record[U(i)], crossing_code, effects.periodic)
+    else:
+        prediction = state.prediction[U(i)]
+        prediction.contact = NO_CONTACT
+        prediction.partner = -1
+        count = gather_block(state, record[U(i)], effects.periodic)
     test_candidates(record, ids, state, count, i, now, effects)
     test_segments(record, ids, state, i, effects.segments, effects)

@@ -9,7 +9,7 @@ import numpy as np
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.border import OVER
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
-from idealgas.engine.event_driven.contacts import extend_contact, predict_contact
+from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
 from idealgas.engine.event_driven.lookahead import fetch_ahead
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
@@ -43,34 +43,27 @@ from idealgas.engine.rows import (
 U = np.uintp
 
 
-@inline
-def predict(record, ids, state, i, now, effects, border):
-    """Predict disc i's next contact and its next crossing or kick, and enter the earlier one in the schedule."""
-    predict_contact(record, ids, state, i, now, effects)
-    predict_crossing(record, ids, state, i, now, effects)
-    enter_in_schedule(record, ids, state, i, border)
-    offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
+STALE, EVENT, START = SIDE_OF_BOX, SIDE_OF_BOX + 1, SIDE_OF_BOX + 2
+"""What has changed for a disc, if it has not crossed into a cell: its contact's partner; its record; all of it."""
 
 
 @inline
-def predict_contact_again(record, ids, state, i, now, effects, border):
-    """Predict another contact of disc i, whose partner has had an event since, and enter it in the schedule."""
-    predict_contact(record, ids, state, i, now, effects)
-    enter_in_schedule(record, ids, state, i, border)
+def predict(record, ids, state, i, change, now, effects, border):
+    """Predict what has changed of disc i's next events, and enter the earliest of them in the schedule.
 
-
-@inline
-def enter_next_cell(record, ids, state, i, crossing_code, now, effects, border):
-    """Move disc i to the next cell; its record is not changed, and the contact predicted before stays valid."""
-    cross_cell(record, ids, state, i, crossing_code, effects.periodic)
-    extend_contact(record, ids, state, i, crossing_code, now, effects)
-    predict_crossing(record, ids, state, i, now, effects)
+    change: STALE, EVENT or START, or the code of the crossing by which the disc came into its cell.
+    """
+    predict_contact(record, ids, state, i, change, now, effects)
+    if change != STALE:
+        predict_crossing(record, ids, state, i, now, effects)
     enter_in_schedule(record, ids, state, i, border)
+    if change > STALE:
+        offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
 
 
 @njit
-def rebuild(record, ids, position, velocity, state, effects):
-    """Begin an epoch: fill records, cells, predictions and schedule from positions and velocities (N, 2) by id."""
+def place(record, ids, position, velocity, state, effects):
+    """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id; nothing is predicted yet."""
     state.cells.head[:] = -1
     for i in range(record.shape[0]):
         reload(record[U(i)], U(ids[U(i)]), position, velocity)
@@ -78,13 +71,12 @@ def rebuild(record, ids, position, velocity, state, effects):
         enter(state.cells, i, cell_index(state.cells, record[U(i)]))
     clear(state.tree)
     predict_piston(record, ids, state, effects.piston, effects.gravity)
-    for i in range(record.shape[0]):
-        predict(record, ids, state, i, 0.0, effects, None)
+    state.unpredicted[0] = record.shape[0]
 
 
 @njit
 def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, border):
-    """Process events up to the limits, or until the batch is full.
+    """Process events up to the limits, or until the batch is full; first predict those of all discs, if none are yet.
 
     Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
     no log is kept. counters: (1,) COUNTERS, updated. border: of the strip whose events these are; None for all discs.
@@ -97,7 +89,25 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    while events < limits.events and collisions < limits.collisions and rows < capacity:
+    unpredicted = state.unpredicted[0]
+    state.unpredicted[0] = 0
+    time = 0.0
+    change = np.int64(START)
+    i = other = np.int64(-1)
+    while True:
+        while i >= 0:  # one call for all changes: another would double the machine code
+            predict(record, ids, state, i, change, time, effects, border)
+            i, other = other, np.int64(-1)
+        if change > STALE:
+            if change == EVENT:
+                events += 1
+                now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
+            elif unpredicted > 0:
+                i = record.shape[0] - unpredicted
+                unpredicted -= 1
+                continue
+            if events >= limits.events or collisions >= limits.collisions or rows >= capacity:
+                break
         i = next_turn(record, ids, state, limits.until, border)
         if i < 0:
             reached = i == OVER
@@ -108,20 +118,22 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         withdraw(state.tree, state.prediction, ids, i)
         fetch_ahead(state.lookahead, record, state, i)
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
-            enter_next_cell(record, ids, state, i, prediction.crossing_code, time, effects, border)
+            change = np.int64(prediction.crossing_code)
+            cross_cell(record, ids, state, i, change, effects.periodic)
             continue
         of_piston = is_piston(i, ids, effects.piston)
-        other = np.int64(-1)
         tied = False
         if at_contact and prediction.partner >= 0 and not of_piston:
-            other = np.int64(prediction.partner)
-            if record[U(other)].count != prediction.partner_count:
-                predict_contact_again(record, ids, state, i, time, effects, border)
+            if record[U(prediction.partner)].count != prediction.partner_count:
+                change = np.int64(STALE)
                 continue
+            other = np.int64(prediction.partner)
             tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
             withdraw(state.tree, state.prediction, ids, other)
         if tied or not is_settled(state.tree, time):
             settle(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
+            change = np.int64(STALE)
+            i = other = np.int64(-1)
             continue
         if of_piston:
             i = np.int64(prediction.partner)
@@ -129,6 +141,8 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 resolve_stop(time, effects.piston)
             if not at_contact or record[U(i)].count != prediction.partner_count:
                 predict_piston(record, ids, state, effects.piston, effects.gravity)
+                change = np.int64(STALE)
+                i = np.int64(-1)
                 continue
             withdraw(state.tree, state.prediction, ids, i)
             resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
@@ -153,11 +167,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
-        while i >= 0:  # one call for both discs: a second call would double the machine code
-            predict(record, ids, state, i, time, effects, border)
-            i, other = other, np.int64(-1)
-        events += 1
-        now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
+        change = np.int64(EVENT)
     leave(border, reached)
     add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
     return rows, reached

@@ -7,7 +7,7 @@ batches.
 import numpy as np
 
 from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cells
-from idealgas.engine.event_driven.kernel import advance_events, rebuild
+from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.overlap import deepest_overlap
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.strips import FAST, Tuning, share_out
@@ -58,7 +58,7 @@ class EventDriven:
         return other
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch: predict the next events of all. Discs and kinds of effects stay the same in a run."""
+        """Begin an epoch: put all discs in their cells. Discs and kinds of effects stay the same in a run."""
         another = self._radius is not gas.radius
         if another:
             self._make_room(gas, effects)
@@ -67,7 +67,7 @@ class EventDriven:
         self._effects = effects
         self._state = self._state._replace(walls=self._wall_cells(effects))
         position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
-        rebuild(self.discs.record, self.discs.id, position, velocity, self._state, effects)
+        place(self.discs.record, self.discs.id, position, velocity, self._state, effects)
         strips = self._shared.number
         self._team = Team(self.crew, strips, self.discs, self._state, effects) if strips > 1 else None
 

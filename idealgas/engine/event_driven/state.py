@@ -26,6 +26,7 @@ class EventDrivenState(NamedTuple):
         images: (…, 2) i4 scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
         lookahead: (3,) i8, see `make_lookahead`; None for a gas that the caches hold.
+        unpredicted: (1,) i8, number of discs of which nothing is predicted yet in the epoch: those of largest index.
     """
 
     cells: Cells
@@ -35,6 +36,7 @@ class EventDrivenState(NamedTuple):
     images: np.ndarray | None
     walls: WallCells | None
     lookahead: np.ndarray | None
+    unpredicted: np.ndarray
 
 
 def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
@@ -50,6 +52,7 @@ def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
         np.empty((room, 2), np.int32) if effects.periodic else None,
         None,
         make_lookahead(n, len(tree.start)),
+        np.zeros(1, np.int64),
     )
 
 

@@ -129,6 +129,8 @@ class Team:
         """Process events up to the limits, see `advance_events`; rows beyond the batch come with the next calls."""
         if self.pending:
             return self._deliver(batch)
+        if self._state.unpredicted[0]:
+            self._alone(limits._replace(events=0), epoch_start, batch, counters)
         goal, race = self._goal(limits, batch, counters[0]), self._crew.race
         if limits.events == 0:
             self._share(0.0, batch, FAILED)  # compiles
