@@ -24,8 +24,8 @@ import llvmlite
 import numba
 import numpy as np
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
-from numba.core.runtime import rtsys
 from numba.core.event import TimingListener, install_listener
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 from numba.core.types.containers import BaseTuple
 from numba.core.typing.templates import infer_global

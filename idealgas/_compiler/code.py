@@ -1,12 +1,35 @@
 """Machine code of entry points alone: what only compiled code calls is intermediate code that becomes part of them."""
 
+from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
 from numba.core.codegen import JITCodeLibrary
 
 
-class Part(JITCodeLibrary):
+@cache
+def _simplification(codegen: Any) -> tuple[Any, Any]:
+    """Passes of LLVM that simplify a function, and what they need."""
+    builder = codegen._pass_builder(opt=1)
+    return builder.getFunctionPassManager(), builder
+
+
+class _Library(JITCodeLibrary):
+    """Intermediate code of functions."""
+
+    def _optimize_functions(self, module: Any) -> None:
+        """Simplify functions; what takes LLVM longer is done once, for an entry point with all its parts."""
+        if not hasattr(self._codegen, "_pass_builder"):  # numba 0.61
+            super()._optimize_functions(module)
+            return
+        module.data_layout = self._codegen._data_layout
+        passes, builder = _simplification(self._codegen)
+        for function in module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
+
+
+class Part(_Library):
     """Intermediate code of a function that only compiled code calls: not optimized with what it calls, nor compiled."""
 
     codegen = SimpleNamespace(set_env=lambda name, environment: None)  # numba would write into that machine code
@@ -20,7 +43,7 @@ class Part(JITCodeLibrary):
         return 0
 
 
-class EntryPoint(JITCodeLibrary):
+class EntryPoint(_Library):
     """Code of an entry point, for which the functions below it are linked, optimized and compiled together."""
 
     def finalize(self) -> None:
