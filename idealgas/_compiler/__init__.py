@@ -22,8 +22,9 @@ from idealgas._compiler.steps import Pipeline
 
 
 class PartType(types.Dispatcher):
-    """Type of a function that becomes part of those that call it: compiled for types, whatever the values of literals.
+    """Type of a function that becomes part of those that call it.
 
+    It is compiled for types, whatever the values of literals, and for one type of integers that 64 bits can hold.
     numba's own way to call a plain Python function from compiled code tries several ways to compile it at every call,
     and has clocks that hear of every call of LLVM.
     """
@@ -40,8 +41,13 @@ class PartType(types.Dispatcher):
 
     def get_call_type(self, context: Any, args: Iterable, kws: Mapping) -> Any:
         """Signature of a call, by numba's types of the arguments; compiles the function for them."""
-        kinds = {name: unliteral(kind) for name, kind in kws.items()}
-        return super().get_call_type(context, tuple(map(unliteral, args)), kinds)
+        return super().get_call_type(context, tuple(map(_widest, args)), {name: _widest(kind) for name, kind in kws.items()})
+
+
+def _widest(kind: types.Type) -> types.Type:
+    """Type for which a function is compiled that is given an argument of this one."""
+    kind = unliteral(kind)
+    return types.int64 if isinstance(kind, types.Integer) and kind.bitwidth < types.int64.bitwidth else kind
 
 
 register_model(PartType)(models.OpaqueModel)
@@ -50,12 +56,18 @@ register_model(PartType)(models.OpaqueModel)
 class Compiler(CompilerBase):
     """numba's compiler with the steps, the contexts and the code of this package."""
 
+    def __init__(self, typing: Any, target: Any, *rest: Any) -> None:
+        """Set what a function is compiled with: numba's contexts, and what else numba gives."""
+        flags = rest[3]
+        self._kind = Part if flags.no_cpython_wrapper else EntryPoint
+        if self._kind is EntryPoint:  # once for all its parts
+            typing.refresh()
+            target.refresh()
+        super().__init__(Typing(typing), Target.of(target), *rest)
+
     def define_pipelines(self) -> list[Pipeline]:
         state = self.state
-        kind = Part if state.flags.no_cpython_wrapper else EntryPoint
-        library = kind(state.targetctx.codegen(), state.func_id.func_qualname)
+        library = self._kind(state.targetctx.codegen(), state.func_id.func_qualname)
         library.enable_object_caching()
         state["library"] = library
-        state["typingctx"] = Typing(state["typingctx"])
-        state["targetctx"] = Target.of(state["targetctx"])
         return [Pipeline()]

@@ -24,6 +24,9 @@ class Typing:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._context, name)
 
+    def refresh(self) -> None:
+        """Do nothing: the context has been refreshed for the entry point."""
+
     def resolve_function_type(self, function: Any, args: tuple, kws: Mapping) -> Any:
         """Signature of a call, by numba's types of the arguments; None if there is none."""
         own: Any = function if isinstance(function, types.Type) else self._context._lookup_global(function)

@@ -62,16 +62,14 @@ def predict(record, ids, state, i, change, now, effects, border):
 
 
 @njit
-def place(record, ids, position, velocity, state, effects):
-    """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id; nothing is predicted yet."""
-    state.cells.head[:] = -1
+def place(record, ids, position, velocity, cells, tree):
+    """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id, and empty the schedule."""
+    cells.head[:] = -1
     for i in range(record.shape[0]):
         reload(record[U(i)], U(ids[U(i)]), position, velocity)
-        find_cell(state.cells, record[U(i)])
-        enter(state.cells, i, cell_index(state.cells, record[U(i)]))
-    clear(state.tree)
-    predict_piston(record, ids, state, effects.piston, effects.gravity)
-    state.unpredicted[0] = record.shape[0]
+        find_cell(cells, record[U(i)])
+        enter(cells, i, cell_index(cells, record[U(i)]))
+    clear(tree)
 
 
 @njit
@@ -91,6 +89,8 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     capacity = batch_capacity(batch)
     unpredicted = state.unpredicted[0]
     state.unpredicted[0] = 0
+    if unpredicted > 0:
+        predict_piston(record, ids, state, effects.piston, effects.gravity)
     time = 0.0
     change = np.int64(START)
     i = other = np.int64(-1)
@@ -137,16 +137,17 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             continue
         if of_piston:
             i = np.int64(prediction.partner)
+            hit = at_contact and record[U(i)].count == prediction.partner_count
             if not at_contact:
                 resolve_stop(time, effects.piston)
-            if not at_contact or record[U(i)].count != prediction.partner_count:
-                predict_piston(record, ids, state, effects.piston, effects.gravity)
+            if hit:
+                withdraw(state.tree, state.prediction, ids, i)
+                resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+            predict_piston(record, ids, state, effects.piston, effects.gravity)
+            if not hit:
                 change = np.int64(STALE)
                 i = np.int64(-1)
                 continue
-            withdraw(state.tree, state.prediction, ids, i)
-            resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
-            predict_piston(record, ids, state, effects.piston, effects.gravity)
             rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
         elif other >= 0:
             images = images_of(prediction)
