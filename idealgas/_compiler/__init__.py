@@ -41,13 +41,15 @@ class PartType(types.Dispatcher):
 
     def get_call_type(self, context: Any, args: Iterable, kws: Mapping) -> Any:
         """Signature of a call, by numba's types of the arguments; compiles the function for them."""
-        return super().get_call_type(context, tuple(map(_widest, args)), {name: _widest(kind) for name, kind in kws.items()})
+        return super().get_call_type(
+            context, tuple(map(_widest, args)), {name: _widest(kind) for name, kind in kws.items()}
+        )
 
 
 def _widest(kind: types.Type) -> types.Type:
     """Type for which a function is compiled that is given an argument of this one."""
     kind = unliteral(kind)
-    return types.int64 if isinstance(kind, types.Integer) and kind.bitwidth < types.int64.bitwidth else kind
+    return types.int64 if isinstance(kind, types.Integer) and kind.bitwidth < 64 else kind  # type: ignore[attr-defined]
 
 
 register_model(PartType)(models.OpaqueModel)

@@ -15,12 +15,13 @@ ALLOWED = {
     "scene": {"document", "physics"},  # defaults that follow from a law
     "physics": {"_jit"},
     "gas": {"_jit", "document", "scene", "physics"},  # discs are placed by the nearest image's distance
-    "engine": {"_jit", "_prefetch", "gas", "physics"},
+    "engine": {"_expect", "_jit", "_prefetch", "gas", "physics"},
     "log": {"_jit", "gas", "scene", "physics"},  # states between two events are free flight
     "run": {"_jit", "document", "scene", "physics", "gas", "engine", "log"},
     "analysis": {"_jit", "scene", "physics", "gas", "log"},
     "study": {"document", "scene", "physics", "gas", "engine", "log", "run", "analysis"},
     "_compiler": set(),
+    "_expect": set(),
     "_jit": {"_compiler"},
     "_prefetch": {"_jit"},
     "_version": set(),

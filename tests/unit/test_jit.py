@@ -309,3 +309,70 @@ def test_memory_behind_an_array_is_asked_for_and_left_alone(tmp_path, cache):
     """Its last row has no line behind it; in Python nothing is asked for."""
     (tmp_path / "module.py").write_text(NEAR)
     assert python(NEAR_THE_END, tmp_path, **cache) == "1 1 1"
+
+
+SELDOM = """
+from idealgas._expect import seldom
+from idealgas._jit import njit
+
+@njit
+def number(column):
+    found = 0
+    for k in range(column.shape[0]):
+        if seldom(column[k] > 1.5):
+            found += 1
+    return found
+"""
+EITHER_WAY = """
+import numpy as np
+from idealgas._expect import seldom
+from module import number
+assert [number(np.array(column)) for column in ([0.0, 1.0], [2.0, 3.0], [0.0, 2.0])] == [0, 2, 1]
+assert seldom(True) is True and seldom(False) is False
+print(*(code.count("@llvm.expect.i1(i1") for code in number.inspect_llvm().values()))
+"""
+
+
+def test_what_is_said_to_be_seldom_may_be_true_or_false(tmp_path, cache):
+    """LLVM has taken note of it: nothing is left to be called."""
+    (tmp_path / "module.py").write_text(SELDOM)
+    assert python(EITHER_WAY, tmp_path, **cache) == "0"
+
+
+SUMS = """
+from idealgas._jit import njit
+
+@njit
+def total(column):
+    found = 0.0
+    for k in range(column.shape[0]):
+        found += column[k]
+    return found
+
+@njit
+def largest(column):
+    found = column[0]
+    for k in range(column.shape[0]):
+        found = max(found, column[k])
+    return found
+"""
+ONE_LOADED_ONE_COMPILED = """
+import sys
+import numpy as np
+from module import largest, total
+column = np.array([1.0, 4.0, 2.0])
+print(total(column), "numba.np.arraymath" in sys.modules, end=" ")
+if BOTH:
+    print(largest(column), "numba.np.arraymath" in sys.modules, end=" ")
+print(sum(total.stats.cache_hits.values()), sum(largest.stats.cache_hits.values()))
+"""
+
+
+def test_what_only_compiling_needs_is_not_brought_to_load_machine_code(tmp_path, cache):
+    """After that, another function of the same process can still be compiled, and next time both are loaded."""
+    (tmp_path / "module.py").write_text(SUMS)
+    one, both = (f"BOTH = {both}{ONE_LOADED_ONE_COMPILED}" for both in (False, True))
+    assert python(one, tmp_path, **cache) == "7.0 True 0 0"
+    assert python(one, tmp_path, **cache) == "7.0 False 1 0"
+    assert python(both, tmp_path, **cache) == "7.0 False 4.0 True 1 0"
+    assert python(both, tmp_path, **cache) == "7.0 False 4.0 False 1 1"

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from idealgas._expect import seldom
 from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import (
@@ -63,7 +64,7 @@ def gather_line(state, count, column, row, along_y, periodic):
     Returns the new number of candidates.
     """
     cells = state.cells
-    if periodic is not None and not is_inside(cells, column, row, along_y):
+    if periodic is not None and seldom(not is_inside(cells, column, row, along_y)):
         return gather_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
@@ -154,7 +155,7 @@ def test_candidates(record, ids, state, count, i, now, effects):
         tied |= time == best
         chosen = k if time < best else chosen
         best = min(time, best)
-    if tied | (best <= now):
+    if seldom(tied | (best <= now)):
         resolve_ties(record, ids, state, count, i, effects)
     elif chosen >= 0:
         store_contact(state, record, ids, i, state.candidates[U(chosen)], chosen, best, effects.periodic)

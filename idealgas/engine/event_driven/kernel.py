@@ -6,6 +6,7 @@ predicted again. One thread may have all discs, or several one strip of the box 
 
 import numpy as np
 
+from idealgas._expect import seldom
 from idealgas._jit import inline, njit
 from idealgas.engine.event_driven.border import OVER
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
@@ -74,7 +75,7 @@ def place(record, ids, position, velocity, cells, tree):
 
 @njit
 def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, border):
-    """Process events up to the limits, or until the batch is full; first predict those of all discs, if none are yet.
+    """Process events up to the limits, or until the batch is full; at the start of an epoch, predict all of them first.
 
     Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
     no log is kept. counters: (1,) COUNTERS, updated. border: of the strip whose events these are; None for all discs.
@@ -87,10 +88,11 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    unpredicted = state.unpredicted[0]
-    state.unpredicted[0] = 0
-    if unpredicted > 0:
+    if state.unpredicted[0]:
+        state.unpredicted[0] = False
         predict_piston(record, ids, state, effects.piston, effects.gravity)
+        for k in range(record.shape[0]):
+            predict(record, ids, state, k, START, 0.0, effects, border)
     time = 0.0
     change = np.int64(START)
     i = other = np.int64(-1)
@@ -102,14 +104,10 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             if change == EVENT:
                 events += 1
                 now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
-            elif unpredicted > 0:
-                i = record.shape[0] - unpredicted
-                unpredicted -= 1
-                continue
-            if events >= limits.events or collisions >= limits.collisions or rows >= capacity:
+            if seldom((events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity)):
                 break
         i = next_turn(record, ids, state, limits.until, border)
-        if i < 0:
+        if seldom(i < 0):
             reached = i == OVER
             break
         prediction = state.prediction[U(i)]
@@ -130,7 +128,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             other = np.int64(prediction.partner)
             tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
             withdraw(state.tree, state.prediction, ids, other)
-        if tied or not is_settled(state.tree, time):
+        if seldom(tied or not is_settled(state.tree, time)):
             settle(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
             change = np.int64(STALE)
             i = other = np.int64(-1)

@@ -68,7 +68,7 @@ class EventDriven:
         self._state = self._state._replace(walls=self._wall_cells(effects))
         position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
         place(self.discs.record, self.discs.id, position, velocity, self._state.cells, self._state.tree)
-        self._state.unpredicted[0] = len(gas)
+        self._state.unpredicted[0] = True
         strips = self._shared.number
         self._team = Team(self.crew, strips, self.discs, self._state, effects) if strips > 1 else None
 

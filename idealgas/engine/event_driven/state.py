@@ -26,7 +26,7 @@ class EventDrivenState(NamedTuple):
         images: (…, 2) i4 scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
         lookahead: (3,) i8, see `make_lookahead`; None for a gas that the caches hold.
-        unpredicted: (1,) i8, number of discs of which nothing is predicted yet in the epoch: those of largest index.
+        unpredicted: (1,) bool, whether an epoch begins of which nothing is predicted yet.
     """
 
     cells: Cells
@@ -52,7 +52,7 @@ def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
         np.empty((room, 2), np.int32) if effects.periodic else None,
         None,
         make_lookahead(n, len(tree.start)),
-        np.zeros(1, np.int64),
+        np.ones(1, np.bool_),
     )
 
 
