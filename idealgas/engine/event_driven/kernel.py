@@ -88,7 +88,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    if state.unpredicted[0]:
+    if seldom(state.unpredicted[0]):
         state.unpredicted[0] = False
         predict_piston(record, ids, state, effects.piston, effects.gravity)
         for k in range(record.shape[0]):
