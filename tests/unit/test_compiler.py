@@ -173,6 +173,32 @@ def test_a_part_is_compiled_once_for_types_whatever_the_literals(monkeypatch):
     assert len([name for name in compiled_parts if "product" in name]) == 1
 
 
+def test_a_part_is_compiled_once_for_all_integers_of_at_most_64_bits(monkeypatch):
+    """Each keeps its value, the largest too; those of 64 bits without a sign have a part of their own."""
+    compiled_parts = []
+    finish = Part.finalize
+    monkeypatch.setattr(Part, "finalize", lambda self: (compiled_parts.append(self.name), finish(self)))
+
+    @out_of_line
+    def itself(k):
+        return k
+
+    @compiled
+    def entry(signed, unsigned, flag):
+        return itself(signed[0]), itself(unsigned[0]), itself(k=np.int64(-5)), flag and itself(7) == 7
+
+    largest = np.iinfo(np.uint32).max
+    assert entry(np.array([-3], np.int32), np.array([largest], np.uint32), True) == (-3, largest, -5, True)
+    assert len([name for name in compiled_parts if "itself" in name]) == 1
+
+    @compiled
+    def beyond(unsigned):
+        return itself(unsigned[0])
+
+    assert beyond(np.array([2**63 + 5], np.uint64)) == 2**63 + 5
+    assert len([name for name in compiled_parts if "itself" in name]) == 2
+
+
 def test_what_calls_of_numba_give_is_asked_for_once(monkeypatch):
     """Both sums are of two floats."""
     asked = []
