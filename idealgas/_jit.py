@@ -271,7 +271,7 @@ class _Cache(FunctionCache):
         self._cache_file = _Files(self.cache_path, code.filename_base, code.locator.get_source_stamp())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Load machine code without all that only compilation needs: a third of a second in each process."""
+        """Load machine code without all that only compilation needs: more than half a second in each process."""
         rtsys.initialize(target_context)  # arrays come in by functions of numba's runtime
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)

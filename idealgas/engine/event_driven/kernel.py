@@ -43,7 +43,6 @@ from idealgas.engine.rows import (
 
 U = np.uintp
 
-
 STALE, EVENT, START = SIDE_OF_BOX, SIDE_OF_BOX + 1, SIDE_OF_BOX + 2
 """What has changed for a disc, if it has not crossed into a cell: its contact's partner; its record; all of it."""
 
