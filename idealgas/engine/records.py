@@ -52,6 +52,8 @@ class Threads(NamedTuple):
         slices: number of pieces of work that several threads shared.
         given_up: number of those that one thread had to do again.
         events: those that `advance` is to be asked for at least, so that it can share the work.
+        alone: those that it may be asked for at most, so that one thread does it and leaves cores to others; 0 where
+            there are cores left, or others get none.
     """
 
     number: int = 1
@@ -59,6 +61,7 @@ class Threads(NamedTuple):
     slices: int = 0
     given_up: int = 0
     events: int = 1
+    alone: int = 0
 
 
 ONE_THREAD = Threads()

@@ -24,7 +24,7 @@ from idealgas.log.hdf5.superblock import abandon
 from idealgas.log.hdf5.table import Table, commit_tables, open_tables
 from idealgas.log.schema import LogLayout
 
-BUFFERS = 4
+BUFFERS = 8
 FLUSH_ROWS = 4 * BLOCK
 FLUSH_SECONDS = 1.0
 
@@ -138,13 +138,18 @@ class LogWriter:
     # ── the caller's side ──
 
     def batch(self) -> EventBatch:
-        """A buffer to fill; one at a time. Waits while all four are in use.
+        """A buffer to fill; one at a time. Waits while all are in use.
 
         It ends a row behind the chunk in the file, for the second row of a pair, and begins where the chunk has got to.
         """
         self._lent = self._free.get()
         self._raise()
         return self._lent.rows(self.rows % BLOCK, BLOCK + 1)
+
+    @property
+    def behind(self) -> bool:
+        """Whether more than one buffer is still to be stored."""
+        return self._events is not None and self._free.qsize() < BUFFERS - 1
 
     def write(self, rows: int) -> None:
         """Hand over the first `rows` rows of the buffer that `batch` gave, not to be touched any more."""

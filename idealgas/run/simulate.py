@@ -174,7 +174,8 @@ class LoggedRun:
         slice_events = max(4096, least)
         while not simulation.finished(stop):
             before = time.perf_counter()
-            self._slice(slice_events)
+            alone = simulation.method.threads.alone if self._log.behind else 0
+            self._slice(alone or slice_events)
             if simulation.paused and self._scene.log.snapshot_every:  # not where time has no more numbers
                 self._snapshot()
             if simulation.epoch_over and not simulation.finished(stop):
@@ -185,6 +186,8 @@ class LoggedRun:
             if interrupted():
                 break
             taken = time.perf_counter() - before
+            if alone:
+                continue
             if taken < SHORTEST_SLICE and not simulation.paused:
                 slice_events = min(2 * slice_events, UNLIMITED)
             elif taken > LONGEST_SLICE:

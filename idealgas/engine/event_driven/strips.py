@@ -78,7 +78,9 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
         }
     number = min(limits)
     worth = max(2 * tuning.events, min(4 * n, tuning.slice))  # all discs are copied before
-    return Threads(max(number, 1), limits[number], events=worth if number > 1 else 1)
+    if number <= 1:
+        return Threads(1, limits[number])
+    return Threads(number, limits[number], events=worth, alone=tuning.events // 2 if number >= cores() else 0)
 
 
 def cut(discs_in_row: np.ndarray, strips: int) -> list[int]:

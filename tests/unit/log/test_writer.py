@@ -29,6 +29,7 @@ from idealgas.events import (
     event_columns,
 )
 from idealgas.log import LogLayout, LogWriter, box_walls, open_log
+from idealgas.log.hdf5.table import Table
 from idealgas.log.schema import kinds
 
 
@@ -176,6 +177,22 @@ def test_what_is_handed_over_may_change_afterwards(tmp_path):
             writer.checkpoint(k, k, {"position": position, "velocity": position}, {"hits": 0})
     with open_log(tmp_path / "run.h5") as log:
         assert all((checkpoint.position == checkpoint.epoch / 10).all() for checkpoint in log.checkpoints)
+
+
+def test_a_log_is_behind_while_batches_are_to_be_stored(tmp_path, monkeypatch):
+    goes_on = threading.Event()
+    append = Table.append
+    with new_writer(tmp_path / "run.h5") as writer:
+        monkeypatch.setattr(Table, "append", lambda *given: goes_on.wait() and append(*given))
+        write_rows(writer, 300, sizes=(300,))
+        assert not writer.behind
+        write_rows(writer, 600, sizes=(300,))
+        assert writer.behind
+        goes_on.set()
+        while writer.behind:
+            time.sleep(0.01)
+    with open_log(tmp_path / "run.h5") as log:
+        assert check(log) == 600
 
 
 def test_long_texts_and_many_checkpoints(tmp_path):

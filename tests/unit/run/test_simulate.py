@@ -5,10 +5,12 @@ import math
 
 import numpy as np
 import pytest
+from log_compare import differences
 from support import ROOT
 
+from idealgas.engine.event_driven.race import Race
 from idealgas.gas.build import make_gas
-from idealgas.log import open_log
+from idealgas.log import LogWriter, open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import Energy, is_conserved
 from idealgas.run.simulate import simulate
@@ -40,6 +42,20 @@ def test_a_shipped_scene_conserves_what_it_should(shipped_scene, tmp_path):
             momentum = log.observables["momentum"][1]
             size = (log.discs.mass * np.hypot(*log.discs.velocity.T)).sum()
             assert np.abs(momentum - momentum[0]).max() < 1e-12 * size
+
+
+@pytest.mark.slow
+def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
+    """It leaves a core to the log; what the log holds is the same."""
+    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 2)
+    monkeypatch.setattr(Race, "shares", lambda race: True)
+    scene = load_scene(CONFIGS / "dilute.toml", ["run.events=200_000", "run.threads=2"])
+    paths = [tmp_path / "behind.h5", tmp_path / "never.h5"]
+    for path, behind in zip(paths, (True, False), strict=True):
+        monkeypatch.setattr(LogWriter, "behind", behind)
+        summary = simulate(scene, path)
+        assert (summary.threads, summary.shared_slices > 0) == (2, not behind)
+    assert not differences(*paths)
 
 
 def test_walls_are_in_the_log_by_their_numbers(tmp_path):

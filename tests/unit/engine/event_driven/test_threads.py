@@ -26,7 +26,7 @@ from thread_samples import (
 from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.event_driven.race import Race
-from idealgas.engine.event_driven.strips import cut, share_out
+from idealgas.engine.event_driven.strips import FAST, cut, share_out
 from idealgas.engine.event_driven.team import STOP, Crew, Team, _Strip
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
@@ -60,6 +60,13 @@ def test_a_number_of_threads_and_why(monkeypatch):
     assert share_out(None, 100, 10**6, True)[:2] == (3, "each has at least 32 rows of cells")
     assert share_out(None, 10, 100, True)[0] == 1
     assert share_out(3, 100, 50, False)[0] == 1
+
+
+def test_where_no_core_is_left_one_thread_can_be_asked_for(monkeypatch):
+    monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
+    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 4)
+    assert 0 < share_out(None, 1000, 10**6, True).alone < FAST.events
+    assert [share_out(threads, 1000, 10**6, True).alone > 0 for threads in (1, 3, 4, 5)] == [False, False, True, True]
 
 
 def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
