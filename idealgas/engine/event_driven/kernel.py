@@ -91,7 +91,8 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         state.unpredicted[0] = False
         predict_piston(record, ids, state, effects.piston, effects.gravity)
         for k in range(record.shape[0]):
-            predict(record, ids, state, k, START, 0.0, effects, border)
+            if in_own_schedule(record, k, border) >= 0:
+                predict(record, ids, state, k, START, 0.0, effects, border)
     time = 0.0
     change = np.int64(START)
     i = other = np.int64(-1)

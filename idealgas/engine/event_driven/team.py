@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.engine.event_driven.border import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION
+from idealgas.engine.event_driven.border import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Border
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.merge import Pending, TiedRowsError, order_of
 from idealgas.engine.event_driven.race import Race
@@ -129,14 +129,12 @@ class Team:
         """Process events up to the limits, see `advance_events`; rows beyond the batch come with the next calls."""
         if self.pending:
             return self._deliver(batch)
-        if self._state.unpredicted[0]:
-            self._alone(limits._replace(events=0), epoch_start, batch, counters)
         goal, race = self._goal(limits, batch, counters[0]), self._crew.race
         if limits.events == 0:
             self._share(0.0, batch, FAILED)  # compiles
             return self._alone(limits, epoch_start, batch, counters)
         shared = goal > 0.0 and (race is None or race.shares())
-        started, events = time.perf_counter(), int(counters[0]["events"])
+        started, before = time.perf_counter(), self._work(counters)
         given_up = self._given_up(goal, limits, epoch_start, batch, counters) if shared else ""
         if shared and not given_up:
             rows, arrived = self._deliver(batch)
@@ -145,8 +143,12 @@ class Team:
                 limits = limits._replace(events=min(limits.events, self._trial(TRIED_ALONE)))
             rows, arrived = self._alone(limits, epoch_start, batch, counters)
         if race is not None and given_up != STOP:  # a rate that rose, as in a lattice that melts, says nothing of speed
-            race.note(shared, int(counters[0]["events"]) - events, time.perf_counter() - started)
+            race.note(shared, self._work(counters) - before, time.perf_counter() - started)
         return rows, arrived
+
+    def _work(self, counters: np.ndarray) -> int:
+        """What has been done in the epoch: events, and predictions at its start, which take about as long."""
+        return int(counters[0]["events"]) - (len(self._discs.record) if self._state.unpredicted[0] else 0)
 
     def _goal(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
         """Local time up to which a slice is to be shared; 0 for none."""
@@ -172,7 +174,7 @@ class Team:
         """Process events on this thread only."""
         record, ids, _ = self._discs
         if not self._planted:
-            plant(self._state.tree, self._state.prediction, record, 0, self._state.cells.rows)
+            _plant(self._state, record, 0, self._state.cells.rows)
             self._planted = True
         before = counters.copy()
         rows, reached = advance_events(
@@ -217,6 +219,7 @@ class Team:
             facts[why] += 1
             self._restore()
             return why
+        self._state.unpredicted[0] = False
         for strip in strips:
             strip.add_to(self._effects)
         if done["events"]:
@@ -245,6 +248,7 @@ class Team:
         words, limits = self._borders[0].words, Limits(until, UNLIMITED, UNLIMITED, UNLIMITED)
         reset(self._borders)
         words[FLAG] = flag
+        unpredicted = bool(self._state.unpredicted[0]) and not flag
 
         def give_up() -> None:
             words[FLAG] = words[FLAG] or FAILED
@@ -252,7 +256,7 @@ class Team:
         def work(k: int) -> None:
             try:
                 own = self._rows.rows(k * room, (k + 1) * room) if self._rows is not None else None
-                self._strips[k].run(record, ids, limits, own, self._borders[k])
+                self._strips[k].run(record, ids, limits, own, self._borders[k], unpredicted)
             except Exception:  # raised by a kernel: one thread will come to it, and raise it again
                 give_up()
 
@@ -296,16 +300,23 @@ class _Strip:
             candidates=np.empty_like(state.candidates),
             lookahead=None if state.lookahead is None else state.lookahead.copy(),
             images=None if state.images is None else np.empty_like(state.images),
+            unpredicted=np.zeros(1, np.bool_),
         )
         self._effects = with_own_sums(effects)
         self.filled = 0
         self.counters = np.zeros(1, COUNTERS).view(np.recarray)
 
-    def run(self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, border: Any) -> None:
-        """Process the strip's events up to a limit of time; rows: memory for them, with local times; None for none."""
+    def run(
+        self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, border: Border, unpredicted: bool
+    ) -> None:
+        """Process the strip's events up to a limit of time.
+
+        rows: memory for them, with local times; None for none. unpredicted: whether an epoch begins.
+        """
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self._effects)
-        plant(self._state.tree, self._state.prediction, record, border.low, border.high)
+        self._state.unpredicted[0] = unpredicted
+        _plant(self._state, record, border.low, border.high)
         self.filled, _ = advance_events(
             record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
         )
@@ -315,6 +326,11 @@ class _Strip:
     def add_to(self, effects: Effects) -> None:
         """Add the sums of the slice to those of the run."""
         add_sums_of(effects, self._effects)
+
+
+def _plant(state: EventDrivenState, record: Any, low: int, high: int) -> None:
+    """Make the schedule that of the discs in some rows, see `plant`; empty before anything is predicted."""
+    plant(state.tree, state.prediction, record, low, low if state.unpredicted[0] else high)
 
 
 def _longer(column: np.ndarray | None, rows: int) -> np.ndarray | None:
