@@ -243,17 +243,30 @@ def test_a_disc_that_comes_late_has_its_turn_among_events_of_one_time():
 
 
 @pytest.mark.slow
+def test_strips_begin_an_epoch_without_a_thread_that_does_it_alone(monkeypatch):
+    gas, effects = tall_scene("plain", 2)
+    simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
+    while simulation.epoch < 1:
+        simulation.advance(Stop(), None, 500)
+        if simulation.epoch_over:
+            simulation.next_epoch()
+    monkeypatch.setattr(Team, "_alone", None)
+    simulation.advance(Stop(), None, 500)
+    assert simulation.counters.events > simulation.totals.events
+
+
+@pytest.mark.slow
 def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
     """The others wait at their borders for one that is not there, and see that the work is given up."""
     stop, sample = Stop(events=3000), lambda: tall_scene("plain", 3)
     expected = log_with(*sample(), stop, 1000, EventDriven())
     run, calls = _Strip.run, []
 
-    def fail(self, record, ids, limits, batch, border):
+    def fail(self, record, ids, limits, batch, border, unpredicted):
         calls.append(border.me)
         if border.me == 1 and len(calls) % 2:
             raise MemoryError
-        run(self, record, ids, limits, batch, border)
+        run(self, record, ids, limits, batch, border, unpredicted)
 
     monkeypatch.setattr(_Strip, "run", fail)
     method = EventDriven(1e-9, 3, EAGER)
