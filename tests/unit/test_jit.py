@@ -1,11 +1,9 @@
-"""Machine code: its cache, which belongs to the sources that it is made from, and what asks for memory ahead."""
+"""The cache of machine code, which belongs to the sources that it is made from."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from support import ROOT
+from fresh_python import python, start
 
 pytestmark = pytest.mark.slow
 
@@ -53,22 +51,6 @@ from toy.entry import entry
 print(entry(20), sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """
 INTERPRETED = {"NUMBA_DISABLE_JIT": "1"}
-
-
-def start(program, folder, **environment):
-    """A fresh Python that finds the modules of a folder first, then this package."""
-    environment = {"NUMBA_DISABLE_JIT": "0", "PATH": "/usr/bin:/bin", "PYTHONPATH": str(ROOT), **environment}
-    command = [sys.executable, "-B", "-c", program]  # its own bytecode may be stale when sources change within a second
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    return subprocess.Popen(command, cwd=folder, env=environment, text=True, **pipes)
-
-
-def python(program, folder, **environment):
-    """What a program prints in a fresh Python."""
-    process = start(program, folder, **environment)
-    output, errors = process.communicate()
-    assert (process.returncode, errors) == (0, "")
-    return output.strip()
 
 
 def write(folder, name="toy"):
@@ -283,60 +265,6 @@ def test_what_has_no_source_file_is_compiled_but_not_cached(tmp_path, cache):
     program = FIELD.replace("sides.left", "sides") + "print(left(3), *left.stats.cache_hits)"
     assert python(program, tmp_path, **cache) == "3"
     assert not list(tmp_path.iterdir())
-
-
-NEAR = """
-from idealgas._jit import njit
-from idealgas._prefetch import fetch_next_line
-
-@njit
-def near(column, row):
-    fetch_next_line(column, row)
-"""
-NEAR_THE_END = """
-import numpy as np
-from idealgas._prefetch import fetch_next_line
-from module import near
-for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
-    before = column.copy()
-    assert fetch_next_line(column, 2) is None and near(column, np.uintp(2)) is None
-    assert (column == before).all()
-print(*(code.count("call void @llvm.prefetch") for code in near.inspect_llvm().values()))
-"""
-
-
-def test_memory_behind_an_array_is_asked_for_and_left_alone(tmp_path, cache):
-    """Its last row has no line behind it; in Python nothing is asked for."""
-    (tmp_path / "module.py").write_text(NEAR)
-    assert python(NEAR_THE_END, tmp_path, **cache) == "1 1 1"
-
-
-SELDOM = """
-from idealgas._expect import seldom
-from idealgas._jit import njit
-
-@njit
-def number(column):
-    found = 0
-    for k in range(column.shape[0]):
-        if seldom(column[k] > 1.5):
-            found += 1
-    return found
-"""
-EITHER_WAY = """
-import numpy as np
-from idealgas._expect import seldom
-from module import number
-assert [number(np.array(column)) for column in ([0.0, 1.0], [2.0, 3.0], [0.0, 2.0])] == [0, 2, 1]
-assert seldom(True) is True and seldom(False) is False
-print(*(code.count("@llvm.expect.i1(i1") for code in number.inspect_llvm().values()))
-"""
-
-
-def test_what_is_said_to_be_seldom_may_be_true_or_false(tmp_path, cache):
-    """LLVM has taken note of it: nothing is left to be called."""
-    (tmp_path / "module.py").write_text(SELDOM)
-    assert python(EITHER_WAY, tmp_path, **cache) == "0"
 
 
 SUMS = """
