@@ -174,7 +174,7 @@ class LoggedRun:
         slice_events = max(4096, least)
         while not simulation.finished(stop):
             before = time.perf_counter()
-            alone = simulation.method.threads.alone if self._log.behind else 0
+            alone = simulation.method.threads.alone if self._log.behind else 0  # the log needs a core
             self._slice(alone or slice_events)
             if simulation.paused and self._scene.log.snapshot_every:  # not where time has no more numbers
                 self._snapshot()
@@ -186,9 +186,7 @@ class LoggedRun:
             if interrupted():
                 break
             taken = time.perf_counter() - before
-            if alone:
-                continue
-            if taken < SHORTEST_SLICE and not simulation.paused:
+            if taken < SHORTEST_SLICE and not (alone or simulation.paused):
                 slice_events = min(2 * slice_events, UNLIMITED)
             elif taken > LONGEST_SLICE:
                 slice_events = max(slice_events // 2, least)
