@@ -240,20 +240,23 @@ class Simulation:
     def state(self) -> tuple[Gas, Effects]:
         """Copies of the gas, its images and its momentum flow, and the effects, at the time reached."""
         periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
-        gas = self._synchronised(self._local_now, periodic, flow)
+        record = self.method.discs.record
+        record = np.array(record.view(np.uint8)).view(record.dtype)  # copied as bytes: seven times as fast
+        gas = self._synchronised(record, self._local_now, periodic, flow)
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:
         """An error that a kernel raised, which cannot tell the time, with that of the last event."""
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
-    def _synchronised(self, local_time: float, periodic: Periodic | None, flow: MomentumFlow | None) -> Gas:
-        """The gas at a local time, and its images and momentum flow up to then; the records do not change."""
-        discs = self.method.discs
-        record = np.array(discs.record.view(np.uint8)).view(discs.record.dtype)  # seven times as fast
+    def _synchronised(
+        self, record: np.ndarray, local_time: float, periodic: Periodic | None, flow: MomentumFlow | None
+    ) -> Gas:
+        """The gas at a local time, to which the records are brought, and the images and the momentum flow too."""
+        ids = self.method.discs.id
         position, velocity = np.empty((2, len(record), 2))
         try:
-            synchronise(record, discs.id, local_time, self.effects.gravity, periodic, flow, position, velocity)
+            synchronise(record, ids, local_time, self.effects.gravity, periodic, flow, position, velocity)
         except SumRangeError as error:
             raise self._dated(error) from error
         if self.method.without_positions:
@@ -262,7 +265,7 @@ class Simulation:
 
     def next_epoch(self) -> None:
         """Move all discs to the end of the epoch and begin the next one there."""
-        self.gas = self._synchronised(self.length, self.effects.periodic, self.effects.flow)
+        self.gas = self._synchronised(self.method.discs.record, self.length, self.effects.periodic, self.effects.flow)
         self.totals = self.counters
         end_epoch(self.effects, self.length)
         self.time += self.length
