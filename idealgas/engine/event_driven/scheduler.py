@@ -46,7 +46,7 @@ def make_tree(n: int) -> Tree:
     while nodes > 1 or len(start) == 1:
         nodes = -(-nodes // 8)
         start.append(total)
-        total += -(-nodes // 8) * 8
+        total += 4 if 1 < nodes <= 4 else -(-nodes // 8) * 8  # below the root four may be enough
     time = aligned(total, np.dtype("f8"))
     winner = aligned(total, np.dtype("i4"))
     winner[:n] = np.arange(n)
@@ -62,29 +62,27 @@ def clear(tree):
 
 
 @inline
-def first_of_eight(key, group):
-    """Earliest key of a group of eight nodes, and a node that has it."""
-    k0 = key[U(group)]
-    k1 = key[U(group + 1)]
-    k2 = key[U(group + 2)]
-    k3 = key[U(group + 3)]
-    k4 = key[U(group + 4)]
-    k5 = key[U(group + 5)]
-    k6 = key[U(group + 6)]
-    k7 = key[U(group + 7)]
+def first_of_four(key, first):
+    """Earliest key of four nodes in a row, and a node that has it."""
+    k0 = key[U(first)]
+    k1 = key[U(first + 1)]
+    k2 = key[U(first + 2)]
+    k3 = key[U(first + 3)]
     n0 = 1 if k1 < k0 else 0
-    n1 = 3 if k3 < k2 else 2
-    n2 = 5 if k5 < k4 else 4
-    n3 = 7 if k7 < k6 else 6
+    n2 = 3 if k3 < k2 else 2
     k0 = min(k0, k1)
     k2 = min(k2, k3)
-    k4 = min(k4, k5)
-    k6 = min(k6, k7)
-    n0 = n1 if k2 < k0 else n0
-    n2 = n3 if k6 < k4 else n2
-    k0 = min(k0, k2)
-    k4 = min(k4, k6)
-    return min(k0, k4), group + (n2 if k4 < k0 else n0)
+    return min(k0, k2), first + (n2 if k2 < k0 else n0)
+
+
+@inline
+def first_of_group(key, group, width):
+    """Earliest key of a group of eight nodes, and a node that has it; width: nodes of its level, which may be four."""
+    k0, n0 = first_of_four(key, group)
+    if width == 4:
+        return k0, n0
+    k4, n4 = first_of_four(key, group + 4)
+    return min(k0, k4), (n4 if k4 < k0 else n0)
 
 
 @inline
@@ -120,11 +118,12 @@ def withdraw(tree, predictions, ids, i):
     for level in range(1, start.shape[0]):
         offset = (group - base) >> 3
         group = base + (offset << 3)
+        width = start[U(level)] - base
         base = start[U(level)]
         parent = base + offset
         if winner[U(parent)] != i:
             break
-        earliest, best = first_of_eight(key, group)
+        earliest, best = first_of_group(key, group, width)
         key[U(parent)] = earliest
         winner[U(parent)] = winner[U(best)]
         group = parent
@@ -200,7 +199,7 @@ def plant(tree, predictions, record, low, high):
     for level in range(1, tree.start.shape[0]):
         nodes = (nodes + 7) // 8
         for offset in range(nodes):
-            earliest, best = first_of_eight(tree.key, base + 8 * offset)
+            earliest, best = first_of_group(tree.key, base + 8 * offset, tree.start[level] - base)
             tree.key[U(tree.start[level] + offset)] = earliest
             tree.winner[U(tree.start[level] + offset)] = tree.winner[U(best)]
         base = tree.start[level]

@@ -23,9 +23,9 @@ def comes_first(predictions, ids, i, j):
 
 @inline
 def settle_group(tree, predictions, ids, group, parent):
-    """Make the winner of a group of eight the one that comes first among those that share the earliest time."""
+    """Make the winner of a group the one that comes first among those that share the earliest time."""
     first = np.int64(-1)
-    for node in range(group, group + 8):
+    for node in range(group, min(group + 8, parent)):
         if tree.time[U(node)] == tree.time[U(parent)]:
             i = np.int64(tree.winner[U(node)])
             if first < 0 or comes_first(predictions, ids, i, first):

@@ -61,7 +61,7 @@ times = st.integers(0, 4).map(float)
 
 
 @settings(max_examples=60)
-@given(st.integers(1, 100).flatmap(lambda n: st.tuples(st.just(n), st.integers(0, 2**32), st.integers(1, 60))))
+@given(st.integers(1, 300).flatmap(lambda n: st.tuples(st.just(n), st.integers(0, 2**32), st.integers(1, 60))))
 def test_the_root_is_the_next_event(case):
     n, seed, updates = case
     draw = np.random.default_rng(seed)
