@@ -19,16 +19,17 @@ from idealgas.physics.exact_sum import SumRangeError
 from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 
-TRAJECTORY = 5
+TRAJECTORY = 6
 """Version of the trajectory, raised by hand whenever a scene's log comes out differently than it did."""
 
-GOES_ON = frozenset({3, 4, TRAJECTORY})
+GOES_ON = frozenset({3, 4, 5, TRAJECTORY})
 """Versions of logs that are gone on with as they began.
 
 Since version 4 a scene may have other defaults: the contact duration under a constant force, and a Monte Carlo v_ref
 that rises. A log of version 3 has its contact duration in its scene, and its v_ref stays as it is. Version 5 differs
 for time steps of rare lengths, of which one was left out between epochs, in the overlaps of time-driven runs, and where
-a disc would go round a periodic box thousands of times in an epoch.
+a disc would go round a periodic box thousands of times in an epoch. In version 6 sums have other units where spins have
+far more energy than the motion.
 """
 
 
@@ -241,8 +242,8 @@ class Simulation:
         """Copies of the gas, its images and its momentum flow, and the effects, at the time reached."""
         periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
         record = self.method.discs.record
-        record = np.array(record.view(np.uint8)).view(record.dtype)  # copied as bytes: seven times as fast
-        gas = self._synchronised(record, self._local_now, periodic, flow)
+        moved = np.array(record.view(np.uint8)).view(record.dtype)  # copied as bytes: seven times as fast
+        gas = self._synchronised(moved, self._local_now, periodic, flow)
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:

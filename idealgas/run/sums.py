@@ -11,6 +11,7 @@ from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, none_waiting
+from idealgas.physics.rotation import spin_energy
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
@@ -27,8 +28,9 @@ def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, l
     gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any. What a
     heat bath gives has a sum of its own.
     """
-    speed, walls = _speed(scene, gas, effects), len(number_walls(scene))
-    largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects))
+    spins = 0.0 if effects.rotation is None else spin_energy(effects.rotation)
+    speed, walls = _speed(scene, gas, effects, spins), len(number_walls(scene))
+    largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects), spins)
     energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * largest)
     return effects._replace(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
@@ -66,12 +68,16 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
     )
 
 
-def _speed(scene: Scene, gas: Gas, effects: Effects) -> float:
-    """A typical speed of the discs, length/time: at the start or, if that is more, once effects have moved them."""
+def _speed(scene: Scene, gas: Gas, effects: Effects, spins: float) -> float:
+    """A typical speed of the discs, length/time: at the start or, if that is more, once effects have moved them.
+
+    spins: energy of all spins, which may become motion.
+    """
     mass = float(gas.mass.mean())
     hottest = max(scene.properties.temperatures, default=0.0)
     start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
-    return max(start, speed_beyond(gas, effects), math.sqrt(hottest / mass)) or 1.0
+    spun = math.sqrt(LEAST_SHARE * 2 * spins / mass)
+    return max(start, speed_beyond(gas, effects), math.sqrt(hottest / mass), spun) or 1.0
 
 
 def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:

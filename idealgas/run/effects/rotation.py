@@ -8,7 +8,7 @@ from idealgas.events import ANGULAR_VELOCITY, Arrays, Column
 from idealgas.gas.build import stream
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.physics.rotation import Rotation, moment_of_inertia
+from idealgas.physics.rotation import Rotation, moment_of_inertia, spin_energy
 from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
 
@@ -36,7 +36,7 @@ def _constants(rotation: Rotation) -> Arrays:
 
 
 def _energy(rotation: Rotation, _: Gas, __: float) -> float:
-    return float((0.5 * rotation.inertia * rotation.omega**2).sum())
+    return spin_energy(rotation)
 
 
 def _conserves(effects: Effects) -> bool:

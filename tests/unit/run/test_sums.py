@@ -258,3 +258,27 @@ def test_methods_without_these_sums(keys, got):
         parse_scene(GAS + "".join(f"run.{key}\n" for key in keys.splitlines()))
     allowed = 'event_driven, brute_force with "float64"'
     assert f"log.pressure: not recorded by this method (got {got}; allowed {allowed})" in str(refused.value)
+
+
+@pytest.mark.parametrize("roughness", [1.0, 0.5])
+def test_spins_of_far_more_energy_than_the_motion(roughness, tmp_path):
+    """Heavy discs at rest with fast spins, in the course of a cold bath and of a gas that they set in motion."""
+    scene = """
+    box.size = [8, 6]
+    disc = [
+        {position = [2, 2], velocity = [0, 0], radius = 0.6, mass = 1e8, angular_velocity = 2},
+        {position = [5, 3], velocity = [1e-16, 0], radius = 0.6, mass = 1e8, angular_velocity = -2},
+    ]
+    rotation = {inertia = 0.5, wall_roughness = 1}
+    thermostat = {temperature = 1e-12, rate = 0.1}
+    log.pressure = true
+    run.events = 200
+    """
+    path = tmp_path / "run.h5"
+    simulate(parse_scene(scene, overrides=[f"rotation.roughness={roughness}"]), path)
+    with open_log(path) as log:
+        energy, heat = log.observables["energy"][1], log.observables["bath_energy"][1]
+        lost = log.observables["dissipated_energy"][1].sum(axis=1) if roughness < 1 else 0.0
+        assert energy[0] > 1e7
+        assert energy[-1] < 1e-4
+        assert np.abs(energy + lost - energy[0] - heat).max() <= 1e-12 * energy[0]
