@@ -15,6 +15,7 @@ from idealgas.physics.exact_sum import (
     SumRangeError,
     add,
     add_all,
+    add_sums,
     make_sums,
     restore,
     stored,
@@ -154,3 +155,18 @@ def test_a_sum_of_floats_goes_on():
 def test_what_is_beyond_all_sums_is_not_restored(entry):
     with pytest.raises(SumRangeError, match="too large"):
         restore(make_sums([1.0]), np.array(entry))
+
+
+@np.errstate(over="ignore")  # words wrap around, of which Python warns
+def test_parts_of_sums_add_up_to_the_bit():
+    draw = np.random.default_rng(5)
+    terms = draw.normal(size=TOGETHER) * 10.0 ** draw.integers(-9, 12, TOGETHER)
+    whole, *parts = (make_sums([1.0]) for _ in range(4))
+    add_all(whole[0], terms)
+    for k in range(3):
+        add_all(parts[k][0], terms[k::3])
+    total = make_sums([1.0])
+    for part in parts:
+        add_sums(total, part)
+    assert total.tolist() == whole.tolist()
+    assert values(total)[0] != 0

@@ -1,6 +1,5 @@
 """Several threads write the log of one, bit for bit, whatever they meet at the borders of their strips."""
 
-import time
 from collections import Counter
 from itertools import cycle
 
@@ -23,127 +22,14 @@ from thread_samples import (
     wind,
 )
 
-from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.event_driven.race import Race
-from idealgas.engine.event_driven.strips import FAST, cut, share_out
-from idealgas.engine.event_driven.team import STOP, Crew, Team, _Strip
+from idealgas.engine.event_driven.team import Crew, Team, _Strip
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.physics.exact_sum import TOGETHER, add_all, add_sums, make_sums, values
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-
-# ── how the work is shared ──
-
-
-@given(st.lists(st.integers(0, 50), min_size=2 * LEAST_ROWS, max_size=200), st.integers(2, 9))
-def test_strips_are_high_enough_and_share_equally_where_they_can(discs, most):
-    strips = min(most, len(discs) // LEAST_ROWS)
-    edges = cut(np.array([0, *discs, 0]), strips)
-    assert edges[0] == 1
-    assert edges[-1] == len(discs) + 1
-    assert min(np.diff(edges)) >= LEAST_ROWS
-    even = cut(np.array([0, *[7] * len(discs), 0]), strips)
-    assert np.ptp(np.diff(even)) <= 2
-
-
-def test_a_number_of_threads_and_why(monkeypatch):
-    monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
-    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 4)
-    assert share_out(3, 100, 50, True)[:2] == (3, "as run.threads says")
-    assert share_out(3, 2 * LEAST_ROWS + 1, 50, True)[0] == 2
-    assert share_out(1, 5, 50, True)[:2] == (1, "as run.threads says")
-    assert share_out(None, 1000, 10**6, True)[:2] == (4, "as many as there are cores")
-    assert share_out(None, 1000, 12_000, True)[:2] == (2, "each has at least 5000 discs")
-    assert share_out(None, 100, 10**6, True)[:2] == (3, "each has at least 32 rows of cells")
-    assert share_out(None, 10, 100, True)[0] == 1
-    assert share_out(3, 100, 50, False)[0] == 1
-
-
-def test_where_no_core_is_left_one_thread_can_be_asked_for(monkeypatch):
-    monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
-    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 4)
-    assert 0 < share_out(None, 1000, 10**6, True).alone < FAST.events
-    assert [share_out(threads, 1000, 10**6, True).alone > 0 for threads in (1, 3, 4, 5)] == [False, False, True, True]
-
-
-def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr("time.perf_counter", lambda: now[0])
-    race = Race()
-    assert not race.shares()
-    race.note(False, 100, 1.0)
-    assert race.shares()
-    race.note(True, 100, 3.0)
-    assert not race.shares()
-    now[0] = 100.0
-    assert race.shares()
-    race.note(True, 100, 0.5)
-    assert race.shares()
-
-
-def test_a_way_that_gets_slow_is_not_tried_again_at_once(monkeypatch):
-    """As when other work begins on the machine."""
-    now = [0.0]
-    monkeypatch.setattr("time.perf_counter", lambda: now[0])
-    race = Race()
-    race.note(False, 100, 1.0)
-    race.note(True, 100, 0.5)
-    now[0] = 5.0
-    assert race.shares()
-    race.note(True, 100, 40.0)
-    assert not race.shares()
-    assert race.is_trial(True)
-    now[0] = 5.0 + 20 * 40.0
-    assert race.shares()
-
-
-def test_the_first_shared_slice_is_a_short_one(monkeypatch):
-    foretold = {True: [], False: []}
-
-    def shared(team, goal, limits, epoch_start, batch, counters):
-        foretold[team._crew.race.open].append((goal - counters[0].time) * team._crew.rate[0])
-        return "tie"  # done again by one thread, and noted as what the threads took
-
-    monkeypatch.setattr(Team, "_given_up", shared)
-    monkeypatch.setattr(Race, "shares", lambda race: True)
-    method = EventDriven(SMALLEST_CELLS, 2, EAGER._replace(race=True, events=20))
-    gas, effects = tall_scene("plain", 1)
-    log_with(gas, effects, Stop(events=5000), 300, method)
-    assert len(foretold[True]) == 1
-    assert foretold[True][0] <= max(40, len(gas)) < min(foretold[False])
-
-
-def test_slices_beyond_the_events_foretold_do_not_keep_threads_from_sharing(monkeypatch):
-    """They come where the rate rises, as in a lattice that melts, and take their time in vain."""
-    tried = []
-    monkeypatch.setattr(Team, "_given_up", lambda *given: tried.append(time.sleep(0.01)) or STOP)
-    method = EventDriven(1e-9, 3, EAGER._replace(race=True))
-    log_with(*tall_scene("plain", 3), Stop(events=5000), 300, method)
-    assert len(tried) > 10
-
-
-# ── sums are put together ──
-
-
-@np.errstate(over="ignore")  # words wrap around, of which Python warns
-def test_parts_of_sums_add_up_to_the_bit():
-    draw = np.random.default_rng(5)
-    terms = draw.normal(size=TOGETHER) * 10.0 ** draw.integers(-9, 12, TOGETHER)
-    whole, *parts = (make_sums([1.0]) for _ in range(4))
-    add_all(whole[0], terms)
-    for k in range(3):
-        add_all(parts[k][0], terms[k::3])
-    total = make_sums([1.0])
-    for part in parts:
-        add_sums(total, part)
-    assert total.tolist() == whole.tolist()
-    assert values(total)[0] != 0
-
-
-# ── logs ──
 
 GAS = """
 box.size = [60.0, 60.0]
