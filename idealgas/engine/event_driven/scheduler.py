@@ -29,6 +29,7 @@ class Tree(NamedTuple):
         start: (levels,) i8, first node of each level.
         settled: (1,) f8, latest time of which there were several events: among these, the winners are those that come
             first. Where events have another time in common, any of them may be a winner.
+        root: node of the next event.
     """
 
     time: np.ndarray
@@ -36,6 +37,7 @@ class Tree(NamedTuple):
     winner: np.ndarray
     start: np.ndarray
     settled: np.ndarray
+    root: int
 
 
 def make_tree(n: int) -> Tree:
@@ -50,7 +52,7 @@ def make_tree(n: int) -> Tree:
     time = aligned(total, np.dtype("f8"))
     winner = aligned(total, np.dtype("i4"))
     winner[:n] = np.arange(n)
-    return Tree(time, time.view(np.int64), winner, np.array(start), np.full(1, UNSETTLED))
+    return Tree(time, time.view(np.int64), winner, np.array(start), np.full(1, UNSETTLED), start[-1])
 
 
 @inline
@@ -88,7 +90,7 @@ def first_of_group(key, group, width):
 @inline
 def schedule(tree, predictions, ids, i):
     """Enter the next event of disc i, of which the tree has none, and climb as far as it is the earliest."""
-    _, key, winner, start, settled = tree
+    _, key, winner, start, settled, _ = tree
     prediction = predictions[U(i)]
     time = min(prediction.contact, prediction.crossing)
     tree.time[U(i)] = time
@@ -110,7 +112,7 @@ def schedule(tree, predictions, ids, i):
 @inline
 def withdraw(tree, predictions, ids, i):
     """Remove disc i's event from the tree, and climb as far as it was the earliest."""
-    times, key, winner, start, settled = tree
+    times, key, winner, start, settled, _ = tree
     removed = times[U(i)]
     key[U(i)] = NEVER_KEY + i
     group = np.int64(i)
@@ -139,15 +141,15 @@ def reschedule(tree, predictions, ids, i):
 
 
 @inline
-def root_of(tree):
-    """Node of the next event."""
-    return tree.start[U(tree.start.shape[0] - 1)]
+def next_time(tree):
+    """Local time of the next event."""
+    return tree.time[U(tree.root)]
 
 
 @inline
 def next_disc(tree):
     """Index of the disc with the next event, or with one of the next events that are simultaneous."""
-    return np.int64(tree.winner[U(root_of(tree))])
+    return np.int64(tree.winner[U(tree.root)])
 
 
 @inline
@@ -164,7 +166,7 @@ def is_settled(tree, time):
 
     It is if no other one is left in the tree, or if the tree is settled for the time.
     """
-    return (tree.time[U(root_of(tree))] != time) | (tree.settled[0] == time)
+    return (next_time(tree) != time) | (tree.settled[0] == time)
 
 
 @out_of_line
@@ -176,7 +178,7 @@ def settle(tree, predictions, ids, i, j):
     schedule(tree, predictions, ids, i)
     if j >= 0:
         schedule(tree, predictions, ids, j)
-    time = tree.time[U(root_of(tree))]
+    time = next_time(tree)
     tree.settled[0] = time
     parents = tree.start[1]
     for offset in range(parents >> 3):

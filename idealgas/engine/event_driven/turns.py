@@ -36,7 +36,7 @@ from idealgas.engine.event_driven.border import (
     unlock,
 )
 from idealgas.engine.event_driven.prediction import contact_is_next
-from idealgas.engine.event_driven.scheduler import next_disc, root_of, schedule
+from idealgas.engine.event_driven.scheduler import next_disc, next_time, schedule
 from idealgas.engine.records import check_clock
 
 U = np.uintp
@@ -50,7 +50,7 @@ def next_turn(record, ids, state, until, border):
     """
     if border is not None:
         return wait_for_turn(record, ids, state, until, border)
-    if state.tree.time[U(root_of(state.tree))] > until:
+    if next_time(state.tree) > until:
         return np.int64(OVER)
     return next_disc(state.tree)
 
@@ -295,7 +295,7 @@ def wait_for_turn(record, ids, state, until, b):
     while load(b.words, FLAG) == 0:
         if is_posted(b):
             absorb(ids, state, until, b)
-        time = state.tree.time[U(root_of(state.tree))]
+        time = next_time(state.tree)
         if time <= until:
             i = next_disc(state.tree)
             turn = may_happen(record, ids, state, i, time, b)
