@@ -11,7 +11,6 @@ from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, none_waiting
-from idealgas.physics.rotation import spin_energy
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
@@ -22,15 +21,16 @@ LEAST_SHARE = 2.0**-40
 """Smallest energy taken as typical, over the largest that effects bring: that stays far below 2^100 units."""
 
 
-def with_sums(effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool) -> Effects:
+def with_sums(
+    effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool, inner_energy: float
+) -> Effects:
     """The effects with all sums that a run needs, at time 0. gas: its discs at time 0.
 
     gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any. What a
-    heat bath gives has a sum of its own.
+    heat bath gives has a sum of its own. inner_energy: of the discs beside their motion, which may become motion.
     """
-    spins = 0.0 if effects.rotation is None else spin_energy(effects.rotation)
-    speed, walls = _speed(scene, gas, effects, spins), len(number_walls(scene))
-    largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects), spins)
+    speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
+    largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects), inner_energy)
     energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * largest)
     return effects._replace(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
@@ -68,16 +68,13 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
     )
 
 
-def _speed(scene: Scene, gas: Gas, effects: Effects, spins: float) -> float:
-    """A typical speed of the discs, length/time: at the start or, if that is more, once effects have moved them.
-
-    spins: energy of all spins, which may become motion.
-    """
+def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> float:
+    """A typical speed of the discs, length/time: at the start or, if that is more, once effects have moved them."""
     mass = float(gas.mass.mean())
     hottest = max(scene.properties.temperatures, default=0.0)
     start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
-    spun = math.sqrt(LEAST_SHARE * 2 * spins / mass)
-    return max(start, speed_beyond(gas, effects), math.sqrt(hottest / mass), spun) or 1.0
+    within = math.sqrt(LEAST_SHARE * 2 * inner_energy / mass)
+    return max(start, speed_beyond(gas, effects), math.sqrt(hottest / mass), within) or 1.0
 
 
 def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:

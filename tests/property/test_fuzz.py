@@ -36,7 +36,7 @@ from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat
 from idealgas.physics.wall import SEGMENT
-from idealgas.run.effects import make_effects
+from idealgas.run.effects.bundle import inner_energy, make_effects
 from idealgas.run.simulate import stop_of
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
@@ -81,7 +81,8 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         piston=beyond,
         thermostat=Thermostat(0.0, 0.0, np.uint64(0), np.full(n, math.inf), np.zeros(n, np.uint64)),
     )
-    neutral = with_sums(neutral, scene, gas, gives_energy=True, loses_energy=True)
+    inner = inner_energy(called)
+    neutral = with_sums(neutral, scene, gas, gives_energy=True, loses_energy=True, inner_energy=inner)
     neutral = neutral._replace(bath_energy=make_sums([1.0]))
     return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
 

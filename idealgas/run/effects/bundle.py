@@ -20,7 +20,8 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     effects = Effects(**{effect.field: effect.make(scene, gas) for effect in SLICES})
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
     loses = any(effect.loses_energy(state) for effect, state in present(effects))
-    return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses)
+    inner = inner_energy(effects)
+    return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
 
 
 def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
@@ -28,6 +29,11 @@ def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
     for effect in SLICES:
         if (state := getattr(effects, effect.field)) is not None:
             yield effect, state
+
+
+def inner_energy(effects: Effects) -> float:
+    """Energy of the discs beside their motion, which may become motion, mass length²/time²."""
+    return sum(effect.inner_energy(state) for effect, state in present(effects))
 
 
 def counted(effects: Effects) -> tuple[Column, ...]:

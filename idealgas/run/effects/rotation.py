@@ -51,5 +51,6 @@ SLICE = Slice(
     energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy")),
     gives_energy=lambda rotation: abs(rotation.wall_roughness) < 1,
     loses_energy=lambda rotation: abs(rotation.roughness) < 1 or abs(rotation.wall_roughness) < 1,
+    inner_energy=spin_energy,
     conserves=_conserves,
 )
