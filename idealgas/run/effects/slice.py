@@ -45,11 +45,11 @@ class Slice:
     those of them that are columns of events are in rows and snapshots too. constants: what the log keeps of each disc
     at the start. values: what checkpoints and samples keep of the effect as a whole, at a local time. restore: give the
     state the values of a checkpoint, by name; arrays by disc are restored without it. gives_energy: whether walls give
-    energy to discs, or take some, by this effect. loses_energy: whether energy is lost in collisions by it. inner_energy:
-    of the discs beside their motion, which may become motion. own_wall: number of a wall whose energy is counted as its
-    own, so that what it gives is not from outside. counted: the total of events that only this effect has; a log
-    without the effect has no such column. conserves: whether the account of the walls has all energy that is lost by
-    this effect, among all; logs of before have no other.
+    energy to discs, or take some, by this effect. loses_energy: whether energy is lost in collisions by it.
+    inner_energy: of the discs beside their motion, which may become motion. own_wall: number of a wall whose energy is
+    counted as its own, so that what it gives is not from outside. counted: the total of events that only this effect
+    has; a log without the effect has no such column. conserves: whether the account of the walls has all energy that is
+    lost by this effect, among all; logs of before have no other.
     """
 
     field: str
