@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, njit, out_of_line
+from idealgas._jit import aligned, inline, njit
 from idealgas.events import Column
 from idealgas.gas.state import Gas
 from idealgas.physics.constants import NEVER
@@ -128,16 +128,10 @@ def check_clock(time, now, events_at_this_time, n):
 
     EventCascadeError if they are too many to end, ValueError if time runs backwards. n: number of discs.
     """
-    if time > now:
-        return 0
-    return count_standstill(time, now, events_at_this_time, n)
-
-
-@out_of_line
-def count_standstill(time, now, events_at_this_time, n):
-    """The same where the clock does not go on, which is seldom so."""
     if time < now:
         raise ValueError("time ran backwards")
+    if time > now:
+        return 0
     if events_at_this_time > MOST_AT_ONCE * n:
         raise EventCascadeError("the clock stands still: a disc collides without end at one instant")
     return events_at_this_time + 1

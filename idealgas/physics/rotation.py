@@ -36,11 +36,6 @@ def moment_of_inertia(inertia, mass, radius):
     return inertia * mass * radius**2
 
 
-def spin_energy(rotation):
-    """Energy of all spins, mass length²/time²."""
-    return float((0.5 * rotation.inertia * rotation.omega**2).sum())
-
-
 @inline
 def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
     """Apply the tangential impulse of two touching discs to their velocities and spins.

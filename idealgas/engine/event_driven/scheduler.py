@@ -29,7 +29,6 @@ class Tree(NamedTuple):
         start: (levels,) i8, first node of each level.
         settled: (1,) f8, latest time of which there were several events: among these, the winners are those that come
             first. Where events have another time in common, any of them may be a winner.
-        root: node of the next event.
     """
 
     time: np.ndarray
@@ -37,7 +36,6 @@ class Tree(NamedTuple):
     winner: np.ndarray
     start: np.ndarray
     settled: np.ndarray
-    root: int
 
 
 def make_tree(n: int) -> Tree:
@@ -52,7 +50,7 @@ def make_tree(n: int) -> Tree:
     time = aligned(total, np.dtype("f8"))
     winner = aligned(total, np.dtype("i4"))
     winner[:n] = np.arange(n)
-    return Tree(time, time.view(np.int64), winner, np.array(start), np.full(1, UNSETTLED), start[-1])
+    return Tree(time, time.view(np.int64), winner, np.array(start), np.full(1, UNSETTLED))
 
 
 @inline
@@ -90,7 +88,7 @@ def first_of_group(key, group, width):
 @inline
 def schedule(tree, predictions, ids, i):
     """Enter the next event of disc i, of which the tree has none, and climb as far as it is the earliest."""
-    _, key, winner, start, settled, _ = tree
+    _, key, winner, start, settled = tree
     prediction = predictions[U(i)]
     time = min(prediction.contact, prediction.crossing)
     tree.time[U(i)] = time
@@ -112,7 +110,7 @@ def schedule(tree, predictions, ids, i):
 @inline
 def withdraw(tree, predictions, ids, i):
     """Remove disc i's event from the tree, and climb as far as it was the earliest."""
-    times, key, winner, start, settled, _ = tree
+    times, key, winner, start, settled = tree
     removed = times[U(i)]
     key[U(i)] = NEVER_KEY + i
     group = np.int64(i)
@@ -141,15 +139,21 @@ def reschedule(tree, predictions, ids, i):
 
 
 @inline
+def root_of(tree):
+    """Node of the next event."""
+    return tree.start[U(tree.start.shape[0] - 1)]
+
+
+@inline
 def next_time(tree):
     """Local time of the next event."""
-    return tree.time[U(tree.root)]
+    return tree.time[U(root_of(tree))]
 
 
 @inline
 def next_disc(tree):
     """Index of the disc with the next event, or with one of the next events that are simultaneous."""
-    return np.int64(tree.winner[U(tree.root)])
+    return np.int64(tree.winner[U(root_of(tree))])
 
 
 @inline

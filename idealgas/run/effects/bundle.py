@@ -20,7 +20,7 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     effects = Effects(**{effect.field: effect.make(scene, gas) for effect in SLICES})
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
     loses = any(effect.loses_energy(state) for effect, state in present(effects))
-    inner = inner_energy(effects)
+    inner = inner_energy(effects, gas)
     return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
 
 
@@ -31,9 +31,10 @@ def present(effects: Effects) -> Iterator[tuple[Slice, Any]]:
             yield effect, state
 
 
-def inner_energy(effects: Effects) -> float:
-    """Energy of the discs beside their motion, which may become motion, mass length²/time²."""
-    return sum(effect.inner_energy(state) for effect, state in present(effects))
+def inner_energy(effects: Effects, gas: Gas) -> float:
+    """Energy of the discs at time 0 beside their motion, which may become motion, mass length²/time²."""
+    parts = ((effect.energy, state) for effect, state in present(effects))
+    return sum(part.of(state, gas, 0.0) for part, state in parts if part is not None and part.inner)
 
 
 def counted(effects: Effects) -> tuple[Column, ...]:

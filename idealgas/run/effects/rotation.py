@@ -8,7 +8,7 @@ from idealgas.events import ANGULAR_VELOCITY, Arrays, Column
 from idealgas.gas.build import stream
 from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
-from idealgas.physics.rotation import Rotation, moment_of_inertia, spin_energy
+from idealgas.physics.rotation import Rotation, moment_of_inertia
 from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
 
@@ -36,7 +36,7 @@ def _constants(rotation: Rotation) -> Arrays:
 
 
 def _energy(rotation: Rotation, _: Gas, __: float) -> float:
-    return spin_energy(rotation)
+    return float((0.5 * rotation.inertia * rotation.omega**2).sum())
 
 
 def _conserves(effects: Effects) -> bool:
@@ -48,9 +48,8 @@ SLICE = Slice(
     _make,
     disc_state=lambda rotation: {ANGULAR_VELOCITY: rotation.omega},
     constants=_constants,
-    energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy")),
+    energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy"), inner=True),
     gives_energy=lambda rotation: abs(rotation.wall_roughness) < 1,
     loses_energy=lambda rotation: abs(rotation.roughness) < 1 or abs(rotation.wall_roughness) < 1,
-    inner_energy=spin_energy,
     conserves=_conserves,
 )

@@ -14,12 +14,14 @@ class EnergyPart(NamedTuple):
     """A part of the energy that an effect adds.
 
     part: a field of `idealgas.run.energy.Energy`. of: the energy, from the effect's state, the gas and the local time.
-    observed: the column of the samples that holds it, None if they do not.
+    observed: the column of the samples that holds it, None if they do not. inner: whether it is of the discs, beside
+    their motion, and may become motion in collisions.
     """
 
     part: str
     of: Callable[[Any, Gas, float], float]
     observed: Column | None = None
+    inner: bool = False
 
 
 def no_arrays(_: Any) -> Arrays:
@@ -45,11 +47,10 @@ class Slice:
     those of them that are columns of events are in rows and snapshots too. constants: what the log keeps of each disc
     at the start. values: what checkpoints and samples keep of the effect as a whole, at a local time. restore: give the
     state the values of a checkpoint, by name; arrays by disc are restored without it. gives_energy: whether walls give
-    energy to discs, or take some, by this effect. loses_energy: whether energy is lost in collisions by it.
-    inner_energy: of the discs beside their motion, which may become motion. own_wall: number of a wall whose energy is
-    counted as its own, so that what it gives is not from outside. counted: the total of events that only this effect
-    has; a log without the effect has no such column. conserves: whether the account of the walls has all energy that is
-    lost by this effect, among all; logs of before have no other.
+    energy to discs, or take some, by this effect. loses_energy: whether energy is lost in collisions by it. own_wall:
+    number of a wall whose energy is counted as its own, so that what it gives is not from outside. counted: the total
+    of events that only this effect has; a log without the effect has no such column. conserves: whether the account of
+    the walls has all energy that is lost by this effect, among all; logs of before have no other.
     """
 
     field: str
@@ -61,7 +62,6 @@ class Slice:
     energy: EnergyPart | None = None
     gives_energy: Callable[[Any], bool] = lambda state: False
     loses_energy: Callable[[Any], bool] = lambda state: False
-    inner_energy: Callable[[Any], float] = lambda state: 0.0
     own_wall: Callable[[Any], int | None] = lambda state: None
     counted: Column | None = None
     conserves: Callable[[Effects], bool] = lambda effects: True
