@@ -14,6 +14,7 @@ FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs
 LONGEST_WAY = 6144  # of the fastest disc, in diameters: it limits a contact's error to 2**-54 of it for each disc
 MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
 FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc
+UNDECIDED = 1e-6  # so close to a power of two, the sum of the speeds is taken exactly; NumPy's is far closer to that
 
 
 def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -> float:
@@ -52,22 +53,33 @@ def epoch_length(
 
     In a dilute gas it is fewer events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
     speeds to be expected from gravity, a piston or a heat bath, length/time. periodic: whether the sides along x and
-    along y are periodic. kicks: of all discs per time, 1/time. The sum of the speeds is exactly rounded, so it depends
-    neither on the order of the discs nor on the processor.
+    along y are periodic. kicks: of all discs per time, 1/time. Where its last digits decide, the sum of the speeds is
+    exactly rounded, so the length depends neither on the order of the discs nor on the processor.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
-    rate = (math.fsum(speeds.tolist()) / n + extra_speed) * encounters + narrow_encounters(gas, periodic) + kicks
-    if rate == 0.0:
-        return math.inf
     fastest = float(speeds.max()) + extra_speed
-    longest_flight = 2.0 * LONGEST_WAY * float(gas.radius.min()) / fastest
-    round_the_box = (
-        min((length for length, on in zip(gas.box, periodic, strict=True) if on), default=math.inf) / fastest
+    other_events = narrow_encounters(gas, periodic) + kicks
+    way = 2.0 * LONGEST_WAY * float(gas.radius.min())
+    round_the_box = MOST_CROSSINGS * min(
+        (length for length, on in zip(gas.box, periodic, strict=True) if on), default=math.inf
     )
-    shortest = min(FEWEST_PER_DISC * n / rate, MOST_CROSSINGS * round_the_box)
-    longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
-    return 2.0 ** math.floor(math.log2(min(max(longest_flight, shortest), longest)))
+
+    def exponent(sum_of_speeds: float) -> float:
+        """Exponent of 2 of the longest time that an epoch may have; infinite if nothing happens."""
+        rate = (sum_of_speeds / n + extra_speed) * encounters + other_events
+        if rate == 0.0:
+            return math.inf
+        shortest = min(FEWEST_PER_DISC * n / rate, round_the_box / fastest)
+        longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
+        return math.log2(min(max(way / fastest, shortest), longest))
+
+    power = exponent(float(speeds.sum()))
+    if math.isinf(power):
+        return math.inf
+    if abs(power - round(power)) < UNDECIDED:
+        power = exponent(math.fsum(speeds.tolist()))
+    return 2.0 ** math.floor(power)
 
 
 def speed_beyond(gas: Gas, effects: Effects) -> float:

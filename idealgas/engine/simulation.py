@@ -78,7 +78,10 @@ class Method(Protocol):
         ...
 
     def deepest_overlap(self) -> float:
-        """Deepest overlap of two discs, divided by the sum of their radii."""
+        """Deepest overlap of two discs at the start of the epoch, divided by the sum of their radii.
+
+        To be called before `advance`.
+        """
         ...
 
 
@@ -154,7 +157,6 @@ class Simulation:
             kicks = kick_rate(self.gas, self.effects)
             self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic, kicks), until_change)
         self.method.start(self.gas, self.effects)
-        self.overlap = self.method.deepest_overlap()
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self._counters["trials"] = self.totals.trials
         self.epoch_over = self.paused = False
@@ -274,8 +276,8 @@ class Simulation:
         self._begin()
 
     def audit(self) -> Audit:
-        """Conserved quantities and overlaps at the start of the epoch."""
-        return audit(self.gas, self.overlap)
+        """Conserved quantities and overlaps at the start of the epoch; to be called before `advance`."""
+        return audit(self.gas, self.method.deepest_overlap())
 
     def audit_of(self, gas: Gas) -> Audit:
         """Conserved quantities and overlaps of a gas that `state` returned."""

@@ -6,7 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas.engine.epoch import FEWEST_PER_DISC, LONGEST_WAY, MOST_CROSSINGS, encounters_per_length, epoch_length
+from idealgas.engine.epoch import (
+    EVENTS_PER_DISC,
+    FEWEST_PER_DISC,
+    LONGEST_WAY,
+    MOST_CROSSINGS,
+    encounters_per_length,
+    epoch_length,
+)
 from idealgas.gas.state import Gas
 
 
@@ -41,6 +48,24 @@ def test_does_not_depend_on_the_order_of_the_discs():
     for seed in range(20):
         order = np.random.default_rng(seed).permutation(len(one))
         assert length_for(replace(one, velocity=one.velocity[order])) == length_for(one)
+
+
+def test_close_to_a_power_of_two_the_exact_sum_of_the_speeds_decides():
+    """Sums whose rounding depends on the order of the discs would put some of these lengths on the other side."""
+    one = gas()
+    speeds = np.sqrt(one.velocity[:, 0] ** 2 + one.velocity[:, 1] ** 2)
+    events, mean = EVENTS_PER_DISC * len(one), math.fsum(speeds.tolist()) / len(one)
+    encounters = events / mean / 2.0**10
+    wrong = 0
+    for ulps in range(-4, 5):
+        close = encounters + ulps * math.ulp(encounters)
+        exact = 2.0 ** math.floor(math.log2(events / (mean * close)))
+        for seed in range(50):
+            order = np.random.default_rng(seed).permutation(len(one))
+            assert epoch_length(replace(one, velocity=one.velocity[order]), close) == exact
+            rounded = float(speeds[order].sum()) / len(one)
+            wrong += 2.0 ** math.floor(math.log2(events / (rounded * close))) != exact
+    assert wrong >= 10
 
 
 @pytest.mark.parametrize("n", [1, 100])
