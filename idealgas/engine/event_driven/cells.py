@@ -82,6 +82,13 @@ def cell_index(cells, disc):
 
 
 @inline
+def is_in_ring(cells, disc):
+    """Whether a disc's cell is one of the ring around the box."""
+    column, row = np.int64(disc.column), np.int64(disc.row)
+    return (column < 1) | (column > cells.columns - 2) | (row < 1) | (row > cells.rows - 2)
+
+
+@inline
 def enter(cells, i, cell):
     """Insert disc i at the head of a cell's list; without branches: where there is no other disc, i stands for it."""
     head = cells.head[U(cell)]

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from idealgas._expect import seldom
 from idealgas._jit import inline
-from idealgas.engine.event_driven.cells import cell_index, enter, leave
+from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave
 from idealgas.engine.event_driven.prediction import KICK, SIDE_OF_BOX
 from idealgas.physics.box_side import arrival_delay, centre_range
 from idealgas.physics.constants import NEVER
@@ -105,7 +106,7 @@ def predict_crossing(record, ids, state, i, now, effects):
     x_code = (1 if right else 0) + (SIDE_OF_BOX if x_side else 0)
     y_code = (3 if up else 2) + (SIDE_OF_BOX if y_side else 0)
     prediction = state.prediction[U(i)]
-    prediction.crossing = y_time if along_y else x_time
+    prediction.crossing = min(x_time, y_time)
     prediction.crossing_code = y_code if along_y else x_code
     keep_kick_if_earlier(prediction, own, effects.thermostat)
 
@@ -131,13 +132,13 @@ def is_kick(crossing_code, thermostat):
 @inline
 def wrap_cell(disc, own, cells, along_y, periodic):
     """Wrap the column or row of a disc that crossed a periodic side, and count the boundary crossing."""
-    if periodic is not None:
-        if along_y and periodic.y:
-            cross_boundary = 1 if disc.row > cells.rows - 2 else (-1 if disc.row < 1 else 0)
+    if periodic is not None and seldom(is_in_ring(cells, disc)):
+        if along_y:
+            cross_boundary = 1 if disc.row > cells.rows - 2 else -1
             disc.row -= cross_boundary * (cells.rows - 2)
             periodic.boundary_crossings[U(own), 1] += np.int32(cross_boundary)
-        elif not along_y and periodic.x:
-            cross_boundary = 1 if disc.column > cells.columns - 2 else (-1 if disc.column < 1 else 0)
+        else:
+            cross_boundary = 1 if disc.column > cells.columns - 2 else -1
             disc.column -= cross_boundary * (cells.columns - 2)
             periodic.boundary_crossings[U(own), 0] += np.int32(cross_boundary)
 
