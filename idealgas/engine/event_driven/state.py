@@ -13,6 +13,8 @@ from idealgas.engine.event_driven.wall_cells import WallCells
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 
+IMAGE = np.dtype([("x", "i4"), ("y", "i4")], align=True)  # box lengths, along x and along y
+
 
 class EventDrivenState(NamedTuple):
     """Cells, predictions and schedule of the event-driven method.
@@ -23,7 +25,7 @@ class EventDrivenState(NamedTuple):
         prediction: (N,) PREDICTION by index, next events of each disc; with a piston (N + 1,), the last is the
             piston's.
         candidates: i4 scratch memory for indices of discs that may be in contact.
-        images: (…, 2) i4 scratch memory for the images of the candidates; None without periodic sides.
+        images: (…) IMAGE scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
         lookahead: (3,) i8, see `make_lookahead`; None for a gas that the caches hold.
         unpredicted: (1,) bool, whether an epoch begins of which nothing is predicted yet.
@@ -49,7 +51,7 @@ def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
         tree,
         aligned(leaves, PREDICTION),
         np.empty(room if effects.periodic else n + 16, np.int32),
-        np.empty((room, 2), np.int32) if effects.periodic else None,
+        aligned(room, IMAGE) if effects.periodic else None,
         None,
         make_lookahead(n, len(tree.start)),
         np.ones(1, np.bool_),
@@ -60,21 +62,20 @@ def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
 def record_image(images, k, x, y):
     """Store the image (x, y) in which candidate k is seen, where sides are periodic."""
     if images is not None:
-        images[np.uintp(k), 0] = x
-        images[np.uintp(k), 1] = y
+        images[np.uintp(k)].x = x
+        images[np.uintp(k)].y = y
 
 
 @inline
 def copy_image(images, to, k):
     """Store for candidate `to` the image in which candidate k is seen, where sides are periodic."""
     if images is not None:
-        images[np.uintp(to), 0] = images[np.uintp(k), 0]
-        images[np.uintp(to), 1] = images[np.uintp(k), 1]
+        images[np.uintp(to)] = images[np.uintp(k)]
 
 
 @inline
 def image_of(images, k):
     """Image (x, y) in which candidate k is seen, in box lengths; zeros without periodic sides."""
     if images is not None:
-        return np.int64(images[np.uintp(k), 0]), np.int64(images[np.uintp(k), 1])
+        return np.int64(images[np.uintp(k)].x), np.int64(images[np.uintp(k)].y)
     return NO_IMAGES
