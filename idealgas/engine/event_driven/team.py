@@ -46,6 +46,9 @@ TRIED_ALONE, TRIED_SHARED = 0.25, 0.5
 FEW = 64
 """Events that say nothing of a rate."""
 
+PREDICTIONS = 6
+"""Predictions at an epoch's start that take as long as one event."""
+
 SLOWER = 8
 """By which a rate is divided that foretold far too many events."""
 
@@ -147,8 +150,10 @@ class Team:
         return rows, arrived
 
     def _work(self, counters: np.ndarray) -> int:
-        """What has been done in the epoch: events, and predictions at its start, which take about as long."""
-        return int(counters[0]["events"]) - (len(self._discs.record) if self._state.unpredicted[0] else 0)
+        """What has been done in the epoch: events, and predictions at its start, in the time of as many events."""
+        return int(counters[0]["events"]) - (
+            len(self._discs.record) // PREDICTIONS if self._state.unpredicted[0] else 0
+        )
 
     def _goal(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
         """Local time up to which a slice is to be shared; 0 for none."""
