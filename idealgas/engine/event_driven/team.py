@@ -151,9 +151,8 @@ class Team:
 
     def _work(self, counters: np.ndarray) -> int:
         """What has been done in the epoch: events, and predictions at its start, in the time of as many events."""
-        return int(counters[0]["events"]) - (
-            len(self._discs.record) // PREDICTIONS if self._state.unpredicted[0] else 0
-        )
+        predictions = len(self._discs.record) if self._state.unpredicted[0] else 0
+        return int(counters[0]["events"]) - predictions // PREDICTIONS
 
     def _goal(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
         """Local time up to which a slice is to be shared; 0 for none."""

@@ -129,7 +129,7 @@ def test_the_end_of_an_epoch_changes_only_records(method):
     assert simulation.time == 3 * simulation.length
     x = 1 + abs((4 + stop.time + 8) % 16 - 8)
     assert simulation.state()[0].position[0, 0] == pytest.approx(x, abs=1e-9)
-    audit = simulation.audit()
+    audit = simulation.audit_of(simulation.state()[0])
     assert audit.kinetic_energy == pytest.approx(0.625, rel=1e-15)
     assert audit.overlap == 0
     assert audit.outside < 1e-15
