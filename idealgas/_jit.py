@@ -324,8 +324,8 @@ def compile_timer() -> AbstractContextManager[TimingListener]:
 
 
 def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
-    """Array of n zeros that begins on a cache-line boundary; a record array if the dtype is structured."""
-    raw = np.zeros(n * dtype.itemsize + boundary, np.uint8)
+    """Array of n zeros in cache lines that nothing else is in; a record array if the dtype is structured."""
+    raw = np.zeros((-(-n * dtype.itemsize // boundary) + 1) * boundary, np.uint8)
     start = -raw.__array_interface__["data"][0] % boundary
     kind: Any = np.recarray if dtype.names else np.ndarray
     return kind(n, dtype, raw, start)

@@ -8,7 +8,7 @@ the schedule; then the cells around it, and its partner; then the discs in the c
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas._jit import aligned, inline
 from idealgas._prefetch import fetch
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 
@@ -30,7 +30,9 @@ def make_lookahead(n: int, levels: int) -> np.ndarray | None:
         return None
     below_root = levels - 2
     enough = n <= NEAR and n > 2 * 8**below_root
-    return np.array([0, 0, below_root if enough else max(below_root - 1, 0)], np.int64)
+    lookahead: np.ndarray = aligned(3, np.dtype("i8"))
+    lookahead[2] = below_root if enough else max(below_root - 1, 0)
+    return lookahead
 
 
 @inline

@@ -50,7 +50,7 @@ def make_tree(n: int) -> Tree:
     time = aligned(total, np.dtype("f8"))
     winner = aligned(total, np.dtype("i4"))
     winner[:n] = np.arange(n)
-    return Tree(time, time.view(np.int64), winner, np.array(start), np.full(1, UNSETTLED))
+    return Tree(time, time.view(np.int64), winner, np.array(start), aligned(1, np.dtype("f8")))
 
 
 @inline

@@ -50,7 +50,7 @@ def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
         cells,
         tree,
         aligned(leaves, PREDICTION),
-        np.empty(room if effects.periodic else n + 16, np.int32),
+        aligned(room if effects.periodic else n + 16, np.dtype("i4")),
         aligned(room, IMAGE) if effects.periodic else None,
         None,
         make_lookahead(n, len(tree.start)),

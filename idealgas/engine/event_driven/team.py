@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from idealgas._jit import aligned
 from idealgas.engine.event_driven.border import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Border
 from idealgas.engine.event_driven.kernel import advance_events
+from idealgas.engine.event_driven.lookahead import make_lookahead
 from idealgas.engine.event_driven.merge import Pending, TiedRowsError, order_of
 from idealgas.engine.event_driven.race import Race
 from idealgas.engine.event_driven.scheduler import make_tree, plant
@@ -301,9 +303,9 @@ class _Strip:
     def __init__(self, state: EventDrivenState, effects: Effects, n: int) -> None:
         self._state = state._replace(
             tree=make_tree(n),
-            candidates=np.empty_like(state.candidates),
-            lookahead=None if state.lookahead is None else state.lookahead.copy(),
-            images=None if state.images is None else np.empty_like(state.images),
+            candidates=aligned(len(state.candidates), state.candidates.dtype),
+            lookahead=make_lookahead(n, len(state.tree.start)),
+            images=None if state.images is None else aligned(len(state.images), state.images.dtype),
             unpredicted=np.zeros(1, np.bool_),
         )
         self._effects = with_own_sums(effects)
