@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas._expect import seldom
 from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.atomics import LINE, add, exchange, load, store, wait
 from idealgas.engine.event_driven.scheduler import UNSETTLED, reschedule, withdraw
@@ -67,6 +68,7 @@ class Border(NamedTuple):
         strips: number of strips.
         low: first row of the strip.
         high: row after its last.
+        inside: first row in no border's zone, and the row after the last such.
         below: number of the border below; -1 where the strip ends at a side of the box.
         above: number of the border above, or -1.
         under: number of the strip below.
@@ -82,6 +84,7 @@ class Border(NamedTuple):
     strips: int
     low: int
     high: int
+    inside: tuple[int, int]
     below: int
     above: int
     under: int
@@ -193,11 +196,12 @@ def hand_over(ids, state, i, b):
 def unlock(b):
     """Leave the border event that happened last, if there was one."""
     own = b.own[0]
-    if own.held & LOW:
-        store(b.words, lock_word(b, b.below), np.int64(0))
-    if own.held & HIGH:
-        store(b.words, lock_word(b, b.above), np.int64(0))
-    own.held = 0
+    if seldom(own.held != 0):
+        if own.held & LOW:
+            store(b.words, lock_word(b, b.below), np.int64(0))
+        if own.held & HIGH:
+            store(b.words, lock_word(b, b.above), np.int64(0))
+        own.held = 0
 
 
 @inline

@@ -14,6 +14,7 @@ from idealgas.engine.event_driven.border import (
     LATE,
     LEAST_ROWS,
     OWN,
+    ZONE,
     Border,
     clock_word,
     lines,
@@ -106,14 +107,16 @@ def make_borders(edges: list[int], ring: bool, lead: float, delay: int) -> list[
     for k in range(strips):
         own = aligned(1, OWN)
         own.draw = k + 1
+        below, above = ring or k > 0, ring or k < strips - 1
         borders.append(
             Border(
                 me=k,
                 strips=strips,
                 low=edges[k],
                 high=edges[k + 1],
-                below=k if ring or k > 0 else -1,
-                above=(k + 1) % strips if ring or k < strips - 1 else -1,
+                inside=(edges[k] + ZONE * below, edges[k + 1] - ZONE * above),
+                below=k if below else -1,
+                above=(k + 1) % strips if above else -1,
                 under=(k - 1) % strips,
                 over=(k + 1) % strips,
                 lead=lead,

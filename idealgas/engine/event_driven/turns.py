@@ -8,6 +8,7 @@ one thread. The argument in full: engine/README.md.
 
 import numpy as np
 
+from idealgas._expect import seldom
 from idealgas._jit import inline
 from idealgas.engine.event_driven.atomics import add, load, pause, store, wait
 from idealgas.engine.event_driven.border import (
@@ -103,6 +104,23 @@ def leave(border, reached):
         unlock(border)
         if not reached:
             abandon(border, FULL)
+
+
+@inline
+def is_inside(row, b):
+    """Whether a row lies in the strip, and in no border's zone."""
+    first, end = b.inside
+    return U(np.int64(row) - first) < U(end - first)
+
+
+@inline
+def is_at_border(record, ids, state, i, b):
+    """Whether disc i's next event concerns rows that are not inside."""
+    prediction = state.prediction[U(i)]
+    j = prediction.partner
+    if j >= 0 and contact_is_next(prediction, ids, i) and not is_inside(record[U(j)].row, b):
+        return True
+    return not is_inside(record[U(i)].row, b)
 
 
 @inline
@@ -231,10 +249,12 @@ def is_in_order(record, ids, state, i, time, where, b):
 def clock_runs(time, b):
     """Whether this thread's time goes on as it should; notes the event."""
     own = b.own[0]
-    own.at_once = own.at_once + 1 if time == own.last else 0
-    runs = time >= own.last and own.at_once < MOST_AT_ONCE
+    if seldom(time <= own.last):
+        own.at_once += 1
+        return time == own.last and own.at_once < MOST_AT_ONCE
+    own.at_once = 0
     own.last = time
-    return runs
+    return True
 
 
 @inline
@@ -255,14 +275,9 @@ def may_happen(record, ids, state, i, time, b):
     If it may, the borders at which it is are locked.
     """
     own = b.own[0]
-    where = place_of(record, ids, state, i, b)
-    if where == 0:
-        announce(b, time)
-        if time > own.horizon:
-            own.horizon = least_clock(b) + b.lead
-            if time > own.horizon:
-                return 0
-    else:
+    where = 0
+    if seldom(is_at_border(record, ids, state, i, b)):
+        where = place_of(record, ids, state, i, b)
         store(b.words, clock_word(b.me) + 2, i)
         store(b.times, clock_word(b.me) + 1, time)
         announce(b, time)
@@ -278,9 +293,15 @@ def may_happen(record, ids, state, i, time, b):
             return 0
         if where & FOREIGN and is_misplaced(record, state, i, where, b):
             return abandon(b, VIOLATION)
-    if not clock_runs(time, b):
+    else:
+        announce(b, time)
+        if seldom(time > own.horizon):
+            own.horizon = least_clock(b) + b.lead
+            if time > own.horizon:
+                return 0
+    if seldom(not clock_runs(time, b)):
         return abandon(b, CLOCK)
-    if not is_in_order(record, ids, state, i, time, where, b):
+    if seldom(not is_in_order(record, ids, state, i, time, where, b)):
         return abandon(b, VIOLATION)
     return 1
 
@@ -293,7 +314,7 @@ def wait_for_turn(record, ids, state, until, b):
     loiter(b)
     rounds = 0
     while load(b.words, FLAG) == 0:
-        if is_posted(b):
+        if seldom(is_posted(b)):
             absorb(ids, state, until, b)
         time = next_time(state.tree)
         if time <= until:
