@@ -14,7 +14,7 @@ from idealgas._jit import CACHE_LINE, inline
 LINE = CACHE_LINE // 8
 """Words of a cache line: no two words that two threads write often are nearer than this."""
 
-PAUSES = 30
+PAUSES = 100
 """Rounds of waiting after which a thread gives up its turn on the processor: another one may need it to go on."""
 
 _HINTS = {
