@@ -219,7 +219,9 @@ def test_many_gases_have_the_log_of_one_thread(effects):
         nonlocal total
         total += compare(lambda: tall_scene(effects, seed), seed)
 
-    run()
+    for _ in range(5):  # once in a while no thread is late enough in forty gases to change another's past
+        if not total["past"]:
+            run()
     print(effects, dict(total))
     assert total["past"] > 0
 
