@@ -59,10 +59,10 @@ def next_turn(record, ids, state, until, border):
 @inline
 def enter_in_schedule(record, ids, state, i, border):
     """Enter disc i's next event in the schedule of the thread that owns the disc."""
-    if border is None or border.low <= record[U(i)].row < border.high:
-        schedule(state.tree, state.prediction, ids, i)
-    else:
+    if border is not None and seldom(not border.low <= record[U(i)].row < border.high):
         hand_over(ids, state, i, border)
+    else:
+        schedule(state.tree, state.prediction, ids, i)
 
 
 @inline
@@ -91,9 +91,10 @@ def note_rows(time, b):
     If that disc is in this event, nobody has asked which of the two comes first, and their rows stand side by side.
     """
     own = b.own[0]
-    if own.posted and time == own.row_time:
-        abandon(b, TIE)
-    own.posted = max(own.posted - 1, 0)
+    if seldom(own.posted > 0):
+        own.posted -= 1
+        if time == own.row_time:
+            abandon(b, TIE)
     own.row_time = time
 
 
@@ -260,7 +261,7 @@ def clock_runs(time, b):
 @inline
 def loiter(b):
     """Lose time at random, where a test asks for that."""
-    if b.delay > 0:
+    if seldom(b.delay > 0):
         own = b.own[0]
         own.draw = own.draw * np.uint64(6364136223846793005) + np.uint64(1442695040888963407)
         if np.int64(own.draw >> np.uint64(33)) % b.delay == 0:
