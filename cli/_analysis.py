@@ -185,7 +185,7 @@ def _results(
 ) -> Iterator[Any]:
     """Yield the result of a log, or the results of all points of a sweep from its folder."""
     if analysis.folders and os.path.isdir(path):
-        from idealgas.study.sweep.results import stored
+        from idealgas.sweep.results import stored
 
         for label, found, origin in stored(path, analysis.key):
             yield analysis.restore(found, label, origin)

@@ -12,8 +12,8 @@ from ._tables import print_tables, shown
 from ._terminal import echo, terminal, written
 
 if TYPE_CHECKING:
+    from idealgas.accuracy.orbit import OrbitStudy, Survival
     from idealgas.analysis.core.tables import Cell, Number
-    from idealgas.study.accuracy.orbit import OrbitStudy, Survival
 
 
 @click.command(epilog="Example: idealgas accuracy gas.toml -o accuracy")
@@ -31,12 +31,12 @@ def accuracy(
     Three discs on their unstable periodic orbit (configs/three-discs.toml) are followed until the orbit breaks, in
     boxes of many sizes.
     """
-    from idealgas.gas.build import make_gas
+    from idealgas.accuracy import figure as accuracy_figure
+    from idealgas.accuracy import report as accuracy_report
+    from idealgas.accuracy.orbit import is_on_orbit, study_orbit
+    from idealgas.accuracy.study import study_accuracy
+    from idealgas.initial.build import make_gas
     from idealgas.scene import load_scene
-    from idealgas.study.accuracy import figure as accuracy_figure
-    from idealgas.study.accuracy import report as accuracy_report
-    from idealgas.study.accuracy.orbit import is_on_orbit, study_orbit
-    from idealgas.study.accuracy.study import study_accuracy
 
     scene = load_scene(path, overrides)
     gas = make_gas(scene)

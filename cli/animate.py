@@ -66,8 +66,8 @@ def animate(
 
     MP4 needs the program ffmpeg; without it the film becomes a GIF.
     """
-    from idealgas.analysis.movie.film import animate as make
-    from idealgas.analysis.movie.film import paint_frame
+    from idealgas.movie.film import animate as make
+    from idealgas.movie.film import paint_frame
 
     look: dict[str, Any] = {"size": size, "colouring": colour, "dark": background == "dark", "force": force}
     if frame is not None:

@@ -12,7 +12,7 @@ from ._tables import print_tables, shown
 from ._terminal import data, echo, terminal, written
 
 if TYPE_CHECKING:
-    from idealgas.study.bench.bench import Bench
+    from idealgas.bench.bench import Bench
 
 
 def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) -> list[float]:
@@ -65,7 +65,7 @@ def bench(
     found = _measure([int(n) for n in numbers], fractions, [int(number) for number in threads], collisions, repeats)
     if plot:
         from idealgas.analysis.core.style import save
-        from idealgas.study.bench.figure import bench_figure
+        from idealgas.bench.figure import bench_figure
 
         save(bench_figure(found), plot, force)
     _show(found, as_json)
@@ -74,7 +74,7 @@ def bench(
 
 
 def _measure(numbers: list[int], fractions: list[float], threads: list[int], collisions: int, repeats: int) -> "Bench":
-    from idealgas.study.bench.bench import bench as measure
+    from idealgas.bench.bench import bench as measure
 
     console = terminal(err=True)
     with console.status("compiling") as status:
@@ -118,7 +118,7 @@ def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
     import json
 
     from idealgas.analysis.core.tables import Number, Table
-    from idealgas.study.bench.effects import bench_effects
+    from idealgas.bench.effects import bench_effects
 
     console = terminal(err=True)
     with console.status("compiling") as status:

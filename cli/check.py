@@ -33,15 +33,15 @@ ROUGH_REST = (
 @json_option
 def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Check a scene and show it in full, with the rates and the size of the run expected by kinetic theory."""
-    from idealgas.document.dump import dump_document
     from idealgas.scene import load_scene
+    from idealgas.toml.dump import dump_document
 
     scene = load_scene(path, overrides)
     import json
     from dataclasses import asdict
 
     from idealgas.analysis.theory.forecast import forecast
-    from idealgas.gas.build import make_gas
+    from idealgas.initial.build import make_gas
     from idealgas.run.simulate import threads_of
 
     gas = make_gas(scene)

@@ -24,7 +24,7 @@ def report(path: str, output: str, start: float | None, force: bool) -> None:
 
     The page needs no network and no other file. A long run is shown in part: the player says which times it shows.
     """
-    from idealgas.analysis.report.page import write_report
+    from idealgas.report.page import write_report
 
     with open_log(path) as log, reading("analyses") as progress:
         write_report(log, output, start=start, force=force, on_step=progress)

@@ -12,8 +12,8 @@ def schema(kind: str) -> None:
 
     A file names its schema in its first line, as in `#:schema scene.schema.json`.
     """
-    from idealgas.document.schema import schema_text
     from idealgas.scene import Scene
-    from idealgas.study.sweep.plan import Tables
+    from idealgas.sweep.plan import Tables
+    from idealgas.toml.schema import schema_text
 
     data(schema_text(Scene if kind == "scene" else Tables), nl=False)

@@ -17,8 +17,8 @@ from ._tables import print_tables, shown
 from ._terminal import echo, terminal, written
 
 if TYPE_CHECKING:
-    from idealgas.study.sweep.plan import Sweep
-    from idealgas.study.sweep.run import Progress
+    from idealgas.sweep.plan import Sweep
+    from idealgas.sweep.run import Progress
 
 
 @click.command(epilog="Example: idealgas sweep phi.toml -o phi --workers 2")
@@ -55,7 +55,7 @@ def sweep(
     The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
     twice more and then reported; the other points are run. With --plot the command draws a picture in the end.
     """
-    from idealgas.study.sweep.plan import load_sweep
+    from idealgas.sweep.plan import load_sweep
 
     plan = load_sweep(path)
     if dry_run:
@@ -79,7 +79,7 @@ def sweep(
             raise SystemExit(EXIT_CODE)
     if plot:
         from idealgas.analysis.core.style import save
-        from idealgas.study.sweep.figure import sweep_figure
+        from idealgas.sweep.figure import sweep_figure
 
         save(sweep_figure(output, quantity, axis), plot, force)
         written(plot, err=as_json)
@@ -96,8 +96,8 @@ def _run(
     as_json: bool,
 ) -> bool:
     """Run a sweep and write its tables; whether any points failed."""
-    from idealgas.study.sweep.results import result_rows, write_tables
-    from idealgas.study.sweep.run import run_sweep
+    from idealgas.sweep.results import result_rows, write_tables
+    from idealgas.sweep.run import run_sweep
 
     with _progress_bar() as show:
 
@@ -149,7 +149,7 @@ def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
     from rich.filesize import decimal
 
     from idealgas.analysis.core.tables import Cell, Number, Table
-    from idealgas.study.sweep.cost import estimate_cost
+    from idealgas.sweep.cost import estimate_cost
 
     workers = workers or os.cpu_count() or 1
     costs = estimate_cost(plan)

@@ -5,9 +5,8 @@ import math
 import numpy as np
 from support import record
 
-from idealgas._jit import aligned
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.state import Gas
+from idealgas.jit import aligned
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
@@ -22,6 +21,7 @@ from idealgas.run.effects.wall import make_segments
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
 from idealgas.sides import FIRST_SEGMENT
+from idealgas.state import Gas
 
 BOX = (12.0, 9.0)
 

@@ -14,11 +14,11 @@ from hypothesis import reject
 from hypothesis import strategies as st
 from random_walls import HEIGHT, WIDTH, distances, some_walls
 
-from idealgas.document.dump import toml_value
-from idealgas.gas.build import make_gas
-from idealgas.gas.state import Gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.sides import SIDES
+from idealgas.state import Gas
+from idealgas.toml.dump import toml_value
 
 EFFECTS = ("periodic x", "periodic y", "walls", "gravity", "rotation", "restitution", "thermal", "piston", "thermostat")
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)

@@ -18,13 +18,13 @@ from random_walls import crossings, distances
 
 from idealgas.engine.simulation import Simulation
 from idealgas.events import BATH, EventBatch, Kind
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.piston import piston_motion
 from idealgas.run.effects.thermal import temperature_of_walls
 from idealgas.run.energy import energy_of
 from idealgas.scene import Scene
 from idealgas.sides import SIDES
+from idealgas.state import Gas
 
 U = 2.0**-53
 FEW = 16.0

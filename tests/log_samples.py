@@ -14,8 +14,8 @@ import numpy as np
 
 import idealgas.log.writer as log_writer
 from idealgas.events import BLOCK, EventBatch, Kind
-from idealgas.gas.state import Gas
 from idealgas.log import Column, Log, LogLayout, LogWriter, box_walls
+from idealgas.state import Gas
 
 DISCS = 25
 STEP = 2.0**-10

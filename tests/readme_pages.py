@@ -21,7 +21,7 @@ PAGES = {
         "idealgas/analysis/README.md",
         "idealgas/engine/README.md",
         "idealgas/log/README.md",
-        "idealgas/study/README.md",
+        "idealgas/accuracy/README.md",
         "tests/README.md",
     )
 }

@@ -16,8 +16,8 @@ from idealgas_cli.main import main
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import BLOCK, EventBatch, empty_batch
-from idealgas.gas.state import Gas
 from idealgas.run.layout import row_columns
+from idealgas.state import Gas
 
 ROOT = Path(__file__).parent.parent
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"

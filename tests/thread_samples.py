@@ -5,18 +5,18 @@ from collections import Counter
 import numpy as np
 from support import gas_of, record
 
-from idealgas.engine.event_driven.border import LEAST_ROWS
 from idealgas.engine.event_driven.method import EventDriven
-from idealgas.engine.event_driven.strips import Tuning
+from idealgas.engine.parallel.slabs import Tuning
+from idealgas.engine.parallel.subdomain import LEAST_ROWS
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.build import make_gas
-from idealgas.gas.state import Gas
+from idealgas.initial.build import make_gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
 from idealgas.run.effects.bundle import make_effects
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
 from idealgas.scene import parse_scene
+from idealgas.state import Gas
 
 EAGER = Tuning(rows=LEAST_ROWS, discs=1, events=1, slice=1000, race=False)
 SMALLEST_CELLS = 1e-9  # discs a cell

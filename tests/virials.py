@@ -9,11 +9,11 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import IMAGES, POSITIONS, empty_batch, event_columns
-from idealgas.gas.placement import insert_on_lattice, insert_randomly, make_grid
-from idealgas.gas.state import Gas
+from idealgas.initial.placement import insert_on_lattice, insert_randomly, make_grid
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
 from idealgas.sides import OUTWARD, SIDES
+from idealgas.state import Gas
 
 
 class Virials(NamedTuple):

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline, njit
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
 from idealgas.physics.periodic import separation
+from idealgas.state import Gas
 
 U = np.uintp
 

@@ -6,8 +6,15 @@ predictions.
 
 import numpy as np
 
-from idealgas._jit import inline, njit
 from idealgas.engine.audit import deepest_overlap_of_all
+from idealgas.engine.event_writer import (
+    batch_capacity,
+    write_kick,
+    write_pair,
+    write_piston_hit,
+    write_segment_hit,
+    write_side_hit,
+)
 from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import (
     resolve_kick,
@@ -17,16 +24,8 @@ from idealgas.engine.resolve import (
     resolve_side,
     resolve_stop,
 )
-from idealgas.engine.rows import (
-    batch_capacity,
-    write_kick,
-    write_pair,
-    write_piston_hit,
-    write_segment_hit,
-    write_side_hit,
-)
 from idealgas.events import EventBatch
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
 from idealgas.physics.box_side import arrival_delay, side_contact
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
@@ -34,6 +33,7 @@ from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact
+from idealgas.state import Gas
 
 U = np.uintp
 PAIR, SIDE, SEGMENT, PISTON, STOP, KICK, BOUNDARY_CROSSING = range(7)

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from idealgas.gas.state import Gas
+from idealgas.physics.collision_rates import encounters_of_discs
 from idealgas.physics.effects import Effects
-from idealgas.physics.encounters import encounters_of_discs
+from idealgas.state import Gas
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
 FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs

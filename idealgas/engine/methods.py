@@ -3,7 +3,7 @@
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.monte_carlo import MonteCarlo
-from idealgas.engine.precise import PreciseBruteForce
+from idealgas.engine.multiprecision import PreciseBruteForce
 from idealgas.engine.simulation import Method
 from idealgas.engine.time_driven import TimeDriven
 

@@ -18,19 +18,19 @@ from functools import partial
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas.engine.event_writer import batch_capacity, write_pair, write_trial
 from idealgas.engine.records import ONE_THREAD, Limits, make_discs
 from idealgas.engine.resolve import energy_of_pair, record_pair_loss
-from idealgas.engine.rows import batch_capacity, write_pair, write_trial
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 from idealgas.physics.random_pair import mean_trial_time, touch_at_random
 from idealgas.physics.restitution import record_collision
+from idealgas.state import Gas
 
 U = np.uintp
 DRAWS = np.uint64(5)  # random numbers reserved for a trial

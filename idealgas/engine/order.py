@@ -7,7 +7,7 @@ from the disc with the smaller id, counted along x and then along y. The rule us
 every method and every renumbering gives the same order.
 """
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 FIRST_WALL = -(1 << 31)
 

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, njit
 from idealgas.events import Column
-from idealgas.gas.state import Gas
+from idealgas.jit import aligned, inline, njit
 from idealgas.physics.constants import NEVER
 from idealgas.physics.momentum_flow import complete_flights
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
+from idealgas.state import Gas
 
 DISC = np.dtype(
     [

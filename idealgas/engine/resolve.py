@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.exact_sum import add

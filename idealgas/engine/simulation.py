@@ -12,12 +12,12 @@ from idealgas.engine.epoch import encounters_per_length, epoch_length, kick_rate
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
-from idealgas.gas.state import Gas
 from idealgas.physics import momentum_flow
 from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
 from idealgas.physics.exact_sum import SumRangeError
 from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
+from idealgas.state import Gas
 
 TRAJECTORY = 6
 """Version of the trajectory, raised by hand whenever a scene's log comes out differently than it did."""

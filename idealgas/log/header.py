@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.gas.state import Gas
 from idealgas.log.errors import LogError
 from idealgas.log.rules import check_boundary, check_images, check_species, check_walls
 from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, RUN_COLUMNS, VERSIONS, Wall
 from idealgas.log.source import Source
+from idealgas.state import Gas
 
 if TYPE_CHECKING:
     from idealgas.scene import Scene
@@ -47,7 +47,7 @@ class LogHeader:
     @cached_property
     def scene(self) -> "Scene":
         """Scene of the last run, with all defaults filled in."""
-        from idealgas.log.agreement import check_scene
+        from idealgas.log.check_consistency import check_scene
         from idealgas.scene import Scene, parse_scene
 
         def read() -> Scene:

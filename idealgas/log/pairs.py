@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from idealgas._jit import njit
 from idealgas.events import BATH, Column, Kind, columns_named
+from idealgas.jit import njit
 
 RULED = columns_named(("time", "disc", "partner", "kind"))
 """Columns of events that the rule is about."""

@@ -41,8 +41,8 @@ import numpy as np
 
 from idealgas.events import EventBatch
 from idealgas.files import is_locked
+from idealgas.log.dataframes import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
 from idealgas.log.errors import DamageError, LogError
-from idealgas.log.flat import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
 from idealgas.log.header import LogHeader
 from idealgas.log.pairs import check_pairs
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay

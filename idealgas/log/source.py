@@ -14,11 +14,11 @@ from idealgas.events import Column
 from idealgas.files import HEAD, is_locked, open_regular, told_kind
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
-from idealgas.log.hdf5 import gate
+from idealgas.log.hdf5 import safe_hdf5 as gate
 from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
-from idealgas.log.hdf5.gate import open_dataset, open_object
+from idealgas.log.hdf5.safe_hdf5 import open_dataset, open_object
 from idealgas.log.hdf5.superblock import Unmarked, is_marked
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 

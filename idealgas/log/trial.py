@@ -12,7 +12,7 @@ from typing import NoReturn
 import h5py
 
 from idealgas.log.errors import DamageError
-from idealgas.log.hdf5.gate import layout_of, open_object
+from idealgas.log.hdf5.safe_hdf5 import layout_of, open_object
 from idealgas.log.hdf5.superblock import Unmarked, is_marked
 
 SECONDS = 4

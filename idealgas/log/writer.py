@@ -17,12 +17,12 @@ import numpy as np
 from idealgas.errors import OutputError
 from idealgas.events import BLOCK, EventBatch, columns_named, empty_batch
 from idealgas.files import LOG, beside, check_output, give_name, lock, storage_error
-from idealgas.gas.state import Gas
 from idealgas.log import schema
 from idealgas.log.hdf5.commit import Commit
 from idealgas.log.hdf5.superblock import abandon
 from idealgas.log.hdf5.table import Table, commit_tables, open_tables
 from idealgas.log.schema import LogLayout
+from idealgas.state import Gas
 
 BUFFERS = 8
 FLUSH_ROWS = 4 * BLOCK

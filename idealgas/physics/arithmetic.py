@@ -13,7 +13,7 @@ import numpy as np
 from numba.core import cgutils, types
 from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
 
-from idealgas._jit import inline, inline_by_type
+from idealgas.jit import inline, inline_by_type
 from idealgas.physics import double_double
 
 

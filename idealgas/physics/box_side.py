@@ -3,10 +3,10 @@
 Without gravity the laws run on numbers of any length, see `arithmetic`.
 """
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.arithmetic import number
+from idealgas.physics.ballistic import time_to_plane
 from idealgas.physics.constants import NEVER
-from idealgas.physics.fall import time_to_plane
 from idealgas.physics.gravity import acceleration_along
 
 

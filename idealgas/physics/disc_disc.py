@@ -4,7 +4,7 @@ Both laws are symmetric to the last bit under exchange of the discs: each differ
 elastic discs they run on numbers of any length, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
 """
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.arithmetic import number, root
 from idealgas.physics.constants import NEVER
 from idealgas.physics.periodic import shift_by_images

@@ -6,7 +6,7 @@ IEEE Symposium on Computer Arithmetic, 155 (2001). Relative errors are a few tim
 
 import math
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 SPLITTER = 134217729.0  # 2^27 + 1
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, out_of_line
+from idealgas.jit import aligned, inline, out_of_line
 
 SUM = np.dtype(
     [

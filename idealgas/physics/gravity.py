@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 
 class Gravity(NamedTuple):

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, njit
+from idealgas.jit import aligned, inline, njit
 from idealgas.physics.exact_sum import TOGETHER, add, add_all
 from idealgas.physics.periodic import shift_by_images
 

@@ -1,6 +1,6 @@
 """Free flight: r(t) = r₀ + v t, and with gravity r(t) = r₀ + v t + ½ g t²."""
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 
 @inline

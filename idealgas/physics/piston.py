@@ -6,9 +6,9 @@ velocity.
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
+from idealgas.physics.ballistic import stays_above, time_to_plane
 from idealgas.physics.constants import NEVER
-from idealgas.physics.fall import stays_above, time_to_plane
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.restitution import wall_rebound

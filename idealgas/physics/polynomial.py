@@ -2,7 +2,7 @@
 
 import math
 
-from idealgas._jit import inline, out_of_line
+from idealgas.jit import inline, out_of_line
 from idealgas.physics.constants import NEVER
 
 BISECTIONS = 200  # enough to halve any interval of floats down to neighbouring ones

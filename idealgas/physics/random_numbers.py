@@ -5,7 +5,7 @@ Source: Steele, Lea & Flood, OOPSLA 2014.
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 """Constant of SplitMix64 by which the counter is multiplied."""

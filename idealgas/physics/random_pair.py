@@ -8,7 +8,7 @@ Phys. 38, 1402 (1970); Eger & Kress, Am. J. Phys. 50, 120 (1982).
 
 import math
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.contact_value import contact_value
 
 

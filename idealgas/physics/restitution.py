@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 
 class Restitution(NamedTuple):

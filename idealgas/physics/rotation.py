@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 
 class Rotation(NamedTuple):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.random_numbers import disc_uniform
 
 

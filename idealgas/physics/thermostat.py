@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline, njit
+from idealgas.jit import inline, njit
 from idealgas.physics.random_numbers import disc_uniform
 
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import path_to_touch, touch
 from idealgas.physics.motion import position_after, velocity_after

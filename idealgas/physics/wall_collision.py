@@ -1,6 +1,6 @@
 """Collision of a disc with any wall: a reflection, inelastic or rough, or an emission at the wall's temperature."""
 
-from idealgas._jit import inline
+from idealgas.jit import inline
 from idealgas.physics.restitution import wall_rebound
 from idealgas.physics.rotation import tangential_impulse_at_wall
 from idealgas.physics.thermal import emit, is_thermal

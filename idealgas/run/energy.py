@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import values
 from idealgas.run.effects.bundle import present
+from idealgas.state import Gas
 
 
 class Energy(NamedTuple):

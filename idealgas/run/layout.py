@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 from idealgas.events import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Arrays, Column, Values, event_columns
-from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint, LogLayout, Wall
 from idealgas.physics.effects import Effects
 from idealgas.run.effects import bundle
@@ -13,6 +12,7 @@ from idealgas.run.energy import Energy, energy_of
 from idealgas.run.sums import kept_sums, observed_sums, restore_sums
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
+from idealgas.state import Gas
 
 TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
 """What every run counts from time 0 on."""

@@ -3,12 +3,10 @@
 import os
 from collections.abc import Callable, Sequence
 
-from idealgas._jit import compile_timer
-from idealgas.document.dump import dump_document
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
-from idealgas.gas.state import Gas
+from idealgas.jit import compile_timer
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
@@ -19,6 +17,8 @@ from idealgas.run.energy import energy_of
 from idealgas.run.layout import layout_of, restore, row_columns, totals
 from idealgas.run.simulate import LoggedRun, Progress, RunHistory, method_of, stop_of
 from idealgas.scene import Scene, parse_scene
+from idealgas.state import Gas
+from idealgas.toml.dump import dump_document
 
 TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
 

@@ -10,16 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numba.core.event import TimingListener
 
-from idealgas._jit import compile_timer
-from idealgas.document.dump import dump_document
 from idealgas.engine.audit import Audit
 from idealgas.engine.event_driven.method import expected_threads
 from idealgas.engine.methods import make_method
 from idealgas.engine.records import LATEST, ONE_THREAD, UNLIMITED, Threads
 from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
 from idealgas.errors import UserError
-from idealgas.gas.build import make_gas
-from idealgas.gas.state import Gas
+from idealgas.initial.build import make_gas
+from idealgas.jit import compile_timer
 from idealgas.log import LogWriter
 from idealgas.log.summary import Summary
 from idealgas.physics.effects import Effects
@@ -30,6 +28,8 @@ from idealgas.run.sums import kept_before
 from idealgas.run.watch import Watch
 from idealgas.scene import Run, Scene
 from idealgas.scene.defaults import reference_speed
+from idealgas.state import Gas
+from idealgas.toml.dump import dump_document
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
 

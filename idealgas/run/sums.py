@@ -7,13 +7,13 @@ import numpy as np
 
 from idealgas.engine.epoch import encounters_per_length, energy_beyond, speed_beyond
 from idealgas.events import Column, Values
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, none_waiting
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
+from idealgas.state import Gas
 
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")

@@ -6,9 +6,9 @@ import numpy as np
 
 from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.state import Gas
+from idealgas.physics.collision_rates import pair_encounters
 from idealgas.physics.effects import next_change
-from idealgas.physics.encounters import pair_encounters
+from idealgas.state import Gas
 
 EMPTY_EPOCHS = 10_000
 """A run that has no end in time ends after so many epochs in a row without an event, if that cannot be chance."""

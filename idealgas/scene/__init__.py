@@ -1,6 +1,5 @@
 """Scenes: the TOML model, its loader and its resolved dump."""
 
-from idealgas.document.messages import SceneError
 from idealgas.scene.loader import load_scene, parse_scene
 from idealgas.scene.model import Scene
 from idealgas.scene.tables.box import Box
@@ -14,6 +13,7 @@ from idealgas.scene.tables.run import Header, Log, Run
 from idealgas.scene.tables.thermal import ThermalSide
 from idealgas.scene.tables.thermostat import Thermostat
 from idealgas.scene.tables.wall import Wall
+from idealgas.toml.messages import SceneError
 
 __all__ = [
     "EFFECTS",

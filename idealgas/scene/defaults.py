@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from idealgas.physics.encounters import DENSEST, encounters_of_discs
+from idealgas.physics.collision_rates import DENSEST, encounters_of_discs
 from idealgas.physics.random_pair import mean_trial_time
 
 if TYPE_CHECKING:
-    from idealgas.document.table import Rectangle, Vector
     from idealgas.scene.tables.discs import Disc, Species
     from idealgas.scene.tables.run import Run
+    from idealgas.toml.table import Rectangle, Vector
 
 
 def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:

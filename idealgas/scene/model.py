@@ -6,11 +6,11 @@ from typing import Self
 from pydantic import PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
-from idealgas.document.error import Issue
-from idealgas.document.origin import Origin
-from idealgas.document.table import Table
 from idealgas.scene.checks.issues import issues
 from idealgas.scene.tables.document import Document
+from idealgas.toml.error import Issue
+from idealgas.toml.origin import Origin
+from idealgas.toml.table import Table
 
 
 class Scene(Document):

@@ -7,8 +7,8 @@ from functools import reduce
 from itertools import zip_longest
 from typing import Any
 
-from idealgas.document.error import Key
 from idealgas.sides import SIDES
+from idealgas.toml.error import Key
 
 
 def _sums(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:

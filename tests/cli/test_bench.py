@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
 
-from idealgas.study.bench.figure import PEERS
+from idealgas.bench.figure import PEERS
 
 SHORT = ("bench", "--number", "10,40", "--phi", "0.1", "--collisions", "20", "--repeats", "1")
 

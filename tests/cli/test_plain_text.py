@@ -14,8 +14,8 @@ from support import ROOT, called
 
 from idealgas.analysis.core.style import name_rows, panels, save, show_names
 from idealgas.analysis.core.tables import Table
-from idealgas.analysis.report.page import escape
 from idealgas.plain import plain
+from idealgas.report.page import escape
 
 NASTY = "[/red] $\\frac{$ :smile: </script><b> \x1b]0;owned\x07\x9b31m \u202e\udcff"
 SHOWN = "[/red] $\\frac{$ :smile: </script><b> \\u001b]0;owned\\u0007\\u009b31m \\u202e\\udcff"
@@ -95,7 +95,7 @@ def folder(tmp_path_factory):
 
 @pytest.mark.parametrize("command", ["info", "follow --once", "temperature --plot t.png", "report -o page.html"])
 def test_a_run_with_such_names(folder, command, monkeypatch):
-    monkeypatch.setattr("idealgas.analysis.report.page.make_sections", lambda *_: [])  # which take long
+    monkeypatch.setattr("idealgas.report.page.make_sections", lambda *_: [])  # which take long
     name, *options = shlex.split(command)
     done = called(name, "[/red]$_^.h5", *options, folder=folder)
     assert (done.returncode, done.stderr) == (0, "")

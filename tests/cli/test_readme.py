@@ -37,7 +37,7 @@ README, SCENES, ANALYSES, ENGINE, LOG, STUDY, TESTS = (
     "idealgas/analysis/README.md",
     "idealgas/engine/README.md",
     "idealgas/log/README.md",
-    "idealgas/study/README.md",
+    "idealgas/accuracy/README.md",
     "tests/README.md",
 )
 DOCUMENTS = [ROOT / page for page in PAGES] + [ROOT / ".github" / name for name in ("CONTRIBUTING.md", "CHANGELOG.md")]

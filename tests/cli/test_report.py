@@ -11,8 +11,8 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 from support import ROOT, called
 
-from idealgas.analysis.report import player as player_module
 from idealgas.log import open_log
+from idealgas.report import player as player_module
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 

@@ -13,8 +13,8 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
 from idealgas.analysis.core.bond_order import bond_order
-from idealgas.analysis.movie.piston_track import piston_track
 from idealgas.log import open_log
+from idealgas.movie.piston_track import piston_track
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,7 @@ import psutil
 import pytest
 from support import IDEALGAS, called, idealgas
 
-from idealgas.study.sweep.run import Outcome, Progress
+from idealgas.sweep.run import Outcome, Progress
 
 SWEEP = """
 [sweep]
@@ -161,7 +161,7 @@ def test_a_ctrl_c_that_another_package_loses_is_not_lost(plan, tmp_path, monkeyp
             on_progress(Progress(1, 0, 6))
         return Outcome(0, 0, {})
 
-    monkeypatch.setattr("idealgas.study.sweep.run.run_sweep", run_sweep)
+    monkeypatch.setattr("idealgas.sweep.run.run_sweep", run_sweep)
     before = signal.getsignal(signal.SIGINT)
     done = called("sweep", plan, "-o", tmp_path / "out")
     assert (done.returncode, done.stdout) == (130, "")

@@ -16,9 +16,9 @@ from idealgas.analysis.core.statistics import ensemble_inefficiency, mean
 from idealgas.analysis.theory import hard_discs
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.build import make_gas
-from idealgas.gas.state import Gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import Box, Header, Run, Scene, Species
+from idealgas.state import Gas
 
 N = 1000
 COLLISIONS = 1_000_000

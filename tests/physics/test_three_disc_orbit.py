@@ -8,11 +8,11 @@ import pytest
 from mpmath import mpf
 from support import ROOT, record
 
-from idealgas.engine.precise import PreciseBruteForce
+from idealgas.accuracy.orbit import columns_at, is_on_orbit, orbit_gas, study_orbit, survival, three_disc_orbit
+from idealgas.engine.multiprecision import PreciseBruteForce
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import load_scene
-from idealgas.study.accuracy.orbit import columns_at, is_on_orbit, orbit_gas, study_orbit, survival, three_disc_orbit
 
 pytestmark = pytest.mark.slow
 
@@ -96,7 +96,7 @@ def test_every_digit_buys_the_same_time():
 def test_what_does_not_break_is_counted_and_limits_the_median(monkeypatch):
     gas = make_gas(load_scene(ROOT / "configs" / "three-discs.toml"))
     assert survival(BOX, RADIUS, "float64") < 60
-    monkeypatch.setattr("idealgas.study.accuracy.orbit.MOST_PERIODS", 3)
+    monkeypatch.setattr("idealgas.accuracy.orbit.MOST_PERIODS", 3)
     assert survival(BOX, RADIUS, "float64") == math.inf
     study = study_orbit(gas, 12)
     double, twice = study.survivals[1:]

@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 from support import called
 
-from idealgas.document.dump import toml_value
-from idealgas.document.table import LARGEST, SMALLEST
+from idealgas.toml.dump import toml_value
+from idealgas.toml.table import LARGEST, SMALLEST
 
 EVENTS = 100
 edges = st.sampled_from([SMALLEST, LARGEST, 1e-30, 1e20, 0.0, 5e-324, 1e-200, 1e300])

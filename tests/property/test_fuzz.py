@@ -20,13 +20,12 @@ from hypothesis import HealthCheck, example, given, settings
 from invariants import InvariantChecker, MaxErrors
 from support import ROOT, batches, joined, record, same_rows
 
-from idealgas._jit import aligned
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.epoch import LONGEST_WAY
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import EventBatch
-from idealgas.gas.state import Gas
+from idealgas.jit import aligned
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.periodic import Periodic
@@ -41,6 +40,7 @@ from idealgas.run.simulate import stop_of
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
 from idealgas.sides import FIRST_SEGMENT
+from idealgas.state import Gas
 
 PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
 MOST_EPOCHS = 5_000  # no scene has many, but for those in which a disc goes a long way and meets nothing

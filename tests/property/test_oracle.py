@@ -12,7 +12,7 @@ from support import record, same_rows
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.state import Gas
+from idealgas.state import Gas
 
 
 class Case(NamedTuple):

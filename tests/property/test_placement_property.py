@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas.document.dump import toml_value
-from idealgas.document.table import SMALLEST
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import SceneError, parse_scene
 from idealgas.sides import SIDES
+from idealgas.toml.dump import toml_value
+from idealgas.toml.table import SMALLEST
 
 SIDE = 10.0
 

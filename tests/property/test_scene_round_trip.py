@@ -7,10 +7,10 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas.document.dump import dump_document, toml_value
-from idealgas.document.lines import key_lines
-from idealgas.document.table import LARGEST, SMALLEST
 from idealgas.scene import parse_scene
+from idealgas.toml.dump import dump_document, toml_value
+from idealgas.toml.lines import key_lines
+from idealgas.toml.table import LARGEST, SMALLEST
 
 WIDTH, HEIGHT = 1000.0, 500.0
 

@@ -14,10 +14,10 @@ from support import batches
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.gravity import Gravity
 from idealgas.run.effects.wall import make_segments
+from idealgas.state import Gas
 
 EVENTS = 120
 DEPTH = 1e-11

@@ -5,11 +5,11 @@ from log_compare import differences, scene_of
 from support import ROOT
 from thread_samples import EAGER, SMALLEST_CELLS
 
-from idealgas.engine.event_driven.border import LEAST_ROWS
+from idealgas.bench.bench import bench_scene
 from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.parallel.subdomain import LEAST_ROWS
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
-from idealgas.study.bench.bench import bench_scene
 
 pytestmark = pytest.mark.long
 

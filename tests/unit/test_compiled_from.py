@@ -9,7 +9,7 @@ from types import FunctionType, ModuleType
 import pytest
 from support import ROOT
 
-from idealgas._jit import compiled_from
+from idealgas.jit import compiled_from
 
 MODULES = [
     path.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")

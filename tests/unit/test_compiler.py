@@ -21,7 +21,7 @@ from numba.extending import intrinsic
 from idealgas._compiler.code import EntryPoint, Part
 from idealgas._compiler.contexts import Typing
 from idealgas._compiler.steps import STEPS
-from idealgas._jit import inline, njit, out_of_line
+from idealgas.jit import inline, njit, out_of_line
 
 
 def compiled(function):

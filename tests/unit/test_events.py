@@ -15,7 +15,7 @@ from idealgas.events import (
     empty_batch,
     event_columns,
 )
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.log import open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.layout import row_columns

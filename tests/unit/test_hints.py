@@ -6,8 +6,8 @@ from fresh_python import python
 pytestmark = pytest.mark.slow
 
 NEAR = """
-from idealgas._jit import njit
-from idealgas._prefetch import fetch_next_line
+from idealgas.jit import njit
+from idealgas.prefetch import fetch_next_line
 
 @njit
 def near(column, row):
@@ -15,7 +15,7 @@ def near(column, row):
 """
 NEAR_THE_END = """
 import numpy as np
-from idealgas._prefetch import fetch_next_line
+from idealgas.prefetch import fetch_next_line
 from module import near
 for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
     before = column.copy()
@@ -33,7 +33,7 @@ def test_memory_behind_an_array_is_asked_for_and_left_alone(tmp_path):
 
 SELDOM = """
 from idealgas._expect import seldom
-from idealgas._jit import njit
+from idealgas.jit import njit
 
 @njit
 def number(column):

@@ -11,19 +11,24 @@ FREE = {"_version", "errors", "events", "files", "plain", "sides", ""}
 """Version, errors of the user, files to write, plain text, columns of events and numbers of walls are for all."""
 
 ALLOWED = {
-    "document": set(),
-    "scene": {"document", "physics"},  # defaults that follow from a law
-    "physics": {"_jit"},
-    "gas": {"_jit", "document", "scene", "physics"},  # discs are placed by the nearest image's distance
-    "engine": {"_expect", "_jit", "_prefetch", "gas", "physics"},
-    "log": {"_jit", "gas", "scene", "physics"},  # states between two events are free flight
-    "run": {"_jit", "document", "scene", "physics", "gas", "engine", "log"},
-    "analysis": {"_jit", "scene", "physics", "gas", "log"},
-    "study": {"document", "scene", "physics", "gas", "engine", "log", "run", "analysis"},
+    "jit": {"_compiler"},
+    "prefetch": {"jit"},
+    "state": {"jit"},
+    "toml": set(),
+    "physics": {"jit"},
+    "scene": {"toml", "physics", "initial"},  # defaults that follow from a law; room for a lattice
+    "initial": {"jit", "state", "toml", "scene", "physics"},  # discs are placed by the nearest image's distance
+    "engine": {"_expect", "jit", "prefetch", "state", "initial", "physics"},
+    "log": {"jit", "state", "initial", "scene", "physics"},  # states between two events are free flight
+    "run": {"jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
+    "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
+    "movie": {"state", "scene", "log", "analysis"},
+    "report": {"state", "scene", "log", "analysis", "movie"},
+    "sweep": {"toml", "scene", "initial", "run", "log", "analysis"},
+    "accuracy": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
+    "bench": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "_compiler": set(),
     "_expect": set(),
-    "_jit": {"_compiler"},
-    "_prefetch": {"_jit"},
     "_version": set(),
     "errors": set(),
     "events": set(),
@@ -43,7 +48,6 @@ WITHIN_ANALYSIS = {"core": {"theory"}, "theory": set(), "registry": {"core"}}
 FROM_ANALYSES = {
     "heat_capacity": {"pressure"},
     "status": {"pressure"},
-    "report": {"info", "movie", "registry"},
 }
 
 COMPUTES = {"idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
@@ -128,4 +132,16 @@ def test_physics_only_computes(name):
 @pytest.mark.parametrize("name", [name for name in MODULES if name.startswith("idealgas_cli.")])
 def test_commands_use_what_is_public(name):
     used = {part(other) for other in GRAPH[name] if other.split(".")[0] == "idealgas"}
-    assert used <= FREE | {"document", "scene", "gas", "run", "log", "analysis", "study"}
+    assert used <= FREE | {
+        "toml",
+        "scene",
+        "initial",
+        "run",
+        "log",
+        "analysis",
+        "report",
+        "movie",
+        "sweep",
+        "accuracy",
+        "bench",
+    }

@@ -11,7 +11,7 @@ PACKAGE = {
     "__init__": "",
     "entry": """
 from typing import TYPE_CHECKING
-from idealgas._jit import njit
+from idealgas.jit import njit
 from toy import (  # (a submodule)
     constants,
 )
@@ -30,7 +30,7 @@ def late():
 """,
     "laws/__init__": "from toy.laws.linear import law",
     "laws/linear": """
-from idealgas._jit import inline
+from idealgas.jit import inline
 
 @inline
 def law(x):
@@ -45,7 +45,7 @@ def law(x):
 }
 """A package with an entry point, whose law another module passes on."""
 
-FOLDER = "from idealgas._jit import cache_folder; from toy.entry import entry; print(cache_folder(entry))"
+FOLDER = "from idealgas.jit import cache_folder; from toy.entry import entry; print(cache_folder(entry))"
 COMPILED = """
 from toy.entry import entry
 print(entry(20), sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
@@ -150,7 +150,7 @@ def test_where_the_cache_is(toy, variables, expected, tmp_path):
 DAMAGE = """
 import os, sys
 from pathlib import Path
-from idealgas._jit import cache_folder, njit
+from idealgas.jit import cache_folder, njit
 from toy.entry import entry
 
 def state(argument=20):
@@ -214,7 +214,7 @@ class Sides(NamedTuple):
     {}: float
 """
 FIELD = """
-from idealgas._jit import njit
+from idealgas.jit import njit
 
 @njit
 def left(sides):
@@ -233,7 +233,7 @@ def test_the_fields_of_a_named_tuple_are_part_of_the_key(tmp_path, cache):
 
 TEMPORARY = """
 import multiprocessing, os, sys
-from idealgas._jit import cache_folder
+from idealgas.jit import cache_folder
 from toy.entry import entry
 
 if __name__ == "__main__":
@@ -268,7 +268,7 @@ def test_what_has_no_source_file_is_compiled_but_not_cached(tmp_path, cache):
 
 
 SUMS = """
-from idealgas._jit import njit
+from idealgas.jit import njit
 
 @njit
 def total(column):

@@ -32,7 +32,7 @@ NAMED = {
     "scene/geometry.py": ({"periodic", "wall"}, "images of a disc in a box while other tables may not be valid"),
     "scene/checks/discs.py": ({"periodic", "piston"}, "discs in a box while other tables may not be valid"),
     "scene/checks/placement.py": ({"periodic", "wall"}, "a lattice goes on through periodic sides, and among no walls"),
-    "gas/contacts.py": ({"gravity", "piston"}, "what discs may rest on, which shows once they are placed"),
+    "initial/contacts.py": ({"gravity", "piston"}, "what discs may rest on, which shows once they are placed"),
     "log/schema.py": ({"gravity"}, "names in the file"),
     "log/header.py": ({"gravity"}, "names in the file"),
     "log/export/frames.py": ({"periodic"}, "H5MD's word for a boundary"),
@@ -44,9 +44,9 @@ NAMED = {
     "analysis/evolution/figure.py": ({"piston"}, "the course of a piston"),
     "analysis/heat_capacity/energy_series.py": ({"gravity", "piston"}, "the energy of a piston"),
     "analysis/heat_capacity/measure.py": ({"gravity", "piston"}, "constant pressure, and the kinds of gas by name"),
-    "analysis/movie/piston_track.py": ({"gravity", "piston"}, "where a piston is"),
-    "analysis/report/player.py": ({"gravity", "periodic", "piston"}, "names in the data of the page"),
-    "study/bench/effects.py": ({*WORDS} - {"wall"}, "a scene for each effect"),
+    "movie/piston_track.py": ({"gravity", "piston"}, "where a piston is"),
+    "report/player.py": ({"gravity", "periodic", "piston"}, "names in the data of the page"),
+    "bench/effects.py": ({*WORDS} - {"wall"}, "a scene for each effect"),
 }
 """Files that name effects all the same: which, and why."""
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import njit
+from idealgas.jit import njit
 
 LEAST_WEIGHT = 1e-3
 """Orders of a smaller weight, relative to the largest one, are left out."""

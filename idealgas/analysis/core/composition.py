@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.gas.state import Gas
+from idealgas.state import Gas
 
 
 class Composition(NamedTuple):

@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.theory import conserved
-from idealgas.analysis.theory.column import barometric_temperature
+from idealgas.analysis.theory.barometric import barometric_temperature
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 

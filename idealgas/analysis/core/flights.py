@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import inline, njit
-from idealgas.analysis.core.falls import (
+from idealgas.analysis.core.ballistic import (
     changes_in_fall,
     integral_over_fall,
     length_of_fall,
@@ -17,8 +16,9 @@ from idealgas.analysis.core.falls import (
 )
 from idealgas.analysis.core.stream import block_at, block_back
 from idealgas.events import BATH
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
 from idealgas.physics.motion import velocity_after
+from idealgas.state import Gas
 
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
 

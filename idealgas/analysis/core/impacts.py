@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import njit
 from idealgas.analysis.core.stream import block_at
 from idealgas.events import BATH
-from idealgas.gas.state import Gas
+from idealgas.jit import njit
 from idealgas.physics.periodic import nearest_image
 from idealgas.sides import SIDES
+from idealgas.state import Gas
 
 X, Y, VX, VY = range(4)  # columns of a track: position and velocity of a disc after its last event
 

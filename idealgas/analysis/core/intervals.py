@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import inline, njit
-from idealgas.analysis.core.falls import length_of_flight
+from idealgas.analysis.core.ballistic import length_of_flight
 from idealgas.analysis.core.flights import bin_of
 from idealgas.analysis.core.stream import block_at, block_back
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
+from idealgas.state import Gas
 
 
 class _Intervals:

@@ -6,9 +6,9 @@ import numpy as np
 
 from idealgas.errors import UserError
 from idealgas.events import Kind
-from idealgas.gas.state import Gas
 from idealgas.log import Log
 from idealgas.sides import SIDES
+from idealgas.state import Gas
 
 
 class MovingWall:

@@ -10,10 +10,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from idealgas._jit import inline
 from idealgas.analysis.core.equilibrium import drift
-from idealgas.gas.state import Gas
+from idealgas.jit import inline
 from idealgas.log import Log
+from idealgas.state import Gas
 
 
 class Tally(Protocol):

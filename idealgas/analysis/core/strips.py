@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import inline, njit
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
 from idealgas.physics.motion import position_after
+from idealgas.state import Gas
 
 T, X, Y, VX, VY = range(5)  # columns of a track: time of the disc's last event, position and velocity after it
 

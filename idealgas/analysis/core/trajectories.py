@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas._jit import njit, out_of_line
+from idealgas.jit import njit, out_of_line
 from idealgas.log import Log
 from idealgas.physics.motion import position_after
 

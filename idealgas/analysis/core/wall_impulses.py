@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import njit
 from idealgas.analysis.core.stream import block_at
 from idealgas.events import BATH, Kind
-from idealgas.gas.state import Gas
+from idealgas.jit import njit
 from idealgas.log import Log
 from idealgas.physics.motion import velocity_after
 from idealgas.sides import FIRST_SEGMENT, OUTWARD
+from idealgas.state import Gas
 
 T, VX, VY = range(3)  # columns of a track: time of the disc's last event, velocity after it
 

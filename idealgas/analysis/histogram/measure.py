@@ -25,8 +25,8 @@ from idealgas.analysis.histogram.laws import premise
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
-from idealgas.gas.state import Gas
 from idealgas.log import Log
+from idealgas.state import Gas
 
 BINS = 120
 SAMPLED = 256  # largest number of discs of a species whose velocities are tested

@@ -8,8 +8,8 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.window import Window
-from idealgas.gas.state import Gas
 from idealgas.sides import SIDES, axis_of
+from idealgas.state import Gas
 
 
 class Bulk(NamedTuple):

@@ -5,8 +5,8 @@ What does not hold here is a premise of every analysis; `premises` says it in se
 
 import numpy as np
 
-from idealgas.gas.state import Gas
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 CHANCE = 12.0
 """Largest share of the kinetic energy, times the number of discs, that the centre of mass of a gas has by chance.

@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import conserved, hard_discs, time_steps
-from idealgas.analysis.theory.column import DENSEST, barometric_temperature, column_rates
+from idealgas.analysis.theory.barometric import DENSEST, barometric_temperature, column_rates
 from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
-from idealgas.gas.state import Gas
 from idealgas.physics.random_pair import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
 from idealgas.scene import Rest, Scene
 from idealgas.scene.defaults import reference_speed
+from idealgas.state import Gas
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
 """Bytes of one event row in the log, by the kind of compression."""

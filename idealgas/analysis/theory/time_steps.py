@@ -3,8 +3,8 @@
 import math
 
 from idealgas.analysis.theory import conserved
-from idealgas.gas.state import Gas
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 
 def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:

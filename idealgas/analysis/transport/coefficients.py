@@ -27,8 +27,8 @@ from idealgas.analysis.transport.currents import (
 )
 from idealgas.analysis.transport.enskog import Enskog
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
-from idealgas.gas.state import Gas
 from idealgas.log import Log
+from idealgas.state import Gas
 
 STEPS = 100  # number of steps up to the longest lag
 MOST_BLOCKS = 2**18  # of the currents; a longer run has longer steps

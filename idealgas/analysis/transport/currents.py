@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import inline, njit
-from idealgas.gas.state import Gas
+from idealgas.jit import inline, njit
 from idealgas.physics.periodic import nearest_image
+from idealgas.state import Gas
 
 XX, XY, YY, HEAT_X, HEAT_Y, APART_X, APART_Y = range(7)
 """Components of the current: of momentum, of energy, and of one species relative to the other."""

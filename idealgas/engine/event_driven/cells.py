@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline
+from idealgas.jit import aligned, inline
 
 LINK = np.dtype([("next", "i4"), ("previous", "i4")], align=True)  # indices of discs, or -1
 MARGIN = 1e-9  # by which a cell is wider than a diameter, relative

@@ -3,7 +3,6 @@
 import numpy as np
 
 from idealgas._expect import seldom
-from idealgas._jit import inline, out_of_line
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import (
     NO_CONTACT,
@@ -15,6 +14,7 @@ from idealgas.engine.event_driven.prediction import (
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
+from idealgas.jit import inline, out_of_line
 from idealgas.physics.disc_disc import contact_time, first_touch, will_touch
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.wall import misses_segment, segment_contact

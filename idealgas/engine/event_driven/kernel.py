@@ -7,16 +7,23 @@ predicted again. One thread may have all discs, or several one strip of the box 
 import numpy as np
 
 from idealgas._expect import seldom
-from idealgas._jit import inline, njit
-from idealgas.engine.event_driven.border import OVER
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
 from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
-from idealgas.engine.event_driven.lookahead import fetch_ahead
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
+from idealgas.engine.event_driven.prefetch import fetch_ahead
 from idealgas.engine.event_driven.scheduler import clear, has_another, is_settled, settle, withdraw
-from idealgas.engine.event_driven.turns import (
+from idealgas.engine.event_writer import (
+    batch_capacity,
+    write_kick,
+    write_pair,
+    write_piston_hit,
+    write_segment_hit,
+    write_side_hit,
+)
+from idealgas.engine.parallel.subdomain import OVER
+from idealgas.engine.parallel.synchronization import (
     count_at_one_time,
     enter_in_schedule,
     in_own_schedule,
@@ -32,14 +39,7 @@ from idealgas.engine.resolve import (
     resolve_side,
     resolve_stop,
 )
-from idealgas.engine.rows import (
-    batch_capacity,
-    write_kick,
-    write_pair,
-    write_piston_hit,
-    write_segment_hit,
-    write_side_hit,
-)
+from idealgas.jit import inline, njit
 
 U = np.uintp
 

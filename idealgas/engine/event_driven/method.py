@@ -10,13 +10,13 @@ from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cel
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.overlap import deepest_overlap
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
-from idealgas.engine.event_driven.strips import FAST, Tuning, share_out
-from idealgas.engine.event_driven.team import Crew, Team
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
+from idealgas.engine.parallel.decomposition import Crew, Team
+from idealgas.engine.parallel.slabs import FAST, Tuning, share_out
 from idealgas.engine.records import NOTHING_KEPT, Discs, Limits, Threads, make_discs
 from idealgas.events import EventBatch
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
+from idealgas.state import Gas
 
 IN_ANY_ORDER = 4096
 """Discs that the caches hold: they are not sorted in memory anew at each epoch."""

@@ -1,8 +1,8 @@
 """The deepest overlap of discs, searched for in neighbouring cells only."""
 
-from idealgas._jit import inline, njit
 from idealgas.engine.audit import U, overlap_of
 from idealgas.engine.event_driven.contacts import gather_block
+from idealgas.jit import inline, njit
 
 
 @inline

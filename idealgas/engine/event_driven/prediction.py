@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idealgas._jit import inline
 from idealgas.engine.order import precedes, wall_rank
+from idealgas.jit import inline
 from idealgas.physics.constants import NEVER
 from idealgas.sides import FIRST_SEGMENT, HEAT_BATH
 

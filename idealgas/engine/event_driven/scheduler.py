@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline, njit, out_of_line
-from idealgas.engine.event_driven.simultaneous import comes_first, settle_path
+from idealgas.engine.event_driven.ties import comes_first, settle_path
+from idealgas.jit import aligned, inline, njit, out_of_line
 from idealgas.physics.constants import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import aligned, inline
 from idealgas.engine.event_driven.cells import Cells
-from idealgas.engine.event_driven.lookahead import make_lookahead
 from idealgas.engine.event_driven.prediction import PREDICTION
+from idealgas.engine.event_driven.prefetch import make_lookahead
 from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
+from idealgas.jit import aligned, inline
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 

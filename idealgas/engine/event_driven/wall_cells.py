@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._jit import inline
 from idealgas.engine.event_driven.cells import Cells
+from idealgas.jit import inline
 from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, periodic_axes
 
 

@@ -7,7 +7,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from idealgas.log.flat import KIND_NAMES, Columns, flat_events, flat_states
+from idealgas.log.dataframes import KIND_NAMES, Columns, flat_events, flat_states
 from idealgas.log.reader import Log
 
 

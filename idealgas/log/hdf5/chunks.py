@@ -10,7 +10,7 @@ import struct
 import numpy as np
 from isal import igzip_lib, isal_zlib
 
-from idealgas._jit import inline, njit
+from idealgas.jit import inline, njit
 
 SHUFFLE, DEFLATE, FLETCHER32 = 1, 2, 4
 COMPRESSED, PLAIN = FLETCHER32, SHUFFLE | DEFLATE

@@ -7,7 +7,7 @@ import numpy as np
 from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
-from idealgas.log.hdf5.gate import layout_of
+from idealgas.log.hdf5.safe_hdf5 import layout_of
 
 
 class StoredColumn:

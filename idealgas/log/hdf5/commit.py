@@ -14,7 +14,7 @@ from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.column import StoredColumn
-from idealgas.log.hdf5.gate import attribute, open_dataset
+from idealgas.log.hdf5.safe_hdf5 import attribute, open_dataset
 
 DATASET = "commit"
 

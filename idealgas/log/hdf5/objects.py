@@ -11,7 +11,7 @@ import numpy as np
 from h5py import h5a, h5d, h5f, h5g, h5p, h5s, h5t
 
 from idealgas.log.hdf5 import chunks
-from idealgas.log.hdf5.gate import check_chunk
+from idealgas.log.hdf5.safe_hdf5 import check_chunk
 
 
 class Objects:

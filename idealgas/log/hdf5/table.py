@@ -11,7 +11,7 @@ from isal import isal_zlib
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import DATASET, Commit, table_of
-from idealgas.log.hdf5.gate import open_dataset
+from idealgas.log.hdf5.safe_hdf5 import open_dataset
 
 
 class Table:

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from idealgas.events import Arrays, Column, Values
-from idealgas.gas.state import Gas
 from idealgas.log import Checkpoint
 from idealgas.physics.effects import Effects
 from idealgas.run.effects import gravity, periodic, piston, restitution, rotation, thermal, thermostat, wall
 from idealgas.run.effects.slice import Slice
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 SLICES = tuple(effect.SLICE for effect in (gravity, periodic, wall, rotation, restitution, thermal, piston, thermostat))
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.gas.state import Gas
 from idealgas.physics.gravity import Gravity
 from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 
 def _make(scene: Scene, _: Gas) -> Gravity | None:

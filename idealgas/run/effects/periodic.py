@@ -3,10 +3,10 @@
 import numpy as np
 
 from idealgas.events import IMAGE
-from idealgas.gas.state import Gas
 from idealgas.physics.periodic import Periodic
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 
 def _make(scene: Scene, gas: Gas) -> Periodic | None:

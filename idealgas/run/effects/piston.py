@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from idealgas._jit import aligned
 from idealgas.events import Column, Values
-from idealgas.gas.state import Gas
+from idealgas.jit import aligned
 from idealgas.physics.piston import PISTON, piston_energy, piston_motion
 from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
 from idealgas.sides import SIDES
+from idealgas.state import Gas
 
 POSITION = Column("piston_position", "f8", (), "length")
 VELOCITY = Column("piston_velocity", "f8", (), "length/time")

@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.physics.restitution import Restitution
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 LAST_COLLISION = Column("last_collision", "f8", (), "time")
 """Counted from the checkpoint."""

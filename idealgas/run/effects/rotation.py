@@ -5,12 +5,12 @@ import math
 import numpy as np
 
 from idealgas.events import ANGULAR_VELOCITY, Arrays, Column
-from idealgas.gas.build import stream
-from idealgas.gas.state import Gas
+from idealgas.initial.build import stream
 from idealgas.physics.effects import Effects
 from idealgas.physics.rotation import Rotation, moment_of_inertia
 from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 INERTIA = Column("inertia", "f8", (), "mass length^2")
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from idealgas.events import Arrays, Column, Values
-from idealgas.gas.state import Gas
 from idealgas.physics.effects import Effects
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 
 class EnergyPart(NamedTuple):

@@ -3,11 +3,11 @@
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.gas.state import Gas
 from idealgas.physics.thermal import Thermal
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
 from idealgas.scene.tables.thermal import wall_temperatures
+from idealgas.state import Gas
 
 EMISSIONS = Column("emissions", "u8")
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.gas.state import Gas
 from idealgas.physics.thermostat import Thermostat, draw_first_kicks
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 KICKS = Column("kicks", "i8")
 NEXT_KICK = Column("next_kick", "f8", (), "time")

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from idealgas._jit import aligned
-from idealgas.gas.state import Gas
+from idealgas.jit import aligned
 from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects.slice import Slice
 from idealgas.scene import Scene
+from idealgas.state import Gas
 
 
 def make_segments(

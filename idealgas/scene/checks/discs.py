@@ -7,17 +7,17 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue, Key
-from idealgas.document.table import Rectangle
 from idealgas.scene.checks.piston import CLOSE_PACKING
 from idealgas.scene.geometry import images, overlaps
+from idealgas.toml.error import Issue, Key
+from idealgas.toml.table import Rectangle
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.box import Box
     from idealgas.scene.tables.discs import Disc, Species
 
 RANDOM_PACKING = 0.65
-"""Packing fraction up to which discs are placed at random; see `idealgas.gas.placement`."""
+"""Packing fraction up to which discs are placed at random; see `idealgas.initial.placement`."""
 
 RESOLUTION = 1e-9
 """Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""

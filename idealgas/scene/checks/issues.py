@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue
 from idealgas.scene.checks import gravity, periodic, piston, restitution, rotation, thermostat, wall
 from idealgas.scene.checks.discs import overlap_issues, room_issues, species_issues
 from idealgas.scene.checks.placement import placement_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.scene.checks.valid import valid
+from idealgas.toml.error import Issue
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue, Key
 from idealgas.scene.tables.periodic import PERIODIC
 from idealgas.sides import SIDES, sides_across
+from idealgas.toml.error import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document

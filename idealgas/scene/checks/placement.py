@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue, Key
 from idealgas.scene.lattice import triangular_lattice
+from idealgas.toml.error import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.discs import Species

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue, Key
 from idealgas.scene.checks.valid import valid
+from idealgas.toml.error import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document

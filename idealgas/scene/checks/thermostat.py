@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue
 from idealgas.scene.defaults import number_of_discs
+from idealgas.toml.error import Issue
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.document import Document

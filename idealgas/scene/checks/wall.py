@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.document.error import Issue, Key
 from idealgas.scene.checks.valid import valid
 from idealgas.scene.geometry import distance_to_wall, images
 from idealgas.sides import SIDES
+from idealgas.toml.error import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.box import Box

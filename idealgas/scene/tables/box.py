@@ -4,9 +4,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from idealgas.document.table import Positive, Table
 from idealgas.scene.tables.periodic import PERIODIC
 from idealgas.scene.tables.thermal import ThermalSide
+from idealgas.toml.table import Positive, Table
 
 
 def _tag(side: Any) -> str:

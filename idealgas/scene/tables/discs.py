@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from idealgas.document.table import NotNegative, Number, Positive, Table, Vector, Whole, Word
+from idealgas.toml.table import NotNegative, Number, Positive, Table, Vector, Whole, Word
 
 
 class Species(Table):

@@ -10,7 +10,6 @@ from typing import Annotated
 
 from pydantic import Field
 
-from idealgas.document.table import Rectangle, Table, Vector
 from idealgas.scene.defaults import mean_free_time, number_of_discs, trial_time
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.properties import Effect, Properties, combine, lacking
@@ -24,6 +23,7 @@ from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
 from idealgas.scene.tables.thermostat import Thermostat
 from idealgas.scene.tables.wall import Wall
+from idealgas.toml.table import Rectangle, Table, Vector
 
 
 class Document(Table):

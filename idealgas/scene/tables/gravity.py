@@ -2,8 +2,8 @@
 
 from pydantic import Field
 
-from idealgas.document.table import Table, Vector
 from idealgas.scene.properties import Effect, Properties
+from idealgas.toml.table import Table, Vector
 
 NAME = "gravity"
 

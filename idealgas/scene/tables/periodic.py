@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from idealgas.document.error import Key
 from idealgas.scene.properties import Effect, Properties
 from idealgas.sides import SIDES
+from idealgas.toml.error import Key
 
 NAME = "periodic sides"
 

@@ -4,10 +4,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from idealgas.document.table import NotNegative, Number, Positive, Rectangle, Table
 from idealgas.scene.properties import Effect, Properties
 from idealgas.scene.tables.gravity import Gravity
 from idealgas.sides import OUTWARD, SIDES, axis_of
+from idealgas.toml.table import NotNegative, Number, Positive, Rectangle, Table
 
 NAME = "piston"
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from pydantic import Field
 
-from idealgas.document.table import Positive, Real, Rectangle, Table, Vector
 from idealgas.scene.defaults import mean_free_time, mean_speed, number_of_discs, sum_of_diameters
 from idealgas.scene.properties import Effect, Properties
 from idealgas.scene.tables.discs import Disc, Species
+from idealgas.toml.table import Positive, Real, Rectangle, Table, Vector
 
 SHARE = 0.05
 """Default contact duration in units of the mean free time, where a constant force presses discs together."""

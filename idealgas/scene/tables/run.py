@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from idealgas.document.table import Positive, Table, Whole
+from idealgas.toml.table import Positive, Table, Whole
 
 Threads = Annotated[
     Annotated[Literal["auto"], Tag("(word)")] | Annotated[int, Field(ge=1, le=256), Tag("(number)")],

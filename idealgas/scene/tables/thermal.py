@@ -4,11 +4,11 @@ from collections.abc import Iterable
 
 from pydantic import Field
 
-from idealgas.document.error import Key
-from idealgas.document.table import Positive, Table
 from idealgas.scene.properties import Effect, Properties
 from idealgas.scene.tables.wall import Wall
 from idealgas.sides import SIDES
+from idealgas.toml.error import Key
+from idealgas.toml.table import Positive, Table
 
 NAME = "thermal walls"
 

@@ -2,8 +2,8 @@
 
 from pydantic import Field
 
-from idealgas.document.table import Positive, Table
 from idealgas.scene.properties import Effect, Properties
+from idealgas.toml.table import Positive, Table
 
 NAME = "thermostat"
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 from pydantic import Field
 
-from idealgas.document.table import Positive, Table, Vector, Word
 from idealgas.scene.properties import Effect, Properties
+from idealgas.toml.table import Positive, Table, Vector, Word
 
 NAME = "wall segments"
 

@@ -6,9 +6,9 @@ import pytest
 from log_compare import scene_of
 
 from idealgas.analysis import status as module
-from idealgas.analysis.report import sections
 from idealgas.analysis.status import status
 from idealgas.log import DamageError, open_log
+from idealgas.report import sections
 from idealgas.run.simulate import simulate
 
 

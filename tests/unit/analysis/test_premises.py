@@ -14,11 +14,11 @@ from idealgas.analysis.core import premises
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import estimates
 from idealgas.analysis.info import info
-from idealgas.analysis.report.sections import make_sections
 from idealgas.analysis.status import status
 from idealgas.analysis.theory.forecast import forecast
 from idealgas.errors import UserError
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
+from idealgas.report.sections import make_sections
 from idealgas.scene import parse_scene
 
 

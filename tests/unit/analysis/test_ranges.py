@@ -11,7 +11,7 @@ from idealgas.analysis.heat_capacity.energy_series import energy_series
 from idealgas.analysis.theory.forecast import forecast
 from idealgas.analysis.theory.granular import Grains, cooling_per_collision
 from idealgas.errors import UserError
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
 SPIN = "rotation={inertia=0.5, roughness=0}"

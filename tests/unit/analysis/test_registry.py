@@ -19,8 +19,8 @@ from idealgas.analysis.core.html import escape, html_table
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Number, Table, as_csv, estimates
-from idealgas.analysis.report.sections import make_sections
 from idealgas.errors import UserError
+from idealgas.report.sections import make_sections
 
 GAS = """
 box.size = [8, 8]

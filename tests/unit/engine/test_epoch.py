@@ -14,7 +14,7 @@ from idealgas.engine.epoch import (
     encounters_per_length,
     epoch_length,
 )
-from idealgas.gas.state import Gas
+from idealgas.state import Gas
 
 
 def gas(n=100, speed=1.0, side=50.0):

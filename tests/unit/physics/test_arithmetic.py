@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas._jit import njit
+from idealgas.jit import njit
 from idealgas.physics import double_double
 from idealgas.physics.arithmetic import Pair, load, number, parts, root, rounded, store
 

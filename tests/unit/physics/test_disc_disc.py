@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas._jit import aligned, njit
 from idealgas.engine.records import DISC
+from idealgas.jit import aligned, njit
 from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import collide, contact_time
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from idealgas._jit import njit
+from idealgas.jit import njit
 from idealgas.physics.exact_sum import (
     FITS,
     TOGETHER,

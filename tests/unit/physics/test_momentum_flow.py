@@ -6,9 +6,9 @@ from effect_samples import make_flow
 from scipy.integrate import quad
 from support import gas_of
 
-from idealgas._jit import aligned
 from idealgas.engine.records import DISC
 from idealgas.engine.resolve import resolve_pair, resolve_segment, resolve_side
+from idealgas.jit import aligned
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import TOGETHER, stored, values
 from idealgas.physics.gravity import Gravity

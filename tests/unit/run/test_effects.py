@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.physics.exact_sum import values
 from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects

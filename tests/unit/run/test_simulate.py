@@ -8,8 +8,8 @@ import pytest
 from log_compare import differences
 from support import ROOT
 
-from idealgas.engine.event_driven.race import Race
-from idealgas.gas.build import make_gas
+from idealgas.engine.parallel.autotuner import Race
+from idealgas.initial.build import make_gas
 from idealgas.log import LogWriter, open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import Energy, is_conserved
@@ -47,7 +47,7 @@ def test_a_shipped_scene_conserves_what_it_should(shipped_scene, tmp_path):
 @pytest.mark.slow
 def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
     """It leaves a core to the log; what the log holds is the same."""
-    monkeypatch.setattr("idealgas.engine.event_driven.strips.cores", lambda: 2)
+    monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 2)
     monkeypatch.setattr(Race, "shares", lambda race: True)
     scene = load_scene(CONFIGS / "dilute.toml", ["run.events=200_000", "run.threads=2"])
     paths = [tmp_path / "behind.h5", tmp_path / "never.h5"]

@@ -2,9 +2,9 @@
 
 import pytest
 
-from idealgas.document.dump import dump_document
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import SceneError, load_scene, parse_scene
+from idealgas.toml.dump import dump_document
 
 
 def test_an_invalid_scene_is_refused_with_all_its_lines(invalid_case):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from idealgas.gas.build import make_gas
-from idealgas.gas.placement import lattice_sites
+from idealgas.initial.build import make_gas
+from idealgas.initial.placement import lattice_sites
 from idealgas.scene import parse_scene
 from idealgas.scene.lattice import triangular_lattice
 

@@ -1,9 +1,9 @@
 import pytest
 
-from idealgas.document.dump import dump_document
-from idealgas.document.table import LARGEST
 from idealgas.errors import UserError
 from idealgas.scene import Header, Log, Scene, SceneError, load_scene, parse_scene
+from idealgas.toml.dump import dump_document
+from idealgas.toml.table import LARGEST
 
 MINIMAL = """
 [box]

@@ -8,7 +8,7 @@ import pytest
 
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.errors import UserError
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from idealgas.analysis.theory import conserved
 from idealgas.analysis.theory.forecast import forecast
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
 TWO = """

@@ -4,7 +4,7 @@ import pytest
 
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.forecast import forecast
-from idealgas.gas.build import make_gas
+from idealgas.initial.build import make_gas
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 

@@ -27,7 +27,7 @@ PROGRAM = """
 import json, sys
 from numba.core.event import RecordingListener, install_listener
 from idealgas.engine.event_driven.kernel import advance_events
-from idealgas.study.bench.effects import effect_scene
+from idealgas.bench.effects import effect_scene
 from idealgas.run.simulate import simulate
 
 called = set()

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from idealgas._jit import aligned, njit
 from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX
 from idealgas.engine.event_driven.scheduler import (
     UNSETTLED,
@@ -20,6 +19,7 @@ from idealgas.engine.event_driven.scheduler import (
     withdraw,
 )
 from idealgas.engine.order import precedes, wall_rank
+from idealgas.jit import aligned, njit
 
 pytestmark = pytest.mark.interpreted
 

@@ -1,0 +1,101 @@
+"""Cases whose accuracy is compared: methods, time steps and precisions, and how to run a gas in one of them."""
+
+import copy
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.multiprecision import PreciseBruteForce
+from idealgas.engine.simulation import Method, Simulation, Stop
+from idealgas.engine.time_driven import TimeDriven
+from idealgas.initial.build import make_gas
+from idealgas.physics.effects import Effects
+from idealgas.run.effects import make_effects
+from idealgas.scene import Scene, parse_scene
+from idealgas.state import Gas
+from idealgas.toml.dump import dump_document
+
+FIRST_STEP = 0.5  # diameters that a disc of root-mean-square speed moves in the longest step
+STEPS = 8  # number of time steps, each half as long as the one before
+PRECISIONS = ("float32", "float64", "double-double")
+EQUILIBRATION = 10.0  # collisions per disc after which a gas counts as equilibrated
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case of the methods compared: a way to run a scene.
+
+    method: name of the method. dt: time step of the time-driven method, time. precision: arithmetic of brute force.
+    """
+
+    method: str
+    dt: float | None = None
+    precision: str | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the case in tables and pictures."""
+        return f"dt = {self.dt:.3g}" if self.dt is not None else self.precision or "event-driven"
+
+    def make(self) -> Method:
+        """Make a new method object of this case."""
+        if self.dt is not None:
+            return TimeDriven(self.dt)
+        return PreciseBruteForce(self.precision) if self.precision else EventDriven()
+
+    def scene(self, scene: Scene, until: float) -> Scene:
+        """Scene that is run in this case until a time, without other stop rules.
+
+        Raises:
+            SceneError: if the scene cannot be run with this method.
+        """
+        ends = (f"run.until={until!r}", "run.events=", "run.collisions_per_disc=", "run.dt=", "run.precision=")
+        settings = [f'run.method="{self.method}"', *ends, "log.events=true", "log.snapshot_every="]
+        if self.dt is not None:
+            settings.append(f"run.dt={self.dt!r}")
+        if self.precision is not None:
+            settings.append(f'run.precision="{self.precision}"')
+        return parse_scene(dump_document(scene), f"{scene.scene.title or 'scene'}, {self.name}", settings)
+
+
+@dataclass(frozen=True)
+class Start:
+    """Equilibrated gas with its effects, from which all cases start."""
+
+    gas: Gas
+    effects: Effects
+
+    def simulation(self, method: Method) -> Simulation:
+        """Simulation from this start with a method and a copy of the effects."""
+        return Simulation(self.gas, method, copy.deepcopy(self.effects))
+
+
+def compared_cases(gas: Gas, precise: bool) -> list[Case]:
+    """Cases for a gas: event-driven, time steps from long to short, with `precise` brute force in all precisions."""
+    speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
+    first = FIRST_STEP * 2 * float(gas.radius.min()) / speed
+    steps = [Case("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]
+    return [
+        Case("event_driven"),
+        *steps,
+        *(Case("brute_force", precision=precision) for precision in PRECISIONS if precise),
+    ]
+
+
+def equilibrated(scene: Scene) -> Start:
+    """Gas of a scene after EQUILIBRATION collisions per disc, event-driven."""
+    gas = make_gas(scene)
+    simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
+    stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
+    simulation.run(stop)
+    gas, effects = simulation.state()
+    return Start(gas, effects)
+
+
+def cpu_seconds(simulation: Simulation, until: float) -> float:
+    """CPU time in seconds that a simulation needs until a time; only the thread of the kernel counts."""
+    started = time.thread_time()
+    simulation.run(pause=until)
+    return time.thread_time() - started

@@ -1,0 +1,144 @@
+"""Errors of the motion in a case: missed collisions, trajectories, and return after reversal of the velocities."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from idealgas.accuracy.cases import Case, Start
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.multiprecision import PreciseBruteForce, make_columns, turn_back
+from idealgas.engine.simulation import NO_STOP, Simulation
+from idealgas.events import EventBatch, Kind, empty_batch
+from idealgas.physics.effects import Effects
+from idealgas.run.layout import row_columns
+from idealgas.state import Gas
+
+STARTS = 200  # largest number of starts from which collisions are compared
+ENOUGH = 5_000  # number of compared collisions that is enough
+BETWEEN = 2.0  # collisions per disc between two starts
+
+
+@dataclass(frozen=True)
+class Missed:
+    """Numbers of first collisions after a common start that were compared, and of those that were missed."""
+
+    compared: int
+    missed: int
+
+    @property
+    def share(self) -> float:
+        """Share of missed collisions."""
+        return self.missed / self.compared if self.compared else math.nan
+
+    @property
+    def error(self) -> float:
+        """Standard error of the share; that of one missed collision if none was missed."""
+        return math.sqrt(max(self.missed, 1)) / self.compared if self.compared else math.nan
+
+
+def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Callable[[float], None]) -> list[Missed]:
+    """Count the collisions that each case misses, compared with the event-driven motion over a mean free time.
+
+    Only collisions of two discs without an earlier collision with other discs are compared. A collision is missed if,
+    in the case, neither disc has collided by the end of the next time step. rate: collisions per disc and time.
+    progress: called with the share of the work that is done.
+    """
+    reference = start.simulation(EventDriven())
+    compared, missed = np.zeros((2, len(cases)), int)
+    number = 0
+    while number < STARTS and compared.max(initial=0) < ENOUGH:
+        gas, effects = reference.state()
+        here = Start(gas, effects)
+        found = first_collisions(here, Case("event_driven"), 1 / rate)
+        for k, case in enumerate(cases):
+            own = first_collisions(here, case, 1 / rate + (case.dt or 0.0))
+            pairs, through = flown_through(found, own, case.dt or 0.0)
+            compared[k] += pairs
+            missed[k] += through
+        number += 1
+        progress(max(number / STARTS, compared.max() / ENOUGH))
+        reference.run(pause=number * BETWEEN / rate)
+    return [Missed(int(c), int(m)) for c, m in zip(compared, missed, strict=True)]
+
+
+def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times (N,) of the first collision of each disc, infinite if there is none, and partners (N,), or -1."""
+    n = len(start.gas)
+    time, partner = np.full(n, math.inf), np.full(n, -1)
+    simulation = start.simulation(case.make())
+    batch = batch_for(start.effects)
+    for count in simulation.slices(NO_STOP, batch, pause=duration):
+        rows = batch.rows(0, count)
+        met = rows.kind == Kind.DISC
+        disc, first = np.unique(rows.disc[met], return_index=True)
+        new = np.isinf(time[disc])
+        time[disc[new]] = rows.time[met][first[new]]
+        partner[disc[new]] = rows.partner[met][first[new]]
+    return time, partner
+
+
+def batch_for(effects: Effects) -> EventBatch:
+    """Empty batch of events with the columns that the effects need."""
+    return empty_batch(columns=row_columns(effects))
+
+
+def flown_through(
+    truth: tuple[np.ndarray, np.ndarray], found: tuple[np.ndarray, np.ndarray], dt: float
+) -> tuple[int, int]:
+    """Numbers of compared and of missed collisions of pairs whose first collision is with each other.
+
+    truth, found: times and partners of first collisions in the event-driven run and in the case. dt: time step.
+    """
+    time, partner = truth
+    i = np.flatnonzero(partner >= 0)
+    i = i[(partner[partner[i]] == i) & (i < partner[i])]
+    j = partner[i]
+    by_then = np.minimum(found[0][i], found[0][j]) > time[i] + dt
+    met = (found[1][i] == j) & (found[1][j] == i)
+    return int((met | by_then).sum()), int((by_then & ~met).sum())
+
+
+def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
+    """Positions (T, N, 2) of the discs at T times, length."""
+    found = []
+    for time in times:
+        simulation.run(pause=time)
+        found.append(simulation.state()[0].position)
+    return np.array(found)
+
+
+def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
+    """Root-mean-square distance over the discs between positions a and b (..., N, 2), in mean diameters."""
+    return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
+
+
+def error_on_return(start: Start, case: Case, duration: float) -> float:
+    """Run, reverse all velocities and run as long again: rms distance from the start, in mean diameters."""
+    if case.precision is not None:
+        return _error_on_precise_return(start, case.precision, duration)
+    simulation = start.simulation(case.make())
+    simulation.run(pause=duration)
+    gas = simulation.state()[0]
+    back = Start(replace(gas, velocity=-gas.velocity), start.effects).simulation(case.make())
+    back.run(pause=duration)
+    return float(rms_distance(back.state()[0].position, start.gas.position, start.gas))
+
+
+def _error_on_precise_return(start: Start, precision: str, duration: float) -> float:
+    """Rms distance from the start after reversal, in mean diameters, with all digits of a precision."""
+    columns = origin = make_columns(start.gas, precision)
+    for _ in range(2):
+        method = PreciseBruteForce(precision, columns)
+        start.simulation(method).run(pause=duration)
+        columns = method.columns
+        turn_back(columns, duration)
+    apart = [_difference(a, b) for a, b in zip(columns[:2], origin[:2], strict=True)]
+    return float(rms_distance(np.column_stack(apart), np.zeros(2), start.gas))
+
+
+def _difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Difference of two columns of nearly equal numbers, as float64."""
+    rest = a.astype(float) - b
+    return rest if rest.ndim == 1 else rest.sum(axis=1)

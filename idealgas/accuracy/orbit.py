@@ -1,0 +1,207 @@
+"""Lifetime of an unstable periodic orbit of three discs, by the number of digits of the arithmetic.
+
+Two discs that collide with the line of centres at 45° to their motion are both deflected by 90°. The middle disc
+collides in turn with the disc on its right and with the disc on its left: after the collision one moves down and one
+up, the sides reflect them, and they collide again. Box sides, radius and speed are free; all other lengths follow from
+the condition that the discs arrive at the same time.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from decimal import Decimal, localcontext
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from idealgas.engine.multiprecision import Columns, PreciseBruteForce, column_of
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.events import empty_batch
+from idealgas.state import Gas
+
+DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-double": 106 * math.log10(2)}
+"""Decimal digits of a number in each precision."""
+
+PLACEMENTS = 25
+SPREAD = 0.25  # relative variation of box sides and radii
+LEAST_ROOM = 0.1  # radii: shortest flights between collisions and before a wall
+MOST_PERIODS = 200  # length of a run; an orbit that is not broken by then never breaks
+AGREEMENT = 1e-9  # largest deviation of the start of a scene from the orbit, relative to the box
+
+LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4
+DANCE = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
+"""Partners (discs or sides) that each disc meets in one period, in order."""
+
+
+class Orbit(NamedTuple):
+    """Start of an orbit at speed 1, with 50 digits; the middle disc moves right, the others left.
+
+    x, y: coordinates of the discs, length. period: time. room: shortest flight, length.
+    """
+
+    x: tuple[Decimal, ...]
+    y: tuple[Decimal, ...]
+    period: Decimal
+    room: Decimal
+
+
+def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
+    """Orbit in a box of width and height `box` at speed 1; it exists if the room for its flights is positive.
+
+    In the code, d is the distance along x and along y of two discs in contact, drop the path of a disc below or above,
+    and flight the path of the middle disc from one partner to the other.
+    """
+    with localcontext() as context:
+        context.prec = 50
+        width, height, r = (Decimal(length) for length in (*box, radius))
+        d = Decimal(2).sqrt() * r
+        drop = height - d - 2 * r
+        flight = (width - height - d) / 3
+        y = (height - d) / 2
+        meeting = width - r - d - flight - drop / 2
+        x = (meeting - flight - d - flight / 2, meeting - flight / 2, meeting + d + flight / 2)
+        return Orbit(x, (y + d, y, y + d), 2 * (drop + flight), min(flight, drop / 2))
+
+
+def is_on_orbit(gas: Gas) -> bool:
+    """Whether positions and velocities of a gas are, within rounding, those of the orbit in its box."""
+    if len(gas) != 3 or np.ptp(gas.radius) or np.ptp(gas.mass):
+        return False
+    orbit = three_disc_orbit(gas.box, float(gas.radius[0]))
+    place = np.array([orbit.x, orbit.y], float).T
+    direction = np.array([(-1, 0), (1, 0), (-1, 0)]) * np.abs(gas.velocity).max()
+    here = np.abs(gas.position - place).max() < AGREEMENT * max(gas.box)
+    return bool(orbit.room > 0 and here and np.abs(gas.velocity - direction).max() < AGREEMENT * direction.max())
+
+
+@dataclass(frozen=True)
+class Survival:
+    """Lifetime of the orbit in one precision: time at speed 1 until the first collision that the exact motion lacks.
+
+    precision: name of the arithmetic. digits: its decimal digits. scene: lifetime in the box of the scene; None if the
+    orbit never broke. times: lifetimes in other boxes, for orbits that broke. unbroken: number of orbits in other boxes
+    that did not break in MOST_PERIODS periods. median: of all lifetimes, with MOST_PERIODS periods for unbroken orbits.
+    """
+
+    precision: str
+    digits: float
+    scene: float | None
+    times: tuple[float, ...]
+    unbroken: int
+    median: float
+
+
+@dataclass(frozen=True)
+class OrbitStudy:
+    """Lifetime of the orbit in every precision.
+
+    period: of the orbit in the scene, time at speed 1. placements: number of other boxes and radii. survivals: lifetime
+    in each precision. time_per_digit: slope of a line through the medians, time per decimal digit.
+    """
+
+    period: float
+    placements: int
+    survivals: tuple[Survival, ...]
+    time_per_digit: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        return asdict(self)
+
+    def sentences(self) -> list[str]:
+        """Results in sentences."""
+        found = self.survivals
+        medians = ", ".join(f"{s.median:.3g} in {s.precision} ({s.digits:.1f} digits)" for s in found)
+        unbroken = sum(s.unbroken for s in found)
+        spread = [max(s.times, default=math.inf) / s.median for s in found]
+        return [
+            f"In exact arithmetic the orbit would last for ever. Median over {self.placements} boxes and radii, in "
+            f"time units at speed 1: {medians}.",
+            f"Each decimal digit carried buys {self.time_per_digit:.3g} time units, the time in which a deviation "
+            "grows tenfold. More digits, not a better method, make the orbit last longer.",
+            f"{unbroken} of {len(found) * self.placements} trials never broke; the luckiest of those that did lasted "
+            f"{max(spread):.2g} times the median. Where roundings happen to cancel, the rounded motion can even be "
+            "exactly periodic: a single placement proves nothing, hence the median.",
+        ]
+
+
+def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
+    """Start of an orbit with all digits of a precision; gas: the same discs in float64."""
+
+    def column(values: tuple[Decimal, ...]) -> np.ndarray:
+        high = np.array([float(value) for value in values])
+        numbers = column_of(high, precision)
+        if numbers.ndim == 2:
+            numbers[:, 1] = [float(value - Decimal(h)) for value, h in zip(values, high.tolist(), strict=True)]
+        return numbers
+
+    rest = (*gas.velocity.T, np.zeros(3), gas.radius, gas.mass, np.array(gas.box))
+    with localcontext() as context:
+        context.prec = 50
+        return Columns(column(orbit.x), column(orbit.y), *(column_of(values, precision) for values in rest))
+
+
+def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
+    """Gas of the discs of an orbit, rounded to float64."""
+    return Gas(
+        box=box,
+        position=np.array([orbit.x, orbit.y], float).T.copy(),
+        velocity=np.array([(-1.0, 0.0), (1.0, 0.0), (-1.0, 0.0)]),
+        radius=np.full(3, radius),
+        mass=np.ones(3),
+        species=np.zeros(3, np.uint16),
+        species_names=("disc",),
+    )
+
+
+def survival(box: tuple[float, float], radius: float, precision: str) -> float:
+    """Time until the first collision that the exact motion lacks; infinite if there is none in MOST_PERIODS periods."""
+    orbit = three_disc_orbit(box, radius)
+    gas = orbit_gas(orbit, box, radius)
+    simulation = Simulation(gas, PreciseBruteForce(precision, columns_at(orbit, gas, precision)))
+    most = MOST_PERIODS * sum(map(len, DANCE))
+    batch = empty_batch(most + 2)
+    rows = batch.rows(0, simulation.advance(Stop(time=MOST_PERIODS * float(orbit.period)), batch))
+    first = math.inf
+    for disc, dance in enumerate(DANCE):
+        own = rows.disc == disc
+        partner = rows.partner[own]
+        strange = np.flatnonzero(partner != np.resize(dance, len(partner)))
+        if len(strange):
+            first = min(first, float(rows.time[own][strange[0]]))
+    return first
+
+
+def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, float], float]]:
+    """Random boxes and radii near those of a gas for which the orbit exists."""
+    random = np.random.default_rng(seed)
+    found: list[tuple[tuple[float, float], float]] = []
+    while len(found) < number:
+        sizes = np.array([*gas.box, gas.radius[0]]) * random.uniform(1 - SPREAD, 1 + SPREAD, 3)
+        width, height, radius = sizes.tolist()
+        if three_disc_orbit((width, height), radius).room > LEAST_ROOM * radius:
+            found.append(((width, height), radius))
+    return found
+
+
+def study_orbit(
+    gas: Gas, number: int = PLACEMENTS, seed: int = 0, progress: Callable[[str, float], None] = lambda what, share: None
+) -> OrbitStudy:
+    """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in every precision.
+
+    gas: start on the orbit (`is_on_orbit`). seed: of the random boxes. progress: called with the name of the work that
+    is being done and its share that is done.
+    """
+    boxes = placements(gas, number, seed)
+    period = float(three_disc_orbit(gas.box, float(gas.radius[0])).period)
+    found = []
+    for k, (precision, digits) in enumerate(DIGITS.items()):
+        own, *times = (survival(box, radius, precision) for box, radius in [(gas.box, float(gas.radius[0])), *boxes])
+        broken = tuple(t for t in times if t < math.inf)
+        unbroken = number - len(broken)
+        here = own if own < math.inf else None
+        median = float(np.median(np.minimum(times, MOST_PERIODS * period)))
+        found.append(Survival(precision, digits, here, broken, unbroken, median))
+        progress(f"orbit in {precision}", (k + 1) / len(DIGITS))
+    slope = float(np.polyfit([s.digits for s in found], [s.median for s in found], 1)[0])
+    return OrbitStudy(period, number, tuple(found), slope)

@@ -1,0 +1,242 @@
+"""Results of a study of accuracy: rows for tables and files, and sentences made from the numbers."""
+
+import csv
+import json
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from idealgas.accuracy.orbit import OrbitStudy
+from idealgas.accuracy.study import Accuracy, Row
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.style import save
+from idealgas.files import check_output, storage_error, written
+
+TARGET = 0.01  # relative error in the sentences on its cost
+CLEAR = 3.0  # standard errors from which on a bias is significant
+LARGEST = 0.03  # largest bias that is taken as proportional to the time step
+LOST = 0.1  # rms distance in diameters from which on a trajectory is lost
+
+
+def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
+    """Row of the CSV file for one case; None where a number was not measured."""
+    averages, at = row.averages, nearest(found.collisions, 1.0)
+    return {
+        "case": row.case.name,
+        "method": row.case.method,
+        "dt": row.case.dt,
+        "precision": row.case.precision,
+        "cpu_s_per_time": row.timing.median,
+        "cpu_s_per_time_least": row.timing.least,
+        "cpu_s_per_time_most": row.timing.most,
+        "cpu_s_per_collision": number(row.timing.per_collision),
+        **with_error("rate_bias", row.rate),
+        "missed_share": number(row.missed.share) if row.missed else None,
+        "missed": row.missed.missed if row.missed else None,
+        "missed_of": row.missed.compared if row.missed else None,
+        **with_error("z_pairs_bias", row.z_pairs),
+        **with_error("z_walls_bias", row.z_walls),
+        "ks_distance": averages.distance if averages else None,
+        "ks_chance": averages.noise if averages else None,
+        "energy_drift": averages.drift if averages else None,
+        "deepest_overlap": averages.overlap if averages else None,
+        "trajectory_error": None if row.trajectory is None else number(row.trajectory[at]),
+        "trajectory_lost_after": lost_after(row, found),
+        "way_back_error": row.way_back,
+    }
+
+
+def with_error(name: str, estimate: Estimate | None) -> dict[str, float | None]:
+    """Columns of an estimate: value and standard error."""
+    if estimate is None:
+        return {name: None, f"{name}_error": None}
+    return {name: number(estimate.value), f"{name}_error": number(estimate.standard_error)}
+
+
+def number(value: float) -> float | None:
+    """The value, or None if it is not finite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def nearest(values: np.ndarray, target: float) -> int:
+    """Index of the value nearest to a target; 0 if there are none."""
+    return int(np.abs(values - target).argmin()) if len(values) else 0
+
+
+def lost_after(row: Row, found: Accuracy) -> float | None:
+    """Collisions per disc after which the rms error of the positions is LOST diameters; None if it never is."""
+    if row.trajectory is None or not (gone := row.trajectory > LOST).any():
+        return None
+    return float(found.collisions[int(gone.argmax())])
+
+
+# sentences
+
+
+def sentences(found: Accuracy) -> list[str]:
+    """Results in sentences."""
+    said = [_of_rate(found), _of_pressure(found), _of_missed(found), *_of_motion(found)]
+    if found.left_out:
+        said.append(f"No trajectories were compared: {found.left_out}.")
+    return [sentence for sentence in said if sentence]
+
+
+def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) -> tuple[float, float] | None:
+    """Coefficient a of bias = a dt with its standard error, from significant biases up to LARGEST; None without any."""
+    estimates = [(row.case.dt or 0.0, bias(row)) for row in rows]
+    points = [(dt, found) for dt, found in estimates if found is not None and abs(found.value) < LARGEST]
+    if not any(abs(found.value) > CLEAR * found.standard_error > 0 for _, found in points):
+        return None
+    dt, value, error = np.array([(dt, found.value, found.standard_error) for dt, found in points]).T
+    weight = (dt / error) ** 2
+    return float((weight * value / dt).sum() / weight.sum()), float(1 / math.sqrt(weight.sum()))
+
+
+def cost_of(dt: float, rows: list[Row]) -> float:
+    """CPU seconds per unit of simulated time for a time step dt, by a power law between measured time steps."""
+    steps = np.log([row.case.dt or 0.0 for row in rows][::-1])
+    costs = np.log([row.timing.median for row in rows][::-1])
+    k = int(np.clip(np.searchsorted(steps, math.log(dt)), 1, len(steps) - 1))
+    slope = (costs[k] - costs[k - 1]) / (steps[k] - steps[k - 1])
+    return float(math.exp(costs[k] + slope * (math.log(dt) - steps[k])))
+
+
+def price(found: Accuracy, what: str, bias: Callable[[Row], Estimate | None]) -> str:
+    """Sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
+    if (fit := linear_coefficient(found.steps, bias)) is None:
+        return ""
+    dt = TARGET / abs(fit[0])
+    cost, finer = cost_of(dt, found.steps), cost_of(dt / 10, found.steps)
+    times = cost / found.event_driven.timing.median
+    return (
+        f"To get {what} right to {TARGET:.0%} by time steps takes dt = {dt:.2g} and {times:.2g} times the time of the "
+        f"event-driven run, which has no such error (bias = ({fit[0]:+.2g} ± {fit[1]:.1g}) dt); the next factor of 10 "
+        f"in accuracy costs a factor of {finer / cost:.2g}."
+    )
+
+
+def _of_rate(found: Accuracy) -> str:
+    return price(found, "the collision rate", lambda row: row.rate)
+
+
+def _of_pressure(found: Accuracy) -> str:
+    exact = found.event_driven.z_pairs
+    if exact is None:
+        return ""
+    own = (
+        f"The event-driven pressure is {exact.value:+.2%} ± {exact.standard_error:.2%} from theory. "
+        if exact.standard_error > 0
+        else ""
+    )
+    return own + price(found, "the pressure of the pairs", lambda row: row.z_pairs)
+
+
+def _of_missed(found: Accuracy) -> str:
+    counts = [(row.case.dt or 0.0, row.missed) for row in found.steps if row.missed and row.missed.compared]
+    if not counts:
+        return ""
+    (coarse, most), (fine, least) = counts[0], counts[-1]
+    steps, shares = np.array([(dt, m.share) for dt, m in counts if m.missed >= 10]).reshape(-1, 2).T
+    law = ""
+    if len(steps) > 1:
+        slope = float(np.polyfit(np.log(steps), np.log(shares), 1)[0])
+        law = f", in proportion to dt^{slope:.1f} (theory for a pair alone: dt^2)"
+    return (
+        f"At dt = {coarse:.2g} discs fly straight through each other in {most.share:.2%} of the collisions, at dt = "
+        f"{fine:.2g} in {least.share:.2%} ± {least.error:.2%}{law}."
+    )
+
+
+def _of_motion(found: Accuracy) -> list[str]:
+    if not len(found.collisions):
+        return []
+    last = found.collisions[-1]
+    finest = found.steps[-1]
+
+    def life(row: Row) -> str:
+        lost = lost_after(row, found)
+        return f"{lost:.2g}" if lost is not None else f"more than {last:.2g}"
+
+    single, double, twice = found.precisions
+    return [
+        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions a disc "
+        f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
+        f"with dt = {finest.case.dt:.2g}. The truth is the double-double motion of the whole gas, followed for "
+        f"{last:.2g} collisions a disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times "
+        "the event-driven time.",
+        f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "
+        "precision by the same method, whose motion is that of the event-driven run.",
+    ]
+
+
+# files
+
+
+def accuracy_dict(found: Accuracy) -> dict[str, Any]:
+    """Plain values, ready for JSON: the rows of the CSV file, the trajectories and the sentences."""
+    rows = []
+    for row in found.rows:
+        error = None if row.trajectory is None else [number(value) for value in row.trajectory]
+        rows.append(flat_row(row, found) | {"trajectory": error})
+    return {
+        "title": found.title,
+        "number": found.number,
+        "until": found.until,
+        "repeats": found.repeats,
+        "collisions_per_disc": found.collisions.tolist(),
+        "rows": rows,
+        "sentences": sentences(found),
+    }
+
+
+def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
+    """Plain values by name, ready for JSON."""
+    return asdict(found) | {"sentences": found.sentences()}
+
+
+def outputs(
+    path: str | os.PathLike[str], name: str, pictures: Sequence[str] = ("",), force: bool = False
+) -> list[Path]:
+    """Paths NAME.csv, NAME.json and a picture NAME….png for each ending, in a folder that is made if it is not there.
+
+    Raises:
+        OutputError: if the folder cannot be made, or one of the files not be written.
+    """
+    folder = Path(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise storage_error(folder, error) from error
+    paths = [folder / f"{name}{end}" for end in (".csv", ".json", *(f"{ending}.png" for ending in pictures))]
+    for found in paths:
+        check_output(found, found.suffix, force)
+    return paths
+
+
+def write_files(
+    paths: Sequence[Path],
+    result: dict[str, Any],
+    rows: list[dict[str, Any]],
+    figures: Sequence[Figure],
+    force: bool = False,
+) -> None:
+    """Write the files that `outputs` gave; existing ones are replaced only with `force`.
+
+    Raises:
+        OutputError: if a file cannot be written.
+    """
+    table, numbers, *pictures = paths
+    with written(table, ".csv", force) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]), restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    with written(numbers, ".json", force) as part:
+        part.write_text(json.dumps(result, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    for figure, picture in zip(figures, pictures, strict=True):
+        save(figure, picture, force)

@@ -1,0 +1,257 @@
+"""Errors and CPU time of every case of the methods compared, measured in one process."""
+
+import math
+import statistics
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from idealgas.accuracy.averages import Averages, measure_averages
+from idealgas.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated
+from idealgas.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.errors import UserError
+from idealgas.initial.build import make_gas
+from idealgas.log.summary import Summary
+from idealgas.scene import Scene
+from idealgas.state import Gas
+
+SHORTEST_TIMING = 0.1  # least CPU seconds of a timed run
+LONGEST_RUN = 40.0  # most CPU seconds of a case for its averages, and of the reference trajectories
+MOST_PRECISE = 4000  # largest number of discs for brute force
+FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
+"""Collisions per disc at which trajectories are compared; at the last one no digit of a float64 is correct."""
+
+Progress = Callable[[str, float], None]
+"""Function that is called with the name of the work that is being done and its share that is done."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """CPU time of a case.
+
+    median, least, most: CPU seconds per unit of simulated time over the repeats. collisions: pair collisions per unit
+    of simulated time.
+    """
+
+    median: float
+    least: float
+    most: float
+    collisions: float
+
+    @property
+    def per_collision(self) -> float:
+        """CPU seconds per pair collision."""
+        return self.median / self.collisions if self.collisions else math.nan
+
+
+@dataclass(frozen=True)
+class Row:
+    """CPU time and errors of one case; None where an error was not measured.
+
+    case: method, time step and precision. timing: CPU time. averages: averages of the whole run. rate: relative bias of
+    the collision rate against the event-driven run. z_pairs, z_walls: relative bias of the pressure, by the virial of
+    pairs and of walls, against theory. missed: missed collisions. trajectory: (T,), rms distance from the reference
+    trajectories, in diameters. way_back: rms distance from the start after reversal of all velocities, in diameters.
+    """
+
+    case: Case
+    timing: Timing
+    averages: Averages | None
+    rate: Estimate | None
+    z_pairs: Estimate | None
+    z_walls: Estimate | None
+    missed: Missed | None
+    trajectory: np.ndarray | None
+    way_back: float | None
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """CPU time and errors of all cases for one scene.
+
+    title: of the scene. number: of discs. until: simulated time of the runs for averages. repeats: number of timings of
+    each case. collisions: (T,), collisions per disc at which trajectories were compared; empty if they were not.
+    left_out: reason why brute force in several precisions was not run; empty if it was. rows: one for each case.
+    """
+
+    title: str
+    number: int
+    until: float
+    repeats: int
+    collisions: np.ndarray
+    left_out: str
+    rows: tuple[Row, ...]
+
+    @property
+    def event_driven(self) -> Row:
+        """Row of the event-driven run."""
+        return self.rows[0]
+
+    @property
+    def steps(self) -> list[Row]:
+        """Rows of the time steps, from long to short."""
+        return [row for row in self.rows if row.case.dt is not None]
+
+    @property
+    def precisions(self) -> list[Row]:
+        """Rows of brute force, from few digits to many."""
+        return [row for row in self.rows if row.case.precision is not None]
+
+
+def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda what, share: None) -> Accuracy:
+    """Run a scene in all cases and measure CPU time and errors.
+
+    Raises:
+        UserError: if the scene cannot be run in time steps, or if no discs collide in it.
+    """
+    check(scene)
+    progress("equilibrating the gas", 0.0)
+    start = equilibrated(scene)
+    left_out = why_not_precise(scene, start.gas)
+    cases = compared_cases(start.gas, precise=not left_out)
+    timings = measure_timings(start, cases, repeats, progress)
+    averages, until = _all_averages(scene, cases, timings, progress)
+    truth = averages[0]
+    assert truth is not None
+    rate = 2 * truth.rate.value / len(start.gas)
+    steps = [case for case in cases if case.dt is not None]
+    missed = dict(
+        zip(steps, count_missed(start, steps, rate, lambda share: progress("missed collisions", share)), strict=True)
+    )
+    collisions, trajectories, ways_back = _motion(start, cases, timings, rate, progress)
+    rows = [
+        Row(
+            case, timing, found,
+            rate=None if found is None or k == 0 else relative(found.rate, truth.rate),
+            z_pairs=None if found is None else from_theory(found.z_pairs),
+            z_walls=None if found is None else from_theory(found.z_walls),
+            missed=missed.get(case),
+            trajectory=trajectories.get(case),
+            way_back=ways_back.get(case),
+        )
+        for k, (case, timing, found) in enumerate(zip(cases, timings, averages, strict=True))
+    ]  # fmt: skip
+    return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, tuple(rows))
+
+
+def check(scene: Scene) -> None:
+    """Check that a scene can be run in time steps and has at least two discs.
+
+    Raises:
+        UserError: if not.
+    """
+    if scene.run.method == "monte_carlo":
+        raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
+    if strange := scene.lacking("in_steps"):
+        raise UserError(f"nothing to compare: time steps know nothing of {' and '.join(strange)}")
+    if len(make_gas(scene)) < 2:
+        raise UserError("nothing to compare: one disc alone collides with none")
+
+
+def why_not_precise(scene: Scene, gas: Gas) -> str:
+    """Reason why a gas cannot be run in all precisions; empty if it can."""
+    if scene.effects:
+        return f"no other precision than float64 knows of {', '.join(scene.effects)}"
+    if len(gas) > MOST_PRECISE:
+        return f"brute force takes too long with more than {MOST_PRECISE} discs"
+    return ""
+
+
+def relative(value: Estimate, reference: Estimate) -> Estimate:
+    """Relative deviation value/reference - 1 of two independent estimates."""
+    ratio = value.value / reference.value
+    error = ratio * math.hypot(value.standard_error / value.value, reference.standard_error / reference.value)
+    return Estimate(ratio - 1, error, math.inf)
+
+
+def from_theory(value: Estimate | None) -> Estimate | None:
+    """Relative deviation value/theory - 1 of an estimate, with the errors of both; None without theory."""
+    if value is None or value.theory is None or not math.isfinite(value.theory):
+        return None
+    error = math.hypot(value.standard_error, value.theory_error) / value.theory
+    return Estimate(value.value / value.theory - 1, error, math.inf)
+
+
+def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
+    """Measure the CPU time of all cases in turn; each run is long enough to be timed (SHORTEST_TIMING)."""
+    durations = []
+    for k, case in enumerate(cases):
+        progress("compiling and first timing", k / len(cases))
+        durations.append(_long_enough(start, case))
+    seconds: list[list[float]] = [[] for _ in cases]
+    rates = []
+    for repeat in range(repeats):
+        for k, (case, duration) in enumerate(zip(cases, durations, strict=True)):
+            progress("timing", (repeat + k / len(cases)) / repeats)
+            simulation = start.simulation(case.make())
+            seconds[k].append(cpu_seconds(simulation, duration) / duration)
+            if repeat == 0:
+                rates.append(simulation.counters.disc_collisions / duration)
+    return [
+        Timing(statistics.median(each), min(each), max(each), rate) for each, rate in zip(seconds, rates, strict=True)
+    ]
+
+
+def _long_enough(start: Start, case: Case) -> float:
+    """Simulated time of a run of SHORTEST_TIMING CPU seconds; it also compiles the machine code."""
+    speed = float(np.hypot(*start.gas.velocity.T).mean())
+    duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
+    cpu_seconds(start.simulation(case.make()), duration)
+    simulation = start.simulation(case.make())
+    while cpu_seconds(simulation, duration) < SHORTEST_TIMING:
+        duration *= 2
+        simulation = start.simulation(case.make())
+    return duration
+
+
+def _all_averages(
+    scene: Scene, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress
+) -> tuple[list[Averages | None], float]:
+    """Averages of the whole scene in all cases that are fast enough, and the simulated time of the runs.
+
+    The event-driven run, which is the first, determines this time.
+    """
+    found: list[Averages | None] = []
+    with tempfile.TemporaryDirectory(prefix="idealgas-accuracy-") as folder:
+        path = Path(folder) / "run.h5"
+
+        def run(scene: Scene, case: Case, window: float | None = None) -> tuple[Averages, Summary]:
+            return measure_averages(scene, path, window, lambda share: progress(f"averages, {case.name}", share))
+
+        own = scene.model_copy(
+            update={"run": scene.run.model_copy(update={"method": "event_driven", "dt": None, "precision": None})}
+        )
+        first, summary = run(own, cases[0])
+        found.append(first)
+        for case, timing in zip(cases[1:], timings[1:], strict=True):
+            quick = timing.median * summary.end_time < LONGEST_RUN and case.precision != "float64"  # the same motion
+            found.append(run(case.scene(scene, summary.end_time), case, first.window)[0] if quick else None)
+    return found, summary.end_time
+
+
+def _motion(
+    start: Start, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
+) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
+    """Errors of the motion: collisions per disc at which they are measured, and rms distances in diameters by case.
+
+    The distances are those from the double-double motion, and those from the start after reversal of all velocities.
+    """
+    if cases[-1].precision is None:
+        return np.empty(0), {}, {}
+    reference, timing = cases[-1], timings[-1]
+    longest = LONGEST_RUN / 2 / timing.median * rate
+    collisions = np.array([count for count in FOLLOWED if count <= max(longest, FOLLOWED[0])])
+    times = (collisions / rate).tolist()
+    progress("reference trajectory, double-double", 0.0)
+    truth = positions(start.simulation(reference.make()), times)
+    trajectories, ways_back = {}, {}
+    for k, case in enumerate(cases):
+        progress("trajectories and ways back", k / len(cases))
+        if case is not reference:
+            trajectories[case] = rms_distance(positions(start.simulation(case.make()), times), truth, start.gas)
+        ways_back[case] = error_on_return(start, case, min(times[-1], 1 / rate))
+    return collisions, trajectories, ways_back

@@ -1,0 +1,116 @@
+"""Memory of discs whose events come soon, fetched while others happen: for a gas too large for the caches.
+
+The disc that becomes the first of its part of the schedule has an event soon: of 8 to 64 parts, two levels below the
+root, some ten events later. (Right below the root there may be two, and the first of one is often next.) Each step
+needs what the one before has fetched, so it is done an event later: first the disc's record, prediction and place in
+the schedule; then the cells around it, and its partner; then the discs in the cells that its event will ask.
+"""
+
+import numpy as np
+
+from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
+from idealgas.jit import aligned, inline
+from idealgas.prefetch import fetch
+
+FROM = 6_000
+"""Least number of discs at which that is faster."""
+
+NEAR = 32_768
+"""Most discs for which the parts right below the root do, if there are three: memory is not so far then."""
+
+U = np.uintp
+
+
+def make_lookahead(n: int, levels: int) -> np.ndarray | None:
+    """Indices of two discs for which memory is being fetched, and level of the parts; None for a gas of few discs.
+
+    levels: of the schedule, whose last is the root.
+    """
+    if n < FROM:
+        return None
+    below_root = levels - 2
+    enough = n <= NEAR and n > 2 * 8**below_root
+    lookahead: np.ndarray = aligned(3, np.dtype("i8"))
+    lookahead[2] = below_root if enough else max(below_root - 1, 0)
+    return lookahead
+
+
+@inline
+def first_of_part(tree, level, i):
+    """Index of the disc with the next event in the part of the tree, a node of that level, that has disc i."""
+    return np.int64(tree.winner[U(tree.start[U(level)] + (i >> (3 * level)))])
+
+
+@inline
+def fetch_disc(tree, record, state, i):
+    """Fetch disc i's record, prediction, link and place in the schedule."""
+    fetch(record, U(i))
+    fetch(state.prediction, U(i))
+    fetch(state.cells.link, U(i))
+    parent = U(tree.start[U(1)] + (i >> 3))
+    fetch(tree.key, U(i))
+    fetch(tree.winner, U(i))
+    fetch(tree.key, parent)
+    fetch(tree.winner, parent)
+
+
+@inline
+def cell_around(cells, disc):
+    """Index of a disc's cell, also while another thread moves it across a periodic side."""
+    row = min(max(np.int64(disc.row), np.int64(1)), cells.rows - 2)
+    return row * cells.columns + min(max(np.int64(disc.column), np.int64(1)), cells.columns - 2)
+
+
+@inline
+def fetch_cells(cells, disc):
+    """Fetch the cells around a disc, those that it may come within reach of included."""
+    cell = cell_around(cells, disc)
+    for row in range(-2, 3):
+        fetch(cells.head, U(cell + row * cells.columns))
+
+
+@inline
+def fetch_first_of_three(cells, record, cell, stride):
+    """Fetch the first discs of three cells in a row or column."""
+    last = cells.head.shape[0] - 1
+    for step in range(3):
+        j = U(max(cells.head[U(min(max(cell + step * stride, 0), last))], 0))
+        fetch(record, j)
+        fetch(cells.link, j)
+
+
+@inline
+def fetch_block(cells, record, cell):
+    """Fetch the first discs of a cell and of the eight around it."""
+    for row in range(-1, 2):
+        fetch_first_of_three(cells, record, cell + row * cells.columns - 1, 1)
+
+
+@inline
+def fetch_candidates(cells, record, disc, prediction):
+    """Fetch the first discs of the cells that a disc's next event will ask."""
+    cell = cell_around(cells, disc)
+    code = prediction.crossing_code
+    if prediction.crossing < prediction.contact and code < SIDE_OF_BOX:
+        ahead = 2 if code & 1 else -2  # cells that come within reach
+        if code >= 2:
+            fetch_first_of_three(cells, record, cell + ahead * cells.columns - 1, 1)
+        else:
+            fetch_first_of_three(cells, record, cell + ahead - cells.columns, cells.columns)
+    else:
+        fetch_block(cells, record, cell)
+        if prediction.partner >= 0:
+            fetch_block(cells, record, cell_around(cells, record[U(prediction.partner)]))
+
+
+@inline
+def fetch_ahead(lookahead, record, state, i):
+    """Fetch memory for the disc that comes first in disc i's part now that this was withdrawn, and for those before."""
+    if lookahead is not None:
+        third, second = lookahead[0], lookahead[1]
+        first = min(first_of_part(state.tree, lookahead[2], i), record.shape[0] - 1)  # a piston is no disc
+        lookahead[0], lookahead[1] = second, first
+        fetch_disc(state.tree, record, state, first)
+        fetch_cells(state.cells, record[U(second)])
+        fetch_disc(state.tree, record, state, max(np.int64(state.prediction[U(second)].partner), np.int64(0)))
+        fetch_candidates(state.cells, record, record[U(third)], state.prediction[U(third)])

@@ -1,0 +1,162 @@
+"""The discs of a scene as arrays: the one place for their dtypes and shapes."""
+
+import math
+
+import numpy as np
+
+from idealgas.initial.contacts import static_contact_issues
+from idealgas.scene import Scene, SceneError, Species
+from idealgas.scene.walls import walls_inside
+from idealgas.state import Gas
+from idealgas.toml.error import Issue
+
+
+def make_gas(scene: Scene) -> Gas:
+    """Discs of a scene at time 0: the explicit ones have the first ids, then each species in the order of the file.
+
+    Each species of the gas has one radius and one mass: explicit discs are the species "disc" or, if they differ, "disc
+    1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or if one is in static contact
+    with a wall or the piston to which it is pressed.
+    """
+    radius, mass, species, names = disc_constants(scene)
+    gas = Gas(
+        box=scene.box.size,
+        position=_positions(scene, radius),
+        velocity=np.concatenate(
+            [
+                np.array([disc.velocity for disc in scene.disc]).reshape(-1, 2),
+                *(_velocities(s, stream(scene.scene.seed, f"velocities {s.name}")) for s in scene.species),
+            ]
+        ),
+        radius=radius,
+        mass=mass,
+        species=species,
+        species_names=names,
+    )
+    if issues := list(static_contact_issues(scene, gas)):
+        raise SceneError(scene.report(issues))
+    return gas
+
+
+def number_of_discs(scene: Scene) -> int:
+    """Number N of discs of a scene."""
+    return len(scene.disc) + sum(species.count for species in scene.species)
+
+
+def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...]]:
+    """Radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
+    kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
+    count = [s.count for s in scene.species]
+    radius, mass = (np.repeat([getattr(s, name) for s in scene.species], count) for name in ("radius", "mass"))
+    number = {kind: k for k, kind in enumerate(kinds)}
+    explicit = np.array([number[disc.radius, disc.mass] for disc in scene.disc], np.uint16)
+    others = np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count)
+    names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
+    return (
+        np.concatenate(([disc.radius for disc in scene.disc], radius)),
+        np.concatenate(([disc.mass for disc in scene.disc], mass)),
+        np.concatenate((explicit, others)),
+        (*names, *(s.name for s in scene.species)),
+    )
+
+
+def stream(seed: int, use: str) -> np.random.Generator:
+    """Random numbers for one use, independent of what else the scene needs random numbers for."""
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))
+
+
+def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
+    """Velocities (count, 2) of a species, length/time; those of a temperature T have the kinetic energy count * T.
+
+    Their total momentum is 0 if there are two discs or more.
+    """
+    n = species.count
+    if species.velocities is not None:
+        return np.array(species.velocities)
+    if species.speed is not None:
+        angle = 2 * np.pi * random.random(n)
+        return species.speed * np.column_stack((np.cos(angle), np.sin(angle)))
+    velocity = random.standard_normal((n, 2))
+    if n > 1:
+        velocity -= velocity.mean(axis=0)
+    mean_square = (velocity**2).sum() / n
+    return velocity * np.sqrt(2 * (species.temperature or 0.0) / (species.mass * mean_square))
+
+
+def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
+    """Positions (N, 2), length; those of discs that are compressed from where smaller discs are placed at random."""
+    if not any(s.placement == "compressed" for s in scene.species):
+        return _placed(scene, radius)
+    from idealgas.initial.compression import compress, loose_scale
+
+    scale = loose_scale(radius, scene.box.size)
+    position = _placed(scene, radius * scale)
+    reached = compress(position, radius, scene.box.size, scale, stream(scene.scene.seed, "compression"))
+    if reached < 1:
+        dense = math.pi * float(radius @ radius) * reached**2 / (scene.box.size[0] * scene.box.size[1])
+        got = f"jammed at a packing fraction of {dense:.4g}"
+        raise _no_room(scene, 0, "by compression", got, 'fewer or smaller discs, or placement = "triangular"')
+    return position
+
+
+def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
+    """Positions (N, 2), length: explicit discs first, then lattices, one for each region, then discs at random."""
+    from idealgas.initial import placement  # compiled code, which a reader of logs does not need
+
+    box, periodic = scene.box, scene.properties.periodic
+    space = scene.room
+    walls = np.array([(*w.start, *w.end) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 4)
+    bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
+    grid = placement.make_grid(box.size, radius, periodic, walls)
+    random = stream(scene.scene.seed, "placement")
+    ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
+    if scene.disc:
+        position[ids[0]] = [disc.position for disc in scene.disc]
+        placement.insert(grid, position, radius, ids[0])
+    lattices: dict[tuple[float, ...], list[int]] = {}
+    triangular: list[int] = []
+    at_random: list[int] = []
+    for k, s in enumerate(scene.species):
+        x0, y0, x1, y1 = region = s.region or space
+        bounds[ids[k + 1]] = x0 + s.radius, y0 + s.radius, x1 - s.radius, y1 - s.radius
+        if s.placement == "lattice":
+            lattices.setdefault(region, []).append(k)
+        elif s.placement == "triangular":
+            triangular.append(k)
+        else:
+            at_random.append(k)
+            for axis in (a for a in range(2) if periodic[a] and s.region is None):
+                bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
+    for members in lattices.values():
+        chosen = np.concatenate([ids[k + 1] for k in members])
+        if len(members) > 1:
+            random.shuffle(chosen)
+        largest = bounds[chosen[radius[chosen].argmax()]]
+        if not placement.insert_on_lattice(grid, position, radius, largest, chosen):
+            raise _no_room(
+                scene, members[0], "on a lattice", f"{len(chosen)} discs", "fewer or smaller discs, or more room"
+            )
+    if lattice := scene.lattice:
+        chosen = np.concatenate([ids[k + 1] for k in triangular])
+        if len(triangular) > 1:
+            random.shuffle(chosen)
+        position[chosen] = placement.lattice_sites(lattice)
+        if placement.insert(grid, position, radius, chosen) < len(chosen):
+            raise _no_room(
+                scene, triangular[0], "on a triangular lattice", f"{len(chosen)} discs", "no others in its way"
+            )
+    if at_random:
+        chosen = np.concatenate([ids[k + 1] for k in sorted(at_random, key=lambda k: -scene.species[k].radius)])
+        patience = max(placement.PATIENCE * len(chosen), placement.LEAST_PATIENCE)
+        placed = placement.insert_randomly(grid, position, radius, bounds, chosen, random, patience)
+        if placed < len(chosen):
+            k = next(k for k in at_random if chosen[placed] in ids[k + 1])
+            got = f"{len(chosen)} discs, {placed} placed"
+            raise _no_room(scene, k, "at random", got, 'fewer or smaller discs, or placement = "lattice"')
+    return position
+
+
+def _no_room(scene: Scene, species: int, how: str, got: str, allowed: str) -> SceneError:
+    """Error of a species for whose discs there is not enough room."""
+    keys = (*(("species", species, key) for key in ("count", "radius", "region")), ("box", "size"))
+    return SceneError(scene.report([Issue(keys, f"no room for all discs {how}", got, allowed)]))

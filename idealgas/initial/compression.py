@@ -1,0 +1,205 @@
+"""Dense states by compression: discs collide while their radii grow at a constant rate, until they have their size.
+
+This is the algorithm of Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990), in a periodic box, by events and
+without randomness beyond the velocities at its start. It is a preparation: it comes before time 0 of a run, all discs
+have the same mass in it, velocities are scaled back again and again, and no trace but the positions is left of it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.jit import inline, njit
+from idealgas.physics.periodic import nearest_image
+
+LOOSE = 0.5
+"""Packing fraction at which the compression starts, from random positions."""
+
+RATE = 5e-3
+"""Growth of the mean radius per time, in units of the root-mean-square of a component of the velocity."""
+
+GAP = 1e-9
+"""Part of the radius by which discs grow beyond it, so that none overlaps by rounding at the start of the run."""
+
+SLACK = 0.3
+"""Width of the border in which neighbours are listed, in diameters of the largest disc."""
+
+RESCALED, PATIENCE = 4, 5_000
+"""Collisions per disc after which velocities are scaled back, and after which the discs count as jammed."""
+
+
+class Growing(NamedTuple):
+    """N discs that grow. Times count from the last rest, when all discs were at `origin`.
+
+    Attributes:
+        position: (N, 2) f8, where each disc was at its last collision, length.
+        velocity: (N, 2) f8, length/time.
+        time: (N,) f8, time of the last collision.
+        origin: (N, 2) f8, position at the last rest, length.
+        radius: (N,) f8, radius at the end of the compression, length.
+        period: (2,) f8, width and height of the box, length.
+        first: (N + 1,) i8, where the neighbours of each disc begin in `neighbour`.
+        neighbour: i8, discs that a disc may meet before the next rest.
+        next_time: (N,) f8, time of the next event of each disc.
+        partner: (N,) i8, disc that it then collides with; -1 if it then may leave the range of its neighbours.
+        collisions: (N,) i8, number of collisions of each disc.
+        known: (N,) i8, number of collisions of the partner for which the event was predicted.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    time: np.ndarray
+    origin: np.ndarray
+    radius: np.ndarray
+    period: np.ndarray
+    first: np.ndarray
+    neighbour: np.ndarray
+    next_time: np.ndarray
+    partner: np.ndarray
+    collisions: np.ndarray
+    known: np.ndarray
+
+
+def loose_scale(radius: np.ndarray, box: tuple[float, float]) -> float:
+    """Part of their radii that discs have at the start of the compression; 1 if they are loose as they are."""
+    return min(math.sqrt(LOOSE * box[0] * box[1] / (math.pi * float(radius @ radius))), 1.0)
+
+
+def compress(
+    position: np.ndarray, radius: np.ndarray, box: tuple[float, float], scale: float, random: np.random.Generator
+) -> float:
+    """Let discs of radii scale * radius grow to their radii; return the part of them that they reach before they jam.
+
+    position: (N, 2), changed in place, length. radius: (N,), length. random: for the velocities at the start.
+    """
+    n, period = len(radius), np.array(box)
+    velocity, rate = random.standard_normal((n, 2)), RATE / float(radius.mean())
+    done, end = 0, 1 + GAP
+    while scale < end and done < PATIENCE * n:
+        velocity -= velocity.mean(axis=0)
+        velocity /= math.sqrt(float((velocity**2).mean()))
+        slack = min(SLACK * 2 * float(radius.max()), (min(box) / 2 - 2 * float(radius.max())) / 2)
+        reach = 2 * float(radius.max()) * scale + 2 * slack  # discs come nearer by `slack`, and grow by as much
+        longest = min((end - scale) / rate, slack / (2 * float(radius.max()) * rate))
+        discs = _at_rest(position, velocity, radius, period, reach)
+        events, time = _grow(discs, scale, rate, slack / 2, longest, RESCALED * n)
+        moved = discs.position + velocity * (time - discs.time)[:, None]
+        position[:] = np.minimum(moved % period, np.nextafter(period, 0.0))
+        scale = end if time == (end - scale) / rate else scale + rate * time
+        done += events + 1
+    return min(scale, 1.0)
+
+
+def _at_rest(
+    position: np.ndarray, velocity: np.ndarray, radius: np.ndarray, period: np.ndarray, reach: float
+) -> Growing:
+    """Discs at their positions, with the neighbours of each that are nearer than `reach` (length)."""
+    from scipy.spatial import cKDTree
+
+    n = len(radius)
+    pairs = cKDTree(position, boxsize=period).query_pairs(reach, output_type="ndarray")
+    both = np.concatenate((pairs, pairs[:, ::-1]))
+    both = both[np.lexsort(both.T[::-1])]
+    return Growing(
+        position.copy(),
+        velocity,
+        np.zeros(n),
+        position.copy(),
+        radius,
+        period,
+        first=np.searchsorted(both[:, 0], np.arange(n + 1)),
+        neighbour=both[:, 1].copy(),
+        next_time=np.zeros(n),
+        partner=np.zeros(n, np.int64),
+        collisions=np.zeros(n, np.int64),
+        known=np.zeros(n, np.int64),
+    )
+
+
+@inline
+def _time_to_contact(discs, i, j, scale, rate):
+    """Time at which discs i and j touch, infinite if they never do; their radii are those of `scale` at time 0."""
+    now = max(discs.time[i], discs.time[j])
+    since_i, since_j = now - discs.time[i], now - discs.time[j]
+    vx = discs.velocity[i, 0] - discs.velocity[j, 0]
+    vy = discs.velocity[i, 1] - discs.velocity[j, 1]
+    dx = discs.position[i, 0] + discs.velocity[i, 0] * since_i
+    dx -= discs.position[j, 0] + discs.velocity[j, 0] * since_j
+    dy = discs.position[i, 1] + discs.velocity[i, 1] * since_i
+    dy -= discs.position[j, 1] + discs.velocity[j, 1] * since_j
+    dx = nearest_image(dx, discs.period[0], True)
+    dy = nearest_image(dy, discs.period[1], True)
+    both = discs.radius[i] + discs.radius[j]
+    contact, growth = both * (scale + rate * now), both * rate
+    a = vx * vx + vy * vy - growth * growth
+    b = dx * vx + dy * vy - contact * growth
+    c = dx * dx + dy * dy - contact * contact
+    if b < 0 and c <= 0:
+        return now
+    root = b * b - a * c
+    if b < 0:
+        return now + c / (math.sqrt(root) - b) if root >= 0 else np.inf
+    return now + (b + math.sqrt(max(root, 0.0))) / -a if a < 0 else np.inf  # they part more slowly than they grow
+
+
+@inline
+def _predict(discs, i, scale, rate, range_):
+    """Find the next event of disc i; range_: how far it may be from its origin, length."""
+    x, y = discs.position[i, 0] - discs.origin[i, 0], discs.position[i, 1] - discs.origin[i, 1]
+    speed = math.hypot(discs.velocity[i, 0], discs.velocity[i, 1])
+    discs.next_time[i] = discs.time[i] + max(range_ - math.hypot(x, y), 0.0) / speed
+    discs.partner[i] = -1
+    for k in range(discs.first[i], discs.first[i + 1]):
+        j = discs.neighbour[k]
+        time = _time_to_contact(discs, i, j, scale, rate)
+        if time < discs.next_time[i]:
+            discs.next_time[i] = time
+            discs.partner[i] = j
+            discs.known[i] = discs.collisions[j]
+
+
+@inline
+def _collide(discs, i, j, time, rate):
+    """Collide discs i and j: along their centres they part as fast as they came, seen from the growing contact."""
+    for k in (i, j):
+        discs.position[k, 0] += discs.velocity[k, 0] * (time - discs.time[k])
+        discs.position[k, 1] += discs.velocity[k, 1] * (time - discs.time[k])
+        discs.time[k] = time
+        discs.collisions[k] += 1
+    dx = nearest_image(discs.position[j, 0] - discs.position[i, 0], discs.period[0], True)
+    dy = nearest_image(discs.position[j, 1] - discs.position[i, 1], discs.period[1], True)
+    distance = math.hypot(dx, dy)
+    nx, ny = dx / distance, dy / distance
+    apart = (discs.velocity[j, 0] - discs.velocity[i, 0]) * nx + (discs.velocity[j, 1] - discs.velocity[i, 1]) * ny
+    push = rate * (discs.radius[i] + discs.radius[j]) - apart
+    discs.velocity[i, 0] -= push * nx
+    discs.velocity[i, 1] -= push * ny
+    discs.velocity[j, 0] += push * nx
+    discs.velocity[j, 1] += push * ny
+
+
+@njit
+def _grow(discs, scale, rate, range_, longest, most):
+    """Collide discs until the time `longest`, the number of collisions `most`, or a disc that leaves its range.
+
+    Returns the number of collisions and the time.
+    """
+    n = discs.time.shape[0]
+    for i in range(n):
+        _predict(discs, i, scale, rate, range_)
+    for events in range(most):
+        i = 0
+        for k in range(1, n):
+            if discs.next_time[k] < discs.next_time[i]:
+                i = k
+        time, j = discs.next_time[i], discs.partner[i]
+        if time >= longest:
+            return events, longest
+        if j < 0:
+            return events, time
+        if discs.collisions[j] == discs.known[i]:
+            _collide(discs, i, j, time, rate)
+            _predict(discs, j, scale, rate, range_)
+        _predict(discs, i, scale, rate, range_)
+    return most, time

@@ -1,0 +1,67 @@
+"""Discs in static contact with a wall to which they are pressed: they would collide for ever at one instant.
+
+Only a disc that touches the wall exactly and has no velocity along its normal is in static contact; any other disc
+flies or bounces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.scene import Scene
+from idealgas.scene.walls import walls_inside
+from idealgas.sides import OUTWARD, SIDES, axis_of, is_upper
+from idealgas.toml.error import Issue, Key
+
+if TYPE_CHECKING:
+    from idealgas.state import Gas
+
+
+def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
+    """One issue for each explicit disc and each species with a disc in static contact with a wall or the piston."""
+    reported = set()
+    for name, in_contact in _supports(scene, gas):
+        for i in np.flatnonzero(in_contact):
+            key = _key_of(scene, gas, int(i))
+            if key not in reported:
+                reported.add(key)
+                got = f"disc {i} in contact, without a velocity along the normal"
+                yield Issue((key,), f"at rest on {name}, to which it is pressed", got, "a gap or a velocity")
+
+
+def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
+    """Name of each wall to which discs may be pressed, and a mask (N,) of the discs in static contact with it."""
+    pull = np.array(scene.properties.acceleration)
+    for side, name in enumerate(SIDES):
+        axis = axis_of(side)
+        if pull @ OUTWARD[side] > 0 and not (scene.piston and scene.piston.side == name):
+            coordinate = gas.position[:, axis]
+            touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
+            yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
+    if pull.any():
+        for k, wall in enumerate(walls_inside(scene)):
+            if wall.is_there(0.0):
+                start, along = np.array(wall.start), np.array(wall.end) - wall.start
+                share = np.clip((gas.position - start) @ along / (along @ along), 0.0, 1.0)
+                normal = gas.position - start - share[:, None] * along
+                touches = (normal**2).sum(axis=1) <= gas.radius**2
+                yield f"wall {k}", touches & (normal @ pull < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
+    if scene.piston:
+        piston = scene.piston
+        gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
+        pressed = piston.outward * (piston.acceleration(gas.box, scene.gravity) - pull[piston.axis]) < 0
+        in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
+        yield "the piston", in_contact & pressed
+
+
+def _key_of(scene: Scene, gas: Gas, i: int) -> Key:
+    """Key of the scene that sets disc i's velocity."""
+    if i < len(scene.disc):
+        return "disc", i, "velocity"
+    names = [s.name for s in scene.species]
+    k = names.index(gas.species_names[gas.species[i]])
+    motion = next(key for key in ("temperature", "speed", "velocities") if getattr(scene.species[k], key) is not None)
+    return "species", k, motion

@@ -1,0 +1,55 @@
+"""The scene of a log against its arrays: it is to be the scene that they are of."""
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from idealgas.events import IMAGES, POSITIONS, SPINS, TRIALS, event_columns
+from idealgas.initial.build import disc_constants, number_of_discs
+from idealgas.log.schema import Wall
+from idealgas.scene import Scene
+from idealgas.scene.walls import number_walls
+from idealgas.state import Gas
+
+
+def check_scene(
+    scene: Scene,
+    gas: Gas,
+    walls: Sequence[Wall],
+    periodic: tuple[bool, ...],
+    gravity: tuple[float, float],
+    kicks: bool,
+    kept: Collection[str],
+) -> None:
+    """Raise ValueError where a scene has other discs, walls or effects than a log.
+
+    periodic: of the box, along x and along y. kicks: whether a heat bath kicks discs. kept: names of the columns of
+    events, and of what checkpoints have of each disc.
+    """
+    if scene.box.size != gas.box:
+        raise ValueError(f"a box of {scene.box.size} (box: {gas.box})")
+    if (number := number_of_discs(scene)) != len(gas):
+        raise ValueError(f"{number} discs (discs/id: {len(gas)})")
+    radius, mass, species, names = disc_constants(scene)
+    if names != gas.species_names:
+        raise ValueError(f"species {', '.join(names)} (discs/species_name: {', '.join(gas.species_names)})")
+    for name, values in {"radius": radius, "mass": mass, "species": species}.items():
+        if not np.array_equal(values, getattr(gas, name)):
+            raise ValueError(f"not of discs with this discs/{name}")
+    if [(wall.name, wall.start, wall.end) for wall in number_walls(scene)] != list(walls):
+        raise ValueError("other walls than walls/name and walls/endpoints")
+    if scene.properties.acceleration != gravity:
+        raise ValueError(f"gravity {scene.properties.acceleration} (gravity: {gravity})")
+    if scene.properties.periodic != periodic:
+        raise ValueError(f"periodic sides {scene.properties.periodic} (box: {periodic})")
+    if (scene.properties.bath is not None) != kicks:
+        raise ValueError(f"{'no' if kicks else 'a'} heat bath (got kinds of events with{'' if kicks else 'out'} kicks)")
+    has = {
+        POSITIONS: scene.run.method != "monte_carlo",
+        TRIALS: scene.run.method == "monte_carlo",
+        SPINS: scene.properties.spins,
+        IMAGES: any(scene.properties.periodic),
+    }
+    for column in event_columns(*has):
+        if column.when and has[column.when] != (column.name in kept):
+            raise ValueError(f"{'with' if has[column.when] else 'without'} {column.when} (got other columns)")

@@ -1,0 +1,110 @@
+"""Rows of a log as columns of one number a row, as the tables of other programs have them."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from idealgas.events import EventBatch, Kind, columns_named, empty_batch
+from idealgas.log.components import VECTORS, components
+from idealgas.log.errors import LogError
+from idealgas.log.replay import LogState
+from idealgas.log.schema import Wall
+from idealgas.state import Gas
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+Columns = dict[str, np.ndarray]
+
+KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
+"""What the numbers in the column `kind` of events stand for."""
+
+CHOSEN_BY = {"events": ("disc", "t0", "t1"), "discs": ("disc", "times"), "observables": ("t0", "t1")}
+"""Tables that a log has, and the arguments of `Log.to_pandas` that choose rows of them."""
+
+
+def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTORS) -> Columns:
+    """Columns (n,) from columns (n,) and (n, components), without those that are None.
+
+    vectors: names of components. A component without a name is numbered, as in name_0_1.
+    """
+    columns: Columns = {}
+    for name, column in values.items():
+        if name in vectors and column is not None:
+            columns |= dict(zip(vectors[name], np.ascontiguousarray(column.T), strict=True))
+        elif column is not None and column.ndim > 1:
+            for place in np.ndindex(column.shape[1:]):
+                columns["_".join(map(str, (name, *place)))] = column[:, *place]
+        elif column is not None:
+            columns[name] = column
+    return columns
+
+
+def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[Columns]:
+    """Event rows block by block; the first block is empty, so that a log without events has its columns too.
+
+    names: of the log's event columns. `kind` is an index into KIND_NAMES.
+    """
+    yield flat(empty_batch(0, columns_named(names))._asdict())
+    for block in blocks:
+        yield flat(block._asdict())
+
+
+def flat_states(gas: Gas, states: Iterable[LogState]) -> Iterator[Columns]:
+    """One row for each disc, state by state. gas: the same discs. `species` is an index into their species' names."""
+    ids = np.arange(len(gas), dtype=np.uint32)
+    for state in states:
+        values = state._asdict()
+        time = np.full(len(ids), values.pop("time"))
+        if np.isnan(state.position).all():  # a gas without positions
+            del values["position"]
+        yield {"time": time, "disc": ids, "species": gas.species, **flat(values)}
+
+
+def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
+    """One row for each disc, or for one chosen by its id, state by state, with radius and mass."""
+    chosen = np.arange(len(gas)) if disc is None else np.flatnonzero(np.arange(len(gas)) == disc)
+    for columns in flat_states(gas, states):
+        names = ("time", "disc", "species")
+        first = {name: columns.pop(name) for name in names} | {"radius": gas.radius, "mass": gas.mass}
+        yield {name: column[chosen] for name, column in (first | columns).items()}
+
+
+def flat_samples(
+    observables: Mapping[str, tuple[np.ndarray, np.ndarray]], walls: Sequence[Wall], t0: float | None, t1: float | None
+) -> Columns:
+    """Samples at times t0 ≤ t < t1, with their times; observables: times and values, by name."""
+    time = next((time for time, _ in observables.values()), np.empty(0))
+    some = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
+    return flat(
+        {"time": time[some]} | {name: values[some] for name, (_, values) in observables.items()},
+        components([wall.name for wall in walls]),
+    )
+
+
+def check_choice(path: Path, what: str, choice: Mapping[str, Any]) -> None:
+    """LogError if there is no such table of a log, or if its rows are chosen by what they do not have."""
+    if what not in CHOSEN_BY:
+        raise LogError(f"{path}: no table of {what} (allowed: {', '.join(CHOSEN_BY)})")
+    if useless := [name for name, value in choice.items() if value is not None and name not in CHOSEN_BY[what]]:
+        raise LogError(
+            f"{path}: rows of {what} are not chosen by {', '.join(useless)} (allowed: {', '.join(CHOSEN_BY[what])})"
+        )
+
+
+def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]]) -> "DataFrame":
+    """A DataFrame of all blocks. categories: what the numbers of a column stand for. LogError if pandas is missing."""
+    try:
+        from pandas import Categorical, DataFrame
+    except ModuleNotFoundError as error:
+        raise LogError(f"to_pandas needs {error.name}: pip install 'idealgas[notebook]'") from error
+    parts: dict[str, list[np.ndarray]] = {}
+    for block in blocks:
+        for name, column in block.items():
+            parts.setdefault(name, []).append(column)
+    whole: dict[str, Any] = {name: np.concatenate(parts.pop(name)) for name in tuple(parts)}  # never all parts twice
+    for name, words in categories.items():
+        whole[name] = Categorical.from_codes(whole[name], categories=list(words))
+    return DataFrame(whole, copy=False)

@@ -1,0 +1,180 @@
+"""Report of a log as one HTML page without other files: the run, all analyses that apply to it, and a player."""
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from importlib import resources
+from pathlib import Path
+from string import Template
+
+from idealgas.analysis.core.html import escape, html_table
+from idealgas.analysis.core.tables import Number, Table
+from idealgas.analysis.info import info
+from idealgas.errors import UserError
+from idealgas.files import check_output, written
+from idealgas.log import Log
+from idealgas.report.picture import html_pictures
+from idealgas.report.player import MOST_DISCS, Player, player
+from idealgas.report.sections import Section, make_sections
+
+SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
+"""The program of the page, in order."""
+
+
+def _text(name: str) -> str:
+    return resources.files("idealgas.report").joinpath(name).read_text(encoding="utf-8")
+
+
+PLAYER = Template(_text("player.html"))
+
+SUMMARY = {
+    "end_time": "end (time)",
+    "events": "events",
+    "disc_collisions": "disc collisions",
+    "wall_hits": "wall hits",
+    "kicks": "kicks by the heat bath",
+    "trials": "trials of pairs",
+    "rows": "event rows",
+    "epochs": "epochs",
+    "energy_change": "energy change of the discs (energy)",
+    "energy_drift": "energy drift (share of the energy)",
+    "deepest_overlap": "deepest overlap (sums of two radii)",
+    "farthest_outside": "farthest outside (diameters)",
+    "seconds": "wall time (s)",
+    "compile_seconds": "making or loading machine code, before that (s)",
+}
+"""Labels, with units, of the values in the summary of a run that the report shows."""
+
+
+def write_report(
+    log: Log,
+    output: str | os.PathLike[str],
+    *,
+    start: float | None = None,
+    force: bool = False,
+    on_step: Callable[[int, int], None] = lambda done, total: None,
+) -> Path:
+    """Write the report page of a log and return its path.
+
+    Args:
+        log: the log to show.
+        output: path of the page, with the ending .html or .htm.
+        start: first time in the player; None for the start of the log.
+        force: whether to replace an existing report.
+        on_step: called with the number of finished sections and the number of all sections.
+
+    Raises:
+        UserError: for another ending, or if the log does not cover `start`.
+        OutputError: if the page cannot be written.
+    """
+    path = Path(output)
+    kind = path.suffix.lower()
+    if kind not in (".html", ".htm"):
+        raise UserError(f"{output}: unknown kind of report (allowed: .html)")
+    check_output(path, kind, force)
+    played = player(log, start)
+    sections = make_sections(log, on_step)
+    with written(path, kind, force) as part:
+        part.write_text(_page(log, played, sections), encoding="utf-8")
+    return path
+
+
+def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
+    found = info(log)
+    file = found["file"]
+    applicable = [
+        (section.title, _section(section, f"p{k}")) for k, section in enumerate(sections) if section.left_out is None
+    ]
+    parts = [*applicable, ("The run", _run(log, found))]
+    if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
+        rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
+        parts.append(("What does not apply", f"<ul>{rows}</ul>"))
+    title = log.scene.scene.title or Path(log.path).name
+    names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
+    contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
+    said = [_summary(log, found), *(sentence for section in sections for sentence in section.words)]
+    return Template(_text("report.html")).substitute(
+        title=escape(title),
+        style=_text("report.css"),
+        script="\n".join(map(_text, SCRIPTS)),
+        contents=f"<ul>{contents}</ul>",
+        player=_player(log, played, names[0]),
+        words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
+        sections="\n".join(
+            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)
+        ),
+        data="" if played is None else _data(played),
+        footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
+    )
+
+
+def _summary(log: Log, found: dict) -> str:
+    """Sentence on the gas and its run; the packing fraction is that of the area that the gas has at the start."""
+    gas, run, effects = found["gas"], found["run"], ", ".join(log.scene.effects)
+    kind = f" with {effects}" if effects else ""
+    return (
+        f"{gas['number']:,} discs{kind}, packing fraction {gas['packing_fraction']:.3g}, followed for "
+        f"{run['end_time'] - run['start_time']:.6g} units of time ({log.scene.run.method.replace('_', '-')}, "
+        f"{run['event_rows'] or 0:,} event rows)."
+    )
+
+
+def _player(log: Log, played: Player | None, heading: str) -> str:
+    """HTML of the player, with a note on the time that it shows."""
+    if played is None:
+        why = "no events are on record" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
+        return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {why}.</p></section>'
+    if log.has_positions:
+        width, height = log.box
+        shown = (
+            f"A box of {width:g} × {height:g} (length); the strip below the speeds tells the colours of the discs, "
+            "which are exact at any time; very small ones are drawn larger."
+        )
+    else:
+        shown = f"No discs to show: {log.scene.run.method} does not know where they are. Their speeds are exact."
+    shown += " The player has "
+    if played.end < log.end_time or played.start > log.start_time:
+        shown += f"t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}."
+    else:
+        shown += "the whole run."
+    shown += f" At 1 × a second is {played.head['speed']:.3g} units of time."
+    return PLAYER.substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
+
+
+def _data(played: Player) -> str:
+    head = json.dumps(played.head, allow_nan=False).replace("<", "\\u003c")
+    arrays = (f'<script type="text/plain" id="data-{name}">{packed}</script>' for name, packed in played.arrays.items())
+    return "\n".join([f'<script type="application/json" id="data-head">{head}</script>', *arrays])
+
+
+def _run(log: Log, found: dict) -> str:
+    """HTML of the section on the run: discs, state and summary of the run, and the scene."""
+    species = [
+        (s["name"], Number(s["number"], ","), Number(s["radius"]), Number(s["mass"])) for s in found["gas"]["species"]
+    ]
+    summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
+    if "trial" not in log.columns:
+        summary = [row for row in summary if row[0] != SUMMARY["trials"]]
+    state = [(name, found["file"][name]) for name in ("state", "created") if name in found["file"]] + summary
+    tables = (
+        Table("Discs", ("species", "N", "radius (length)", "mass (mass)"), species),
+        Table("Run", ("", ""), state),
+    )
+    return _tables(tables) + f"<details><summary>Scene</summary><pre>{escape(log.scene_text)}</pre></details>"
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "–"
+    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
+
+
+def _section(section: Section, key: str) -> str:
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for table in section.tables for note in table.notes)
+    picture = "" if section.picture is None else html_pictures(section.picture, section.caption, key)
+    return f"{picture}{notes}{_tables([table for table in section.tables if table.shown])}"
+
+
+def _tables(tables: Sequence[Table]) -> str:
+    shown = "".join(f'<div class="wide">{html_table(table)}</div>' for table in tables)
+    return f'<div class="tables">{shown}</div>'

@@ -1,0 +1,166 @@
+"""Data of the player in a report page: a state of the gas and the events after it, as compact arrays.
+
+The page computes the flight of each disc from its last event, so that positions at any time are exact up to the 24
+bits of a 32-bit float.
+"""
+
+import base64
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+
+from idealgas.analysis.core.bond_order import bond_order
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.style import COLOURS
+from idealgas.analysis.core.window import span
+from idealgas.errors import UserError
+from idealgas.events import Kind
+from idealgas.log import Log
+from idealgas.movie.order_colours import order_colours
+from idealgas.movie.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST, PALEST
+from idealgas.movie.piston_track import piston_track
+from idealgas.scene.walls import walls_inside
+
+MOST_ROWS = 600_000
+"""Largest number of event rows in a page, about 19 MB."""
+
+MOST_DISCS = 100_000
+SHADES = 16
+MOST_INSTANTS, FEWEST_INSTANTS, MOST_NEIGHBOURHOODS = 64, 8, 2**15
+"""Limits of the number of instants at which the page knows the order of discs, and of discs times instants (but for
+the fewest instants); of more discs it knows none, as to find their neighbours would take longer than all the rest."""
+
+TICKS = 2.0**32 - 1
+"""Number of steps in the time of the player; times of events are whole numbers of these steps."""
+
+
+@dataclass(frozen=True)
+class Player:
+    """Data of the player.
+
+    head: plain values for JSON. arrays: little-endian numbers as base64 text, by name. start, end: played time.
+    """
+
+    head: dict[str, Any]
+    arrays: dict[str, str]
+    start: float
+    end: float
+
+
+def player(log: Log, start: float | None = None) -> Player | None:
+    """Data of the player from time `start`, by default the start of the log, for at most MOST_ROWS event rows.
+
+    None if the log has no events or more than MOST_DISCS discs.
+    """
+    gas = log.discs
+    if not log.has_events or len(gas) > MOST_DISCS:
+        return None
+    first, last = span(log, start, None)
+    rows = log.row_at(first, "right")
+    if len(log) - rows > MOST_ROWS:
+        (cut,) = log.chunks(("time",), rows + MOST_ROWS, rows + MOST_ROWS + 1)
+        last = float(np.nextafter(cut.time[0], first))
+    state = log.state_at(first)
+    flow = drift(log)
+    typical, thermal = (float(np.sqrt(((state.velocity - u) ** 2).sum(axis=1).mean())) or 1.0 for u in (0.0, flow))
+    species = composition(gas)
+    shades = colormaps[COLOUR_MAP]
+    head = {
+        "box": gas.box,
+        "periodic": log.periodic,
+        "gravity": log.gravity,
+        "positions": log.has_positions,
+        "start": first,
+        "end": last,
+        "ticks": TICKS,
+        "speed": max(gas.box) / CROSSING / typical,
+        "flow": flow.tolist(),
+        "fastest": FASTEST * thermal,
+        "brightest": BRIGHTEST * thermal,
+        "colours": {"order": _hex(_order_shades()), "species": COLOURS[: len(species.name)]},
+        "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
+        "dark": _hex(shades(np.linspace(0.3, 1, SHADES))),
+        "bars": COLOURS[5],
+        "curve": COLOURS[0],
+        "pistonColour": COLOURS[1],
+        "kinds": [
+            {"share": share, "mass": mass}
+            for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
+        ],
+        "walls": [
+            {"name": w.name, "from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
+            for w in walls_inside(log.scene)
+        ],
+        "piston": _piston(log, first, last),
+    }
+    arrays = {"radius": gas.radius, "mass": gas.mass, "species": gas.species.astype("<u2"), "velocity": state.velocity}
+    if log.has_positions:
+        arrays["position"] = state.position
+        arrays |= _order(log, first, last)
+    return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, rows), first, last)
+
+
+def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
+    """Positions of the piston at both times, and its acceleration; the page finds the other positions from its hits."""
+    track = piston_track(log, first, last)
+    if track is None:
+        return None
+    return {
+        "axis": track.axis,
+        "outward": track.outward,
+        "pull": track.pull,
+        "limits": track.limits,
+        "ends": [track.at(first), track.at(last)],
+    }
+
+
+def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
+    """Columns of the events between two times, and the indices of those that are hits of the piston."""
+    names = ("time", "disc", "kind", "velocity", *(("position",) if log.has_positions else ()))
+    blocks = list(log.chunks(names, start, log.row_at(last, "right")))
+    empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
+    columns = {
+        name: np.concatenate([empty.get(name, np.empty(0)), *(getattr(block, name) for block in blocks)])
+        for name in names
+    }
+    ticks = np.round((columns.pop("time") - first) / (last - first) * TICKS)
+    hits = np.flatnonzero(columns.pop("kind") == Kind.PISTON)
+    whole = {"tick": ticks, "disc": columns.pop("disc"), "hit": hits}
+    columns |= {name: numbers.astype("<u4") for name, numbers in whole.items()}
+    return {f"event_{name}": _packed(column) for name, column in columns.items()}
+
+
+def _order_shades() -> np.ndarray:
+    """Colours of order: none, then that of each angle at half and at full size."""
+    turn = np.exp(2j * np.pi * np.arange(SHADES) / SHADES)
+    return order_colours(np.concatenate(([0], 0.5 * turn, turn)))
+
+
+def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
+    """Numbers (F, N) of the shades of all discs at F instants, evenly spaced; nothing where neighbours are not told."""
+    if not log.scene.properties.fixed_walls or len(log.discs) > MOST_NEIGHBOURHOODS:
+        return {}
+    number = min(max(MOST_NEIGHBOURHOODS // len(log.discs), FEWEST_INSTANTS), MOST_INSTANTS)
+    try:
+        found = [
+            bond_order(s.position, log.box, log.periodic).value for s in log.frames(np.linspace(first, last, number))
+        ]
+    except UserError:  # discs at one place
+        return {}
+    order = np.array(found)
+    hue = np.round(np.angle(order) / (2 * np.pi) * SHADES).astype(int) % SHADES
+    level = np.digitize(np.abs(order), (1 / 3, 2 / 3))
+    return {"order": np.where(level == 0, 0, 1 + SHADES * (level - 1) + hue).astype(np.uint8)}
+
+
+def _packed(array: np.ndarray) -> str:
+    """Array as base64 text, floats with 32 bits."""
+    narrow = array.astype("<f4") if array.dtype.kind == "f" else array
+    return base64.b64encode(np.ascontiguousarray(narrow).tobytes()).decode()
+
+
+def _hex(colours: np.ndarray) -> list[str]:
+    return ["#" + bytes(np.round(255 * colour[:3]).astype(np.uint8)).hex() for colour in colours]

@@ -1,1 +1,0 @@
-"""Studies that run many simulations: what accuracy costs, sweeps, and how fast the engine is."""

@@ -1,0 +1,191 @@
+"""Run of a sweep: one task for each point on dask.distributed, on this machine or on a cluster.
+
+A point is done when its result file exists. If a process is killed, at most the points that were running are lost, and
+the next start continues from the files. The files of a point do not depend on the worker that ran it.
+"""
+
+import asyncio
+import logging
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from idealgas.errors import OutputError, UserError
+from idealgas.sweep.cost import estimate_cost
+from idealgas.sweep.folder import check_folder, continued, held
+from idealgas.sweep.plan import Sweep
+from idealgas.sweep.point import Task, result_path, run_point
+from idealgas.toml.dump import dump_document
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+RETRIES = 2
+"""Number of further attempts for a point that failed, or whose worker died."""
+
+DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""First command of a local worker: ignore Ctrl-C, which the main process handles."""
+
+LOCAL = {
+    "distributed.scheduler.allowed-failures": RETRIES,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
+}
+"""Settings of the local cluster: no time for anything but points, and workers reuse their memory."""
+
+GOES_ON = "; the same command goes on where this one stopped"
+
+PATIENCE = 10.0  # seconds in which a scheduler must answer
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Progress of a sweep: numbers of finished points, of points that failed for good, and of all points."""
+
+    done: int
+    failed: int
+    total: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Outcome of a sweep.
+
+    ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
+    seconds: time that it took. estimated: time that it was to take by the estimate of the cost, seconds; None where
+    nothing is known of the machines, or of one of the points.
+    """
+
+    ran: int
+    before: int
+    failures: dict[int, str]
+    seconds: float = 0.0
+    estimated: float | None = None
+
+
+def run_sweep(
+    sweep: Sweep,
+    folder: str | os.PathLike[str],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+) -> Outcome:
+    """Run the points of a sweep that are not done yet.
+
+    Args:
+        sweep: the sweep to run.
+        folder: folder of logs and results; it is made, or goes on where it stands, even if axes have got new values.
+        workers: number of processes on this machine; None for one per core.
+        scheduler: address of a dask scheduler, instead of local workers; its workers see the folder at the same path.
+        on_progress: called when a point has finished or failed.
+
+    Raises:
+        UserError: if the sweep cannot be run at all, or not go on for a reason that concerns all points.
+    """
+    folder = Path(folder).absolute()
+    with held(folder):
+        sweep = continued(sweep, folder)
+        open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
+        before = len(sweep.points) - len(open_points)
+        tasks = [
+            Task(
+                str(folder), p.index, p.combination, p.replicate, p.values, dump_document(p.scene), sweep.analyses,
+                sweep.keep_logs,
+            )
+            for p in open_points
+        ]  # fmt: skip
+        failures: dict[int, str] = {}
+        workers = min(workers or os.cpu_count() or 1, max(len(tasks), 1))
+        estimated = None if scheduler or not tasks else _estimate(replace(sweep, points=tuple(open_points)), workers)
+        started = time.monotonic()
+        on_progress(Progress(before, 0, len(sweep.points)))
+        if tasks:
+            with _client(workers, scheduler) as client:
+                for k, (index, failure) in enumerate(_run(client, tasks)):
+                    if failure is not None:
+                        check_folder(folder)
+                        failures[index] = failure
+                    on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
+    seconds = time.monotonic() - started
+    return Outcome(len(tasks) - len(failures), before, dict(sorted(failures.items())), seconds, estimated)
+
+
+def _estimate(sweep: Sweep, workers: int) -> float | None:
+    """Time that a sweep is to take on a number of workers, seconds; None if a point of it cannot be run."""
+    with suppress(UserError):
+        return sum(cost.seconds for cost in estimate_cost(sweep)) / workers
+    return None
+
+
+def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]]:
+    """Yield the index of each point when it ends, with the reason of its failure or None."""
+    from distributed import as_completed
+
+    futures = client.map(run_point, tasks, pure=False, retries=RETRIES, key=[f"point-{task.index}" for task in tasks])
+    index = {future.key: task.index for future, task in zip(futures, tasks, strict=True)}
+    try:
+        for future in as_completed(futures, loop=client.loop):
+            if future.status == "cancelled":
+                raise CancelledError
+            error = None if future.status == "finished" else future.exception()
+            if isinstance(error, OutputError) and error.exit_code == 1:
+                raise OutputError(f"{error}{GOES_ON}", exit_code=1)
+            yield index[future.key], error and _reason(error)
+    except (CancelledError, asyncio.CancelledError):
+        raise UserError(f"the scheduler is gone{GOES_ON}") from None
+
+
+def _reason(error: Any) -> str:
+    """Reason why a point failed, in one line."""
+    from distributed.scheduler import KilledWorker
+
+    if isinstance(error, KilledWorker):
+        return f"its worker died {RETRIES + 1} times"
+    lines = str(error).strip().splitlines() or [""]
+    return lines[0] if isinstance(error, UserError) else f"{type(error).__name__}: {lines[0]}"
+
+
+@contextmanager
+def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
+    """Yield a client of the scheduler at an address, or of a local cluster with `workers` processes."""
+    try:
+        import dask
+        from distributed import Client, LocalCluster
+        from distributed.comm import parse_address, parse_host_port
+        from distributed.utils import silence_logging_cmgr
+    except ImportError:
+        raise UserError("a sweep needs dask.distributed: pip install 'idealgas[sweep]'") from None
+    if scheduler is not None:
+        try:
+            parse_host_port(parse_address(scheduler)[1])  # a client of an invalid address cannot be closed cleanly
+            client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+        except ValueError as error:
+            raise UserError(f"{scheduler}: no address of a scheduler ({error})") from None
+        except OSError:
+            raise UserError(f"{scheduler}: no scheduler answers there within {PATIENCE:g} s") from None
+        with silence_logging_cmgr(logging.CRITICAL), client:
+            yield client
+        return
+    with ExitStack() as stack:
+        stack.enter_context(dask.config.set(LOCAL))
+        try:
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                dashboard_address=":0",  # no fixed port for the HTTP server, which runs also without a dashboard
+                scheduler_kwargs={"dashboard": False},
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+                preload=DEAF,
+            )
+            client = stack.enter_context(Client(stack.enter_context(cluster), set_as_default=False))
+        except (OSError, RuntimeError) as error:
+            raise OutputError(f"no worker can be started on this machine: {error}", exit_code=1) from error
+        yield client

@@ -1,0 +1,95 @@
+"""Issues and pydantic's findings as lines for a user: `place: table.key: what is wrong (got …; allowed …)`."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from difflib import get_close_matches
+from typing import Any, get_args
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from idealgas.errors import UserError
+from idealgas.toml.dump import toml_value
+from idealgas.toml.error import Issue, Key
+
+_WORDS = {
+    "float_type": ("wrong type", "a number"),
+    "int_type": ("wrong type", "a whole number"),
+    "string_type": ("wrong type", "text in quotes"),
+    "bool_type": ("wrong type", "true or false"),
+    "model_type": ("wrong type", "a table"),
+    "finite_number": ("not a finite number", "a finite number"),
+    "literal_error": ("unknown value", "{expected}"),
+    "string_too_long": ("too long", "up to {max_length} characters"),
+    "string_pattern_mismatch": ("not a word", "a letter, then letters, digits, - and _"),
+    "greater_than": ("out of range", "> {gt:g}"),
+    "greater_than_equal": ("out of range", ">= {ge:g}"),
+    "too_close_to_0": ("too close to 0", "a size >= {smallest:g}"),
+    "less_than": ("out of range", "< {lt:g}"),
+    "less_than_equal": ("out of range", "<= {le:g}"),
+}
+
+
+class SceneError(UserError, ValueError):
+    """A scene that cannot be simulated; `errors` holds one line for each thing that is wrong."""
+
+    def __init__(self, errors: Sequence[str]) -> None:
+        super().__init__("\n".join(errors))
+        self.errors = list(errors)
+
+
+def as_issues(findings: Iterable[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
+    """Pydantic's findings about a document of a model in the project's words."""
+    return [_issue(finding, model) for finding in findings]
+
+
+def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
+    key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # tags of unions
+    kind, got = finding["type"], finding["input"]
+    if kind == "extra_forbidden":
+        known = list(_keys(table_at(key[:-1], model)))
+        close = get_close_matches(str(key[-1]), known, n=1)
+        wrong = f"unknown {'key' if key[1:] else 'table'}" + (f', did you mean "{close[0]}"?' if close else "")
+        return Issue((key,), wrong, str(key[-1]), ", ".join(known))
+    if kind == "missing" and isinstance(key[-1], int):
+        return Issue((key[:-1],), "too short", _shown(got), _described(key, model))
+    if kind == "missing":
+        return Issue((key,), "missing", "nothing", _described(key, model))
+    if kind in ("tuple_type", "too_long"):
+        return Issue((key,), "too long" if kind == "too_long" else "wrong type", _shown(got), _described(key, model))
+    if key != finding["loc"] and kind == "literal_error":
+        return Issue((key,), "unknown value", _shown(got), _described(key, model))
+    wrong, allowed = _WORDS.get(kind, ("wrong value", finding["msg"]))
+    return Issue((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
+
+
+def _shown(value: Any, longest: int = 60) -> str:
+    text = toml_value(value)
+    return text if len(text) <= longest else f"{text[:longest]}…"
+
+
+def _described(key: Key, model: type[BaseModel]) -> str:
+    """What the model says of a key, or of the array that the key is an element of."""
+    while isinstance(key[-1], int):
+        key = key[:-1]
+    return _keys(table_at(key[:-1], model))[str(key[-1])].description or ""
+
+
+def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
+    """Fields of a table by the keys that set them."""
+    return {field.alias or name: field for name, field in table.model_fields.items()}
+
+
+def table_at(key: Key, model: type[BaseModel]) -> type[BaseModel]:
+    """The model of the table at a key."""
+    for name in key:
+        if isinstance(name, str):
+            model = next(t for t in _types_in(_keys(model)[name].annotation) if issubclass(t, BaseModel))
+    return model
+
+
+def _types_in(annotation: Any) -> Iterator[type]:
+    if isinstance(annotation, type):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _types_in(part)

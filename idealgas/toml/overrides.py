@@ -1,0 +1,69 @@
+"""`--set table.key=value`: changes to a document before it is checked."""
+
+import tomllib
+from typing import Any
+
+from idealgas.toml.error import Key
+
+
+class OverrideError(ValueError):
+    """An override that names nothing in the document."""
+
+
+def apply(override: str, document: dict[str, Any]) -> Key:
+    """Set, or with an empty value take away, one key of the document; return the key.
+
+    A table of an array is named by index or name (`species.0.count=10`, `species.argon.count=10`), or left unnamed if
+    it is the only one (`species.count=10`).
+    """
+    path, equals, text = override.partition("=")
+    names = [name.strip() for name in path.split(".")]
+    if not equals or not all(names):
+        raise OverrideError("not an assignment (allowed table.key=value)")
+    node: Any = document
+    key: Key = ()
+    for depth, name in enumerate(names):
+        if isinstance(node, list) and (index := _index(node, name)) is not None:
+            step: str | int = index
+        elif isinstance(node, list) and _only_table(node) and name == names[-1] and not name.isdigit():
+            key, node, step = (*key, 0), node[0], name
+        elif isinstance(node, dict):
+            step = name
+        else:
+            raise OverrideError(f"nothing of this name (got {name}; allowed {_choices(node)})")
+        key = (*key, step)
+        if depth < len(names) - 1:
+            node = node.setdefault(step, {}) if isinstance(node, dict) else node[int(step)]
+    if text.strip():
+        node[step] = _value(text)
+    elif isinstance(node, dict):
+        node.pop(step, None)
+    else:
+        raise OverrideError("no value (allowed a TOML value; only a key of a table can be taken away)")
+    return key
+
+
+def _only_table(items: list[Any]) -> bool:
+    return len(items) == 1 and isinstance(items[0], dict)
+
+
+def _index(items: list[Any], name: str) -> int | None:
+    if name.isascii() and name.isdigit():
+        return int(name) if int(name) < len(items) else None
+    return next((i for i, item in enumerate(items) if isinstance(item, dict) and item.get("name") == name), None)
+
+
+def _choices(node: Any) -> str:
+    if not isinstance(node, list):
+        return "no key below a value"
+    names = [item["name"] for item in node if isinstance(item, dict) and isinstance(item.get("name"), str)]
+    return ", ".join([f"0 to {len(node) - 1}", *names]) if node else "none: the array is empty"
+
+
+def _value(text: str) -> Any:
+    """A TOML value, or else the bare text."""
+    try:
+        document = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text.strip()
+    return document["value"] if len(document) == 1 else text.strip()

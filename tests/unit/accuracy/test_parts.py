@@ -1,0 +1,192 @@
+"""The parts of a study of accuracy, each beside what it must give."""
+
+import math
+
+import numpy as np
+import pytest
+from support import gas_of
+
+from idealgas.accuracy.cases import Case, Start, compared_cases
+from idealgas.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
+from idealgas.accuracy.report import cost_of, flat_row, linear_coefficient, lost_after, sentences
+from idealgas.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.simulation import Stop
+from idealgas.errors import UserError
+from idealgas.physics.effects import Effects
+from idealgas.scene import parse_scene
+
+
+def some_gas(n=100, seed=1):
+    random = np.random.default_rng(seed)
+    k = math.isqrt(n)
+    place = (np.stack(np.meshgrid(np.arange(k), np.arange(k)), axis=-1).reshape(-1, 2) + 0.5) * 1.0
+    return gas_of((k, k), place + random.uniform(-0.2, 0.2, place.shape), random.normal(size=(n, 2)), 0.2)
+
+
+@pytest.fixture(scope="module")
+def start():
+    return Start(some_gas(), Effects())
+
+
+def test_a_simulation_is_followed_to_any_time_without_a_change(start):
+    there, steps = start.simulation(EventDriven()), start.simulation(EventDriven())
+    for time in (0.3, 0.31, 7.0, 40.0, 123.0):
+        steps.run(pause=time)
+    assert steps.epoch > 0
+    there.run(Stop(time=123.0))
+    assert steps.state()[0].position.tolist() == there.state()[0].position.tolist()
+
+
+def test_the_ladder_goes_down_in_steps_of_two():
+    cases = compared_cases(some_gas(), precise=True)
+    steps = [case.dt for case in cases if case.dt]
+    assert np.allclose(np.divide(steps[:-1], steps[1:]), 2, rtol=0.01)
+    assert [case.name for case in cases[-3:]] == ["float32", "float64", "double-double"]
+    assert not any(case.precision for case in compared_cases(some_gas(), precise=False))
+
+
+SCENE = """
+[box]
+size = [10, 10]
+[[species]]
+name = "gas"
+count = 10
+radius = 0.1
+temperature = 1
+[run]
+collisions_per_disc = 5
+"""
+
+
+@pytest.mark.parametrize("case", compared_cases(some_gas(), precise=True), ids=lambda case: case.name)
+def test_a_case_takes_a_scene_to_a_time(case):
+    for before in ([], ['run.method="time_driven"', "run.dt=0.1", "run.events=7"], ['run.method="brute_force"']):
+        scene = case.scene(parse_scene(SCENE, overrides=before), 3.25)
+        assert (scene.run.method, scene.run.dt, scene.run.precision) == (case.method, case.dt, case.precision)
+        assert (scene.run.until, scene.run.events, scene.run.collisions_per_disc) == (3.25, None, None)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ("[[wall]]\nfrom=[5, 0]\nto=[5, 4]\n", "wall segments"),
+        ('[piston]\nside="right"\nvelocity=-0.1\n', "piston"),
+    ],
+)
+def test_what_time_steps_cannot_do_is_refused(more, message):
+    with pytest.raises(UserError, match=message):
+        check(parse_scene(SCENE + more))
+    with pytest.raises(UserError, match=r"run\.method"):
+        check(parse_scene(SCENE, overrides=['run.method="monte_carlo"']))
+    with pytest.raises(UserError, match="one disc"):
+        check(parse_scene(SCENE, overrides=["species.0.count=1", "run.until=1"]))
+
+
+def test_pairs_that_fly_through_each_other_are_told_from_those_that_meet_others():
+    """0-1 is found, 2-3 flown through, 4-5 met others before, 6-7 not yet due, and 8-9 is no pair of first meetings."""
+    never = math.inf
+    truth = (np.array([1, 1, 2, 2, 3, 3, never, never, 1, 2.0]), np.array([1, 0, 3, 2, 5, 4, -1, -1, 9, 0]))
+    found = (np.array([1.1, 1.1, 9, never, 2, 8, 1, 1, 1, 2.0]), np.array([1, 0, 7, -1, 0, 9, 7, 6, 9, 0]))
+    assert flown_through(truth, found, 0.2) == (2, 1)
+
+
+def test_steps_miss_less_the_shorter_they_are(start):
+    """For a pair alone (w dt/S)²/6 are missed; the event-driven run against itself misses none."""
+    cases = [Case("event_driven"), Case("time_driven", dt=0.2), Case("time_driven", dt=0.02)]
+    itself, coarse, fine = count_missed(start, cases, 1.0, lambda share: None)
+    assert (itself.missed, itself.compared > 100) == (0, True)
+    assert coarse.share > 0.03
+    assert coarse.share - 4 * coarse.error > fine.share
+    assert Missed(100, 0).error == 0.01
+
+
+@pytest.mark.slow
+def test_the_way_back_shows_the_digits(start):
+    """After a collision or two a disc: 7, 16 and 32 digits, and in double precision by both methods the same."""
+    error = {case.name: error_on_return(start, case, 1.5) for case in compared_cases(start.gas, precise=True)}
+    assert error["float64"] == error["event-driven"]
+    assert 1e-7 < error["float32"] < 1e-3
+    assert 1e-17 < error["float64"] < 1e-12
+    assert 1e-33 < error["double-double"] < 1e-28
+
+
+def test_trajectories_in_double_precision_are_those_of_the_event_driven_run(start):
+    times = [1.5, 2.0, 3.0]
+    event_driven, double, twice = (
+        positions(start.simulation(case.make()), times)
+        for case in (
+            Case("event_driven"),
+            Case("brute_force", precision="float64"),
+            compared_cases(start.gas, True)[-1],
+        )
+    )
+    assert event_driven.tolist() == double.tolist()
+    apart = rms_distance(event_driven, twice, start.gas)
+    assert 0 < apart[0] < apart[-1] < 1e-6
+
+
+# what is made of the numbers
+
+
+def row(dt=None, cost=1.0, rate=None, error=0.001, missed=None, trajectory=None, z=None):
+    method = "event_driven" if dt is None else "time_driven"
+    bias = None if rate is None else Estimate(rate, error, math.inf)
+    pairs = None if z is None else Estimate(z, error, math.inf)
+    timing = Timing(cost, 0.9 * cost, 1.1 * cost, 100.0)
+    return Row(Case(method, dt), timing, None, bias, pairs, None, missed, trajectory, None)
+
+
+def steps():
+    """Bias -2 dt, cost 0.5/dt."""
+    return [row(dt, 0.5 / dt, -2 * dt, missed=Missed(10_000, round(1e6 * dt**2))) for dt in (0.04, 0.02, 0.01, 0.005)]
+
+
+def study(rows):
+    return Accuracy("made up", 10, 1.0, 1, np.empty(0), "no reference", (row(cost=5.0, z=0.0), *rows))
+
+
+def test_a_linear_bias_is_found_with_its_error():
+    value, error = linear_coefficient(steps(), lambda row: row.rate)
+    assert value == pytest.approx(-2)
+    assert error == pytest.approx(0.001 / math.hypot(0.01, 0.005))  # beyond 3 % it is not linear any more
+    assert linear_coefficient([row(0.01, 1.0, -0.002, error=0.001)], lambda row: row.rate) is None
+
+
+def test_costs_follow_a_power_law_between_steps_and_beyond():
+    for dt in (0.1, 0.04, 0.013, 0.005, 1e-4):
+        assert cost_of(dt, steps()) == pytest.approx(0.5 / dt)
+
+
+def test_sentences_say_what_the_numbers_say():
+    """1 % takes dt = 0.005 and 100 s a time unit, 20 times the event-driven 5."""
+    said = " ".join(sentences(study(steps())))
+    assert "collision rate right to 1% by time steps takes dt = 0.005 and 20 times the time of the event-driven" in said
+    assert "accuracy costs a factor of 10." in said
+    assert "in 16.00% of the collisions, at dt = 0.005 in 0.25%" in said
+    assert "dt^2.0" in said
+    assert "No trajectories were compared: no reference." in said
+    assert "nan" not in said
+
+
+def test_nothing_is_said_of_what_was_not_seen():
+    said = " ".join(sentences(study([row(0.01, 1.0, 0.0), row(0.005, 2.0, 0.0)])))
+    assert "collision rate" not in said
+    assert "pressure" in said
+
+
+def test_ratios_and_their_errors():
+    found = relative(Estimate(11.0, 0.3, 1), Estimate(10.0, 0.4, 1))
+    assert found.value == pytest.approx(0.1)
+    assert found.standard_error == pytest.approx(1.1 * math.hypot(0.3 / 11, 0.04))
+    assert from_theory(Estimate(1.1, 0.2, 1, 2.0)).value == pytest.approx(-0.45)
+    assert from_theory(Estimate(1.1, 0.2, 1, math.nan)) is None
+    assert from_theory(Estimate(1.1, 0.2, 1)) is None
+
+
+def test_where_a_trajectory_is_lost():
+    made = Accuracy("", 1, 1.0, 1, np.array([1.0, 2, 3]), "", (row(trajectory=np.array([1e-9, 0.2, 3.0])), *steps()))
+    assert lost_after(made.rows[0], made) == 2.0
+    assert flat_row(made.rows[0], made)["trajectory_error"] == 1e-9
+    assert lost_after(row(trajectory=np.array([1e-9, 1e-3, 0.1])), made) is None

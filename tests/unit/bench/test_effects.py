@@ -1,0 +1,28 @@
+"""The scenes of the bench of effects: each has its effect, and all at once all that go together."""
+
+import pytest
+
+from idealgas.bench.effects import NUMBER, SCENES, bench_effects, effect_scene
+from idealgas.scene import EFFECTS
+
+
+def test_every_effect_is_there():
+    called = {effect for name in SCENES for effect in effect_scene(name, 1).effects}
+    assert called == set(EFFECTS)
+    assert set(effect_scene("all", 1).effects) == set(EFFECTS)
+    assert effect_scene(None, 1).effects == ()
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "all"])
+def test_one_at_a_time(name):
+    scene = effect_scene(name, 1)
+    assert len(scene.effects) == 1
+    assert name.startswith(scene.effects[0])
+    assert sum(s.count for s in scene.species) == NUMBER
+
+
+def test_ratios_are_measured(monkeypatch):
+    monkeypatch.setattr("idealgas.bench.effects.SCENES", {"restitution": SCENES["restitution"]})
+    (row,) = bench_effects(events=200, repeats=3)
+    assert row.effect == "restitution"
+    assert 0 < row.smallest <= row.ratio <= row.largest

@@ -1,0 +1,63 @@
+"""Memory that is fetched ahead changes no event."""
+
+import numpy as np
+import pytest
+from effect_samples import log_of, make_effects, make_gas
+from thread_samples import compare, lattice, tall_scene
+
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.event_driven.prefetch import FROM, make_lookahead
+from idealgas.engine.event_driven.scheduler import make_tree
+from idealgas.engine.simulation import Stop
+
+pytestmark = pytest.mark.usefixtures("always")
+
+
+@pytest.fixture
+def always(monkeypatch):
+    """Look ahead in gases of any size."""
+    monkeypatch.setattr("idealgas.engine.event_driven.prefetch.FROM", 1)
+
+
+def test_only_large_gases_look_ahead(monkeypatch):
+    monkeypatch.setattr("idealgas.engine.event_driven.prefetch.FROM", FROM)
+    assert make_lookahead(FROM - 1, 6) is None
+    assert make_lookahead(FROM, 6) is not None
+
+
+@pytest.mark.parametrize(
+    ("n", "level"), [(4, 0), (12, 0), (7000, 3), (10_000, 4), (32_768, 4), (32_769, 4), (10**6, 5)]
+)
+def test_parts_are_eight_or_more_unless_memory_is_near(n, level):
+    assert make_lookahead(n, len(make_tree(n).start))[2] == level
+    parts = -(-n // 8**level)
+    assert parts <= 64
+    assert parts >= 8 or n <= 32_768
+
+
+def logs(names: set[str], events: int) -> list[list[np.ndarray]]:
+    """The log of the event-driven method, in cells of two sizes, and that of the oracle."""
+    gas = make_gas(5)
+    methods = (EventDriven(), EventDriven(1e-9), BruteForce())
+    return [log_of(gas, make_effects(names, gas), method, Stop(events=events), 1000) for method in methods]
+
+
+def assert_alike(found: list[list[np.ndarray]]) -> None:
+    assert all(np.array_equal(a, b) for log in found[:-1] for a, b in zip(log, found[-1], strict=True))
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize("names", [set(), {"periodic", "piston"}])
+def test_few_events(names):
+    assert_alike(logs(names, 60))
+
+
+@pytest.mark.parametrize("names", [set(), {"periodic", "piston"}])
+def test_many_events(names):
+    assert_alike(logs(names, 5000))
+
+
+@pytest.mark.parametrize(("sample", "seed"), [(lambda: tall_scene("periodic", 8), 8), (lambda: lattice(6), 6)])
+def test_several_threads(sample, seed):
+    assert compare(sample, seed, (2, 3))["slices"] > 0

@@ -1,0 +1,251 @@
+"""Several threads write the log of one, bit for bit, whatever they meet at the borders of their strips."""
+
+from collections import Counter
+from itertools import cycle
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from log_compare import differences
+from support import batch_for
+from thread_samples import (
+    EAGER,
+    EFFECTS,
+    SMALLEST_CELLS,
+    compare,
+    lattice,
+    log_with,
+    tall_scene,
+    tie_at_a_border,
+    tie_with_a_disc_that_comes_late,
+    wind,
+)
+
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.parallel.autotuner import Race
+from idealgas.engine.parallel.decomposition import Crew, Team, _Strip
+from idealgas.engine.records import UNLIMITED
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+GAS = """
+box.size = [60.0, 60.0]
+log = { pressure = true, snapshot_every = 20.0 }
+run.collisions_per_disc = 200
+[[species]]
+name = "a"
+count = 600
+radius = 0.5
+temperature = 1.0
+[[species]]
+name = "b"
+count = 900
+radius = 0.25
+temperature = 1.0
+"""
+
+PLAIN_SEEDS, LATTICE_SEEDS = range(8), range(10)
+
+
+@pytest.mark.slow
+def test_gases_have_the_log_of_one_thread():
+    facts = sum((compare(lambda s=seed: tall_scene("plain", s), seed) for seed in PLAIN_SEEDS), Counter())
+    assert facts["7 strips"] == len(PLAIN_SEEDS)
+    assert facts["posts"] > 1000
+
+
+@pytest.mark.slow
+def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
+    """Slices by one thread and by several follow each other, as now the one way is faster and now the other."""
+    monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 3)
+    ways = cycle((True, False))
+    monkeypatch.setattr(Race, "shares", lambda race: next(ways))
+    stop, method = Stop(events=5000), EventDriven(1e-9, None, EAGER._replace(race=True))
+    found = log_with(*tall_scene("plain", 3), stop, 300, method)
+    expected = log_with(*tall_scene("plain", 3), stop, 300, EventDriven())
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert method.threads[:2] == (3, "as many as there are cores")
+    assert method.threads.slices - method.threads.given_up > 2
+
+
+@pytest.mark.slow
+def test_a_time_without_an_event_is_passed():
+    """A slice may be shorter than the time to the next event."""
+    compare(lambda: tall_scene("plain", 1005), 1005)
+
+
+@pytest.mark.slow
+def test_a_run_may_go_on_without_a_log():
+    gas, effects = tall_scene("plain", 3)
+    simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
+    for _ in simulation.slices(Stop(events=1000), batch_for(simulation, 65_536), 500):
+        pass
+    shared = simulation.method.threads.slices
+    for _ in simulation.slices(Stop(events=3000), None, 500):
+        assert not simulation.method.pending
+    assert simulation.finished(Stop(events=3000))
+    assert simulation.method.threads.slices > shared > 0
+
+
+@pytest.mark.slow
+def test_lattices_have_the_log_of_one_thread():
+    facts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
+    assert facts["tie"] > 0
+    assert facts["slices"] > 2 * facts["tie"]
+
+
+@pytest.mark.slow
+def test_a_disc_that_comes_over_has_its_turn_among_events_of_one_time():
+    compare(lambda: lattice(1822), 1822)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("until", [3.9, 4.1, 4.4])
+def test_a_disc_of_another_strip_is_not_in_the_schedule_after_events_of_one_time(until):
+    stop = Stop(time=until)
+    expected = log_with(*tie_at_a_border(), stop, UNLIMITED, EventDriven())
+    method = EventDriven(1e-3, 2, EAGER)
+    method.crew.rate = 1000.0, 500.0  # all is one slice
+    found = log_with(*tie_at_a_border(), stop, UNLIMITED, method)
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert (method.threads.slices, method.threads.given_up) == (1, 0)
+
+
+@pytest.mark.slow
+def test_a_disc_that_comes_late_has_its_turn_among_events_of_one_time():
+    """Which strip is ahead is chance: on most of 20 runs the rows were side by side in the wrong order."""
+    stop, ties = Stop(time=6.0), 0
+    expected = log_with(*tie_with_a_disc_that_comes_late(), stop, UNLIMITED, EventDriven(SMALLEST_CELLS))
+    for _ in range(20):
+        method = EventDriven(SMALLEST_CELLS, 2, EAGER)
+        method.crew.rate = 1000.0, 500.0  # all is one slice
+        found = log_with(*tie_with_a_disc_that_comes_late(), stop, UNLIMITED, method)
+        assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+        ties += method.crew.facts["tie"]
+    assert ties > 0
+
+
+@pytest.mark.slow
+def test_strips_begin_an_epoch_without_a_thread_that_does_it_alone(monkeypatch):
+    gas, effects = tall_scene("plain", 2)
+    simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
+    while simulation.epoch < 1:
+        simulation.advance(Stop(), None, 500)
+        if simulation.epoch_over:
+            simulation.next_epoch()
+    monkeypatch.setattr(Team, "_alone", None)
+    simulation.advance(Stop(), None, 500)
+    assert simulation.counters.events > simulation.totals.events
+
+
+@pytest.mark.slow
+def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
+    """The others wait at their borders for one that is not there, and see that the work is given up."""
+    stop, sample = Stop(events=3000), lambda: tall_scene("plain", 3)
+    expected = log_with(*sample(), stop, 1000, EventDriven())
+    run, calls = _Strip.run, []
+
+    def fail(self, record, ids, limits, batch, border, unpredicted):
+        calls.append(border.me)
+        if border.me == 1 and len(calls) % 2:
+            raise MemoryError
+        run(self, record, ids, limits, batch, border, unpredicted)
+
+    monkeypatch.setattr(_Strip, "run", fail)
+    method = EventDriven(1e-9, 3, EAGER)
+    found = log_with(*sample(), stop, 1000, method)
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert 0 < method.crew.facts["error"] <= method.threads.given_up
+
+
+@pytest.mark.slow
+def test_an_interrupt_sets_all_back_and_ends_the_threads(monkeypatch):
+    gas, effects = tall_scene("plain", 3)
+    simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
+    batch = batch_for(simulation, 65_536)
+    simulation.advance(Stop(), batch, 500)
+    before = simulation.state()[0]
+    run = Crew.run
+
+    def interrupted(self, work, number, give_up):
+        def stopped(k):
+            if k == 0:
+                raise KeyboardInterrupt
+            work(k)
+
+        run(self, stopped, number, give_up)
+
+    monkeypatch.setattr(Crew, "run", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        simulation.advance(Stop(), batch, 500)
+    assert np.array_equal(simulation.state()[0].position, before.position)
+
+
+@pytest.mark.slow
+def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
+    one, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
+    simulate(parse_scene(GAS), one)
+    summary = simulate(parse_scene(GAS, overrides=["run.threads=2"]), two)
+    assert (summary.threads, summary.threads_because) == (2, "as run.threads says")
+    assert 0 <= summary.given_up_slices < summary.shared_slices
+    assert differences(one, two) == []
+    calls = []
+    simulate(
+        parse_scene(GAS, overrides=["run.threads=3"]),
+        cut_off,
+        interrupted=lambda: calls.append(1) or len(calls) > 9,
+    )
+    assert resume(cut_off, ["run.threads=2"]).shared_slices > 0
+    assert differences(one, cut_off) == []
+
+
+@pytest.mark.slow
+def test_everything_at_once_has_the_log_of_one_thread():
+    facts = sum((compare(lambda s=seed: tall_scene("everything", s), seed, (3, 7)) for seed in range(1)), Counter())
+    assert facts["posts"] > 100
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("effects", EFFECTS)
+def test_many_gases_have_the_log_of_one_thread(effects):
+    total = Counter()
+
+    @settings(max_examples=40, deadline=None)
+    @given(st.integers(0, 2**31))
+    def run(seed):
+        nonlocal total
+        total += compare(lambda: tall_scene(effects, seed), seed)
+
+    for _ in range(5):  # once in a while no thread is late enough in forty gases to change another's past
+        if not total["past"]:
+            run()
+    print(effects, dict(total))
+    assert total["past"] > 0
+
+
+@pytest.mark.long
+def test_many_lattices_have_the_log_of_one_thread():
+    total = Counter()
+    for seed in range(200):
+        total += compare(lambda s=seed: lattice(s), seed)
+    print(dict(total))
+    assert total["tie"] >= 100
+
+
+@pytest.mark.long
+def test_discs_that_go_from_strip_to_strip_all_the_time_have_the_log_of_one_thread():
+    """Pasts that have changed, clocks that are set back, and discs taken in while one's own is handed over."""
+    stop, total = Stop(time=400.0), Counter()
+    for seed in range(6):
+        expected = log_with(*wind(seed), stop, 100, EventDriven(SMALLEST_CELLS))
+        for number in (3, 7):
+            method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=1e9))
+            found = log_with(*wind(seed), stop, 100, method)
+            assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), (seed, number)
+            assert method.threads.number == number
+            total += method.crew.facts
+    print(dict(total))
+    assert min(total[name] for name in ("past", "set_back", "while_posting")) >= 100

@@ -1,0 +1,97 @@
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+from scipy.spatial.distance import pdist
+
+from idealgas.initial import placement
+from idealgas.initial.placement import make_lattice
+
+LOW, HIGH = np.array([1.0, 2.0]), np.array([9.0, 7.0])
+
+
+def inside(sites, low=LOW, high=HIGH):
+    return bool(((sites >= low) & (sites <= high)).all())
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 7, 20, 40])
+def test_a_lattice_has_sites_enough_that_keep_their_distance(number):
+    sites = make_lattice(LOW, HIGH, 1.0, number)
+    assert len(sites) >= number
+    assert inside(sites)
+    assert len(sites) == 1 or pdist(sites).min() >= 1.0
+
+
+def test_a_square_lattice_can_be_filled_to_the_last_site():
+    low, high = np.array([0.5, 0.5]), np.array([9.5, 4.5])
+    sites = make_lattice(low, high, 1.0, 50)
+    assert len(sites) == 50
+    assert inside(sites, low, high)
+    assert pdist(sites).min() == 1.0
+
+
+@pytest.mark.parametrize(("side", "number"), [(40.0, 1711), (31.94, 1000)])
+def test_beyond_the_square_lattice_comes_the_triangular_one(side, number):
+    low, high = np.array([0.5, 0.5]), np.array([side - 0.5, side - 0.5])
+    sites = make_lattice(low, high, 1.0, number)
+    assert number > int(side) ** 2
+    assert len(sites) >= number
+    assert inside(sites, low, high)
+    assert pdist(sites).min() >= 1.0
+    assert make_lattice(low, high, 1.0, int(0.9069 * side**2 / (math.pi / 4))) is None
+
+
+def test_no_lattice_where_there_is_no_room():
+    assert make_lattice(LOW, HIGH, 1.0, 80) is None
+
+
+def placed_at_random(number, packing, seed=0):
+    """Positions of discs of diameter 1 in a square box, and its side."""
+    radius = np.full(number, 0.5)
+    side = math.sqrt(number * math.pi / 4 / packing)
+    grid = placement.make_grid((side, side), radius)
+    position = np.empty((number, 2))
+    bounds = np.tile([0.5, 0.5, side - 0.5, side - 0.5], (number, 1))
+    ids = np.arange(number)
+    rng = np.random.default_rng(seed)
+    assert placement.insert_randomly(grid, position, radius, bounds, ids, rng, 10**7) == number
+    return position, side
+
+
+@pytest.mark.parametrize("packing", [0.01, 0.3, 0.5, 0.6])
+def test_random_discs_do_not_overlap(packing):
+    position, side = placed_at_random(2_000, packing)
+    assert inside(position, 0.5, side - 0.5)
+    assert pdist(position).min() >= 1.0
+
+
+def test_dilute_discs_are_spread_evenly():
+    """Counts in 10 × 10 cells: their variance over mean is 1 for ideal, about 1 - 4φ for hard discs (S(0), B2)."""
+    position, side = placed_at_random(20_000, 0.01, seed=3)
+    cells = np.minimum((10 * (position - 0.5) / (side - 1)).astype(int), 9)
+    counts = np.bincount(10 * cells[:, 0] + cells[:, 1], minlength=100)
+    expected, standard_error = 1 - 4 * 0.01, math.sqrt(2 / 99)
+    assert abs(counts.var(ddof=1) / counts.mean() - expected) < 4 * standard_error
+
+
+def test_dense_discs_are_near_equilibrium():
+    """Pairs near contact at φ = 0.5, against χ = 3.125 (Henderson); pure random addition has no such state at all.
+
+    Discs were moved only while others were added, so this is no equilibrium: 10 % are allowed.
+    """
+    position, side = placed_at_random(20_000, 0.5)
+    width = 0.02
+    pairs = cKDTree(position).query_pairs(1 + width, output_type="ndarray")
+    deep = ((position > 3) & (position < side - 3)).all(axis=1)
+    neighbours = np.bincount(pairs.ravel(), minlength=len(position))[deep].mean()
+    near_contact = neighbours / (len(position) / side**2 * math.pi * ((1 + width) ** 2 - 1))
+    assert near_contact == pytest.approx(3.125, rel=0.1)
+
+
+def test_random_placement_gives_up():
+    radius = np.full(3, 0.5)
+    grid = placement.make_grid((1.95, 1.9), radius)
+    bounds = np.tile([0.5, 0.5, 1.45, 1.4], (3, 1))
+    rng = np.random.default_rng(0)
+    assert placement.insert_randomly(grid, np.empty((3, 2)), radius, bounds, np.arange(3), rng, 1_000) == 2

@@ -1,0 +1,194 @@
+"""Crafted logs, whose check sums are right: each is refused in one line that names what is wrong."""
+
+import os
+import re
+import shutil
+import struct
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from crafted import craft, link, put, read_path, refused, seal, swap
+from isal import isal_zlib
+from log_samples import write_log
+
+from idealgas.errors import OutputError
+from idealgas.log import LogError, LogWriter, open_log, recover
+from idealgas.log.hdf5 import safe_hdf5 as gate
+from idealgas.log.hdf5.commit import Commit
+from idealgas.log.hdf5.superblock import lookup3
+
+STOP = 300
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    return write_log(tmp_path_factory.mktemp("log") / "sound.h5", STOP)
+
+
+@pytest.fixture
+def path(sound, tmp_path):
+    return shutil.copyfile(sound, tmp_path / "run.h5")
+
+
+def test_a_log_that_was_only_sealed_is_read(path):
+    read_path(craft(path, lambda file: None))
+    read_path(craft(path, put("discs/mass", 3, 2.5)))
+    read_path(craft(path, put("events/velocity", (7, 1), 0.25)))
+
+
+def bomb(name, chunk=0, size=2**26):
+    """A chunk that would become far larger than it is declared."""
+
+    def edit(file):
+        dataset = file[name].id
+        packed = isal_zlib.compress(bytes(size), 1)
+        dataset.write_direct_chunk((chunk,) + (0,) * (dataset.rank - 1), packed, 1 | 4)
+
+    return edit
+
+
+def external(file):
+    del file["discs/radius"]
+    file.create_dataset("discs/radius", data=np.ones(25), external=[(f"{file.filename}.bin", 0, 200)])
+
+
+def virtual(file):
+    del file["discs/radius"]
+    layout = h5py.VirtualLayout((25,), "f8")
+    layout[:] = h5py.VirtualSource("other.h5", "radius", (25,))
+    file.create_virtual_dataset("discs/radius", layout)
+
+
+def unlimited_virtual(file):
+    del file["discs/radius"]
+    layout = h5py.VirtualLayout((25,), "f8", maxshape=(None,))
+    layout[: h5py.h5s.UNLIMITED] = h5py.VirtualSource("other.h5", "radius", (25,), "f8", (None,))[: h5py.h5s.UNLIMITED]
+    file.create_virtual_dataset("discs/radius", layout)
+
+
+def unknown_filter(file):
+    del file["discs/radius"]
+    layout = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    layout.set_chunk((25,))
+    layout.set_filter(32001, h5py.h5z.FLAG_OPTIONAL)
+    space, kind = h5py.h5s.create_simple((25,)), h5py.h5t.IEEE_F64LE
+    h5py.h5d.create(file["discs"].id, b"radius", kind, space, layout)
+
+
+def a_group(file):
+    del file["discs/radius"]
+    file.create_group("discs/radius")
+
+
+def a_type(file):
+    del file["discs/radius"]
+    file["discs/radius"] = np.dtype("f8")
+
+
+def attribute(of, name, value, **options):
+    return lambda file: file[of].attrs.create(name, value, **options)
+
+
+TEXTS, REFERENCES = h5py.string_dtype(), h5py.ref_dtype
+STRUCTURE = {
+    "external link": (link("discs/species_name", h5py.ExternalLink("o.h5", "/x")), "species_name: an external link"),
+    "link of a group": (link("discs", h5py.ExternalLink("o.h5", "/x")), "discs/\\w+: an external link"),
+    "link of a table": (link("events/time", h5py.ExternalLink("o.h5", "/x")), "events/time: an external link"),
+    "link of the record": (link("commit", h5py.ExternalLink("o.h5", "/x")), "an external link"),
+    "soft link": (link("discs/radius", h5py.SoftLink("/discs/mass")), "discs/radius: a soft link"),
+    "soft circle": (link("discs/radius", h5py.SoftLink("/discs/radius")), "discs/radius: a soft link"),
+    "external storage": (external, "discs/radius: not in chunks"),
+    "virtual": (virtual, "discs/radius: a virtual dataset"),
+    "virtual without end": (unlimited_virtual, "discs/radius: a virtual dataset"),
+    "other filter": (swap("discs/radius", compression="lzf", shuffle=False), "discs/radius: filters 32000, 3"),
+    "unknown filter": (unknown_filter, "discs/radius: filters 32001"),
+    "no checksum": (swap("discs/radius", fletcher32=False), r"discs/radius: filters 2, 1 \(allowed"),
+    "not in chunks": (link("discs/radius", np.ones(25)), "discs/radius: not in chunks"),
+    "group": (a_group, "discs/radius: not a dataset"),
+    "type": (a_type, "discs/radius: not a dataset"),
+    "missing": (lambda file: file.__delitem__("discs/radius"), "discs/radius: not there"),
+    "table missing": (lambda file: file.__delitem__("events/partner"), "events/partner: not there"),
+    "record missing": (lambda file: file.__delitem__("commit"), "not there"),
+    "texts": (link("discs/species_name", np.array(["a", "b"], TEXTS)), "discs/species_name: not in chunks"),
+    "references": (
+        swap("discs/radius", data=None, shape=(25,), dtype=REFERENCES),
+        "discs/radius: of a type that no log has",
+    ),
+    "compound": (swap("discs/radius", data=np.zeros(25, "f8,f8")), "discs/radius: of a type"),
+    "big-endian": (swap("discs/radius", data=np.ones(25, ">f8")), "discs/radius: of a type"),
+    "bomb": (bomb("discs/radius", size=2**16), "discs/radius: a compressed chunk: does not end at 200 bytes"),
+    "large bomb": (bomb("discs/radius"), r"discs/radius: a chunk of more than 1,227 bytes"),
+    "bomb among events": (bomb("events/velocity"), "events/velocity from row 0: a compressed chunk: does not end"),
+    "large chunk": (
+        swap("discs/mass", data=None, shape=(2**40,), dtype="f8", chunks=(2**28,), maxshape=None),
+        r"discs/mass: a chunk of 2,147,483,648 bytes \(allowed up to 268,435,456\)",
+    ),
+    "large text": (
+        swap("runs/scene", data=None, shape=(1,), dtype="S20000000", chunks=(1,)),
+        r"runs/scene: text of 20,000,000 bytes",
+    ),
+    "long attribute": (attribute("box", "boundary", np.zeros(70_000, "S4")), "box: attribute boundary: too large"),
+    "attribute of text": (attribute("box", "boundary", ["none"] * 2, dtype=TEXTS), "box: text of variable length"),
+    "attribute missing": (lambda file: file["box"].attrs.__delitem__("boundary"), "box: .*boundary"),
+    "format 0": (attribute("/", "format_version", 0), r"of format 0 \(allowed 1 to 2\)"),
+    "format none": (attribute("/", "format_version", "1", dtype=TEXTS), "text of variable length"),
+    "format 1 and 1": (attribute("/", "format_version", [1, 1]), "attribute format_version: not one text"),
+    "seeds": (attribute("/", "seed", np.array([b"1", b"2"])), "seed: not one text"),
+    "seed nan": (attribute("/", "seed", np.nan), "seed: not one text or whole number"),
+    "not UTF-8": (attribute("/", "created", np.bytes_(b"\xff")), "/: attribute created: not UTF-8 text"),
+    "record too narrow": (attribute("commit", "datasets", np.array([b"events/time"])), "not a record of 1 datasets"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", STRUCTURE)
+def test_structure(path, case):
+    edit, expected = STRUCTURE[case]
+    craft(path, edit)
+    message = refused(path)
+    assert message.startswith(("damaged: ", "of format"))
+    assert re.search(expected, message), message
+
+
+def test_no_other_file_is_opened(path, tmp_path):
+    os.mkfifo(tmp_path / "other.h5")  # whoever opens it waits for ever
+    message = refused(craft(path, link("discs/mass", h5py.ExternalLink(str(tmp_path / "other.h5"), "/x"))))
+    assert "an external link" in message
+
+
+def test_a_chunk_beyond_the_end_of_the_file(path):
+    """In the log of a dead writer, to which HDF5 knows no end; the record says that it is shorter."""
+    with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+        place = file["events/velocity"].id.get_chunk_info(0).byte_offset
+        seal(file, Commit.read(file)._replace(file_size=0))
+    head = bytearray(path.read_bytes()[:44])
+    head[11] = 5
+    with path.open("r+b") as raw:
+        raw.write(head + struct.pack("<I", lookup3(bytes(head))))
+        raw.truncate(place)
+    assert "events/velocity from row 0: " in refused(path)
+    assert "beyond the end of the file" in refused(path)
+
+
+def fifo(path):
+    os.mkfifo(path)
+    return path
+
+
+def test_what_is_not_a_regular_file(tmp_path):
+    for odd in (fifo(tmp_path / "fifo"), tmp_path / "link", Path("/dev/null"), Path("/dev/zero")):
+        if odd.name == "link":
+            odd.symlink_to(tmp_path / "fifo")
+        for use in (open_log, recover, LogWriter.resume):
+            with pytest.raises(LogError, match=f"^{odd}: cannot be read: not a regular file$"):
+                use(odd)
+
+
+@pytest.mark.parametrize(("limit", "what"), [("MOST_CHUNK", "a chunk"), ("MOST_TEXT", "text")])
+def test_no_log_is_written_that_would_not_be_read(tmp_path, monkeypatch, limit, what):
+    monkeypatch.setattr(gate, limit, 1000)
+    with pytest.raises(OutputError, match=rf"{what} of .* bytes \(allowed up to 1,000\)") as caught:
+        write_log(tmp_path / "run.h5", STOP)
+    assert caught.value.exit_code == 2
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,239 @@
+"""Films: which instants they show, what is painted where, and whether the files are films."""
+
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+from PIL import Image
+from support import program
+
+from idealgas.errors import UserError
+from idealgas.initial.build import make_gas
+from idealgas.log import LogState, open_log
+from idealgas.movie import film
+from idealgas.movie.film import animate, film_path
+from idealgas.movie.gif import GifWriter
+from idealgas.movie.painter import LEFT, Painter, layout, view
+from idealgas.movie.piston_track import PistonTrack
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SIZE = (960, 540)
+STATE = LogState(2.5, np.array([[2.0, 7.0], [8.0, 1.0]]), np.array([[1.0, 0.0], [0.0, 1.0]]))
+WHITE = 250
+
+
+def scene(extra=""):
+    return parse_scene(f"""
+        scene.title = "two"
+        box.size = [10, 10]
+        [[disc]]
+        position = [2, 7]
+        velocity = [1, 0]
+        radius = 0.5
+        [[disc]]
+        position = [8, 1]
+        velocity = [0, 1]
+        radius = 0.01
+        [run]
+        until = 20
+        {extra}
+    """)
+
+
+def paint(extra="", state=STATE, piston=None, by_species=False, size=SIZE):
+    """(height, width, 3) of a frame, and at(x, y): its pixel there in the box."""
+    made = scene(extra)
+    painter = Painter(made, make_gas(made), piston, size, 1.0, "species" if by_species else "speed")
+    frame = painter.paint(state).copy()[..., :3].astype(int)
+    place = layout(size, (10.0, 10.0))
+
+    def at(x, y):
+        return frame[round(size[1] - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)]
+
+    return frame, at
+
+
+@pytest.mark.parametrize("size", [(960, 540), (540, 960), (480, 480), (1920, 400)])
+@pytest.mark.parametrize("box", [(1.0, 1.0), (20.0, 1.0), (1.0, 20.0), (1e-3, 2e-3)])
+def test_box_and_speeds_are_in_the_frame_and_apart(size, box):
+    place = layout(size, box)
+    for x, y, width, height in (place.box, place.speeds):
+        assert LEFT <= x < x + width < size[0]
+        assert 0 < y < y + height < size[1]
+    assert place.box[2:] == pytest.approx((box[0] * place.scale, box[1] * place.scale))
+    (x, y, width, height), (u, v, wide, high) = place.box, place.speeds
+    assert x + width < u or v + high < y
+    assert wide * high > 0.1 * size[0] * size[1]
+
+
+def test_the_room_beyond_a_piston_is_shown_in_part():
+    place = np.array([4.0, 5.0])
+    right = PistonTrack(0, place, place, 0.0, (0.0, 40.0), 1.0)
+    left = PistonTrack(0, place, 40 - place, 0.0, (0.0, 40.0), -1.0)
+    assert view((40.0, 10.0), right) == ((0.0, 6.25), (0.0, 10.0))
+    assert view((40.0, 10.0), left) == ((33.75, 40.0), (0.0, 10.0))
+    assert view((40.0, 10.0), None) == ((0.0, 40.0), (0.0, 10.0))
+
+
+def test_discs_are_where_they_are():
+    _, at = paint()
+    assert at(2, 7).max() < WHITE
+    assert at(2.45, 7).max() < WHITE
+    assert at(2, 6.55).max() < WHITE
+    assert at(2.6, 7).min() > WHITE
+    assert at(5, 5).min() > WHITE
+
+
+def test_the_smallest_disc_is_seen():
+    _, at = paint()
+    assert at(8, 1).min() < 200
+
+
+def test_discs_at_joined_sides_show_their_other_half():
+    state = STATE._replace(position=np.array([[0.1, 9.9], [5.0, 5.0]]))
+    periodic = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+    made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
+        f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
+    ))  # fmt: skip
+    painter = Painter(made, make_gas(made), None, SIZE, 1.0)
+    frame = painter.paint(state)[..., :3]
+    place = layout(SIZE, (10.0, 10.0))
+    for x, y in ((0.25, 9.75), (9.75, 9.75), (0.25, 0.25), (9.75, 0.25)):
+        assert frame[round(540 - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)].max() < WHITE
+
+
+def test_a_gate_is_there_until_it_opens():
+    wall = "[[wall]]\nfrom = [5, 3]\nto = [5, 9]\nopens_at = 3\n"
+    assert paint(wall)[1](5, 6).max() < 100
+    assert paint(wall, STATE._replace(time=3.0))[1](5, 6).min() > WHITE
+
+
+def test_the_piston_is_drawn():
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), 0.0, (0.0, 10.0), 1.0)
+    red, green, blue = paint(piston=track)[1](6.5, 5)
+    assert red > 150 > green > blue
+    assert paint(piston=track)[1](6.2, 5).min() > WHITE
+
+
+def test_frames_of_the_same_state_are_the_same_whatever_came_before():
+    made = scene()
+    painter = Painter(made, make_gas(made), None, SIZE, 1.0)
+    first = painter.paint(STATE).copy()
+    painter.paint(STATE._replace(time=9.0, position=STATE.position + 1, velocity=3 * STATE.velocity))
+    assert np.array_equal(painter.paint(STATE), first)
+
+
+@pytest.mark.parametrize("size", [(240, 240), (320, 240), (2000, 300)])
+def test_frames_of_unusual_sizes(size):
+    frame, _ = paint(size=size)
+    assert frame.shape == (size[1], size[0], 3)
+
+
+def test_a_gif_gives_its_frames_back(tmp_path):
+    frames = np.full((3, 20, 30, 3), 255, np.uint8)
+    frames[1, 5:9, 5:9] = (0x00, 0x72, 0xB2)
+    frames[2, 5:9, 5:20] = 0
+    with (tmp_path / "film.gif").open("wb") as file:
+        gif = GifWriter(file, 30, 20, 4)
+        for frame in frames:
+            gif.write(frame)
+        gif.close()
+    with Image.open(tmp_path / "film.gif") as image:
+        assert (image.n_frames, image.size, image.info["loop"]) == (3, (30, 20), 0)
+        for k, frame in enumerate(frames):
+            image.seek(k)
+            assert image.info["duration"] == 40
+            shown = np.asarray(image.convert("RGB")).astype(int)
+            assert np.abs(shown - frame).max() <= 8
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    made = tmp_path_factory.mktemp("film") / "run.h5"
+    simulate(scene(), made)
+    return made
+
+
+def test_instants_are_even_and_in_the_window(path, tmp_path, monkeypatch):
+    seen = []
+    paint = Painter.paint
+    monkeypatch.setattr(Painter, "paint", lambda self, state: seen.append(state) or paint(self, state))
+    with open_log(path) as log:
+        made = animate(log, tmp_path / "film.gif", start=3.0, end=5.0, fps=20, speed=2.0, size=(321, 240))
+        expected = [log.state_at(state.time).position for state in seen]
+    times = [state.time for state in seen]
+    assert np.allclose(times, 3 + 0.1 * np.arange(21), rtol=0, atol=1e-12)
+    assert np.array_equal([state.position for state in seen], expected)
+    assert (made.frames, made.fps, made.start, made.end) == (21, 20, 3.0, 5.0)
+    with Image.open(made.path) as image:
+        assert (image.n_frames, image.size) == (21, (320, 240))
+
+
+def test_without_an_end_it_is_twenty_seconds_of_film(path, tmp_path):
+    with open_log(path) as log:
+        made = animate(log, tmp_path / "film.gif", fps=2, speed=0.5, size=(240, 240))
+    assert made.end == 10.0
+    assert made.frames == 41
+
+
+@pytest.mark.slow
+def test_a_video_has_all_frames(path, tmp_path):
+    program("ffmpeg")
+    with open_log(path) as log:
+        made = animate(log, tmp_path / "film.mp4", end=2.0, fps=25, speed=1.0, size=(321, 240))
+    probe = ("ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", str(made.path))
+    (stream,) = json.loads(subprocess.run(probe, capture_output=True, check=True).stdout)["streams"]
+    assert (stream["width"], stream["height"], stream["codec_name"]) == (320, 240, "h264")
+    assert int(stream["nb_read_frames"]) == made.frames == 51
+
+
+def test_no_ffmpeg_no_video(tmp_path, monkeypatch):
+    monkeypatch.setattr(film.shutil, "which", lambda _: None)
+    assert film_path(tmp_path / "film.mp4") == tmp_path / "film.gif"
+    assert film_path(tmp_path / "film.GIF") == tmp_path / "film.GIF"
+
+
+def test_a_video_that_fails_says_why_and_leaves_nothing(path, tmp_path, monkeypatch):
+    program = tmp_path / "bin" / "ffmpeg"
+    program.parent.mkdir()
+    program.write_text("#!/bin/sh\necho first >&2\necho 'no such codec' >&2\nexit 3\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(program.parent) + os.pathsep + os.environ["PATH"])
+    with open_log(path) as log, pytest.raises(UserError, match=r"^ffmpeg: no such codec$") as caught:
+        animate(log, tmp_path / "film.mp4", end=2.0, size=(240, 240))
+    assert caught.value.exit_code == 1
+    assert [entry.name for entry in tmp_path.iterdir()] == ["bin"]
+
+
+def test_an_old_film_survives_a_failure(path, tmp_path, monkeypatch):
+    (tmp_path / "film.gif").write_bytes(b"GIF89a old")
+
+    def fail(self, frame):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(GifWriter, "write", fail)
+    with open_log(path) as log, pytest.raises(UserError, match="cannot be written: No space left") as caught:
+        animate(log, tmp_path / "film.gif", end=2.0, size=(240, 240), force=True)
+    assert caught.value.exit_code == 1
+    assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("film.gif", b"GIF89a old")]
+
+
+def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
+    """The picture of the speeds is that of the same gas at rest as a whole."""
+
+    def speeds(flow):
+        sides = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+        velocities = [[flow + v, 0.0] for v in (1, -1)]
+        discs = "".join(
+            f"[[disc]]\nposition = [{2 + 6 * k}, 5]\nvelocity = {velocity}\nradius = 0.5\n"
+            for k, velocity in enumerate(velocities)
+        )
+        made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
+        frame = Painter(made, make_gas(made), None, SIZE, 1.0).paint(STATE._replace(velocity=np.array(velocities)))
+        x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).speeds)
+        return frame[SIZE[1] - y - height + 4 : SIZE[1] - y - 4, x + 4 : x + width - 4].copy()
+
+    assert np.array_equal(speeds(10.0), speeds(0.0))

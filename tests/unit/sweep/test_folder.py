@@ -1,0 +1,135 @@
+"""The folder of a sweep: who holds it, and what goes on in it when the sweep gets new values."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from idealgas.errors import UserError
+from idealgas.sweep.folder import continued, held
+from idealgas.sweep.plan import load_sweep
+from idealgas.sweep.point import points_folder, result_path
+from idealgas.toml.dump import dump_document
+
+PLAN = """
+[sweep]
+seed = 5
+replicates = {replicates}
+analyses = {analyses}
+[[axis]]
+key = "species.temperature"
+values = {temperatures}
+[[axis]]
+key = "species.mass"
+values = {masses}
+[base]
+box.size = [10, 5]
+species = [{{name = "gas", count = {count}, radius = 0.1, temperature = 1.0}}]
+run.events = 100
+"""
+
+HOLD = """
+import sys
+from pathlib import Path
+from idealgas.sweep.folder import held
+with held(Path(sys.argv[1])):
+    print(flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.fixture
+def plan(tmp_path):
+    def load(temperatures=(1, 2), masses=(1, 2), replicates=1, analyses=(), count=20):
+        texts = {"temperatures": list(temperatures), "masses": list(masses), "analyses": list(analyses)}
+        (tmp_path / "plan.toml").write_text(PLAN.format(replicates=replicates, count=count, **texts))
+        return load_sweep(tmp_path / "plan.toml")
+
+    return load
+
+
+@pytest.fixture
+def folder(tmp_path):
+    folder = tmp_path / "out"
+    points_folder(folder).mkdir(parents=True)
+    return folder
+
+
+def finish(sweep, folder, points):
+    """Results of points as their workers leave them, but without numbers."""
+    for point in points:
+        found = {
+            "point": point.index, "seed": point.scene.scene.seed, "combination": point.combination,
+            "replicate": point.replicate, "values": point.values, "scene": dump_document(point.scene), "summary": {},
+            "analyses": dict.fromkeys(sweep.analyses),
+        }  # fmt: skip
+        result_path(folder, point.index).write_text(json.dumps(found))
+
+
+def numbers(sweep):
+    """Number, number of the combination, and seed of each point, by its values and replicate."""
+    return {
+        (*point.values.values(), point.replicate): (point.index, point.combination, point.scene.scene.seed)
+        for point in sweep.points
+    }
+
+
+def test_a_new_sweep_is_as_it_is(plan, folder):
+    assert continued(plan(), folder) == plan()
+    assert (folder / "sweep.toml").read_text().endswith((folder.parent / "plan.toml").read_text())
+
+
+def test_new_values_get_new_numbers_and_seeds(plan, folder):
+    old = plan()
+    finish(old, folder, old.points[1:3])
+    more = continued(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder)
+    before, after = numbers(old), numbers(more)
+    for point in old.points[1:3]:
+        label = (*point.values.values(), point.replicate)
+        assert after[label] == before[label]
+    assert len(more.points) == 18
+    for column in zip(*after.values(), strict=True):
+        assert len(set(column)) in (9, 18)
+    assert sorted(point.index for point in more.points) == list(range(18))
+    for point in more.points[::4]:
+        finish(more, folder, [point])
+        assert continued(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder) == more
+
+
+def test_values_that_are_there_twice(plan, folder):
+    twice = plan(temperatures=(1, 1))
+    finish(twice, folder, twice.points[:3])
+    assert continued(twice, folder) == twice
+
+
+@pytest.mark.parametrize(
+    "change", [{"temperatures": [1]}, {"analyses": ["pressure"]}, {"count": 30}], ids=["value", "analyses", "base"]
+)
+def test_what_is_done_must_be_of_the_sweep(plan, folder, change):
+    old = plan()
+    continued(old, folder)
+    finish(old, folder, old.points)
+    before = {path: path.read_bytes() for path in folder.rglob("*.*")}
+    with pytest.raises(UserError, match=r"out: holds another sweep, its point \d \(species\..*remove it"):
+        continued(plan(**change), folder)
+    assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before
+
+
+def test_a_folder_has_one_sweep_at_a_time(tmp_path):
+    folder = tmp_path / "out"
+    with subprocess.Popen([sys.executable, "-c", HOLD, folder], stdin=-1, stdout=-1) as other:
+        other.stdout.readline()
+        with pytest.raises(UserError, match="out: another sweep is running in this folder"), held(folder):
+            pass
+        other.kill()
+    with held(folder):
+        assert points_folder(folder).is_dir()
+
+
+@pytest.mark.parametrize("name", ["precious", "sweep.toml"])
+def test_a_folder_of_others_is_left_alone(tmp_path, name):
+    (tmp_path / name).write_text("[sweep]")
+    with pytest.raises(UserError, match="exists and is no sweep's folder"), held(tmp_path):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == [name]

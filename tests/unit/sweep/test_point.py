@@ -1,0 +1,86 @@
+import csv
+import json
+from dataclasses import replace
+
+import pytest
+
+from idealgas.analysis.pressure.combine import restore_pressure
+from idealgas.errors import UserError
+from idealgas.scene import parse_scene
+from idealgas.sweep.point import Task, log_path, points_folder, result_path, run_point
+from idealgas.sweep.results import read_points, stored, write_tables
+from idealgas.toml.dump import dump_document
+
+SCENE = """
+scene.seed = 4
+box.size = [10, 10]
+species = [{name = "gas", count = 20, radius = 0.3, temperature = 1.0}]
+run.events = 2000
+"""
+
+
+@pytest.fixture
+def task(tmp_path):
+    points_folder(tmp_path).mkdir()
+    scene = dump_document(parse_scene(SCENE))
+    return Task(str(tmp_path), 3, 1, 1, {"phi": 0.1, "species.x": [1, 2]}, scene, ("pressure", "temperature"), True)
+
+
+def test_a_point_leaves_its_log_and_its_results(task, tmp_path):
+    run_point(task)
+    assert sorted(path.name for path in points_folder(tmp_path).iterdir()) == ["0003.h5", "0003.json"]
+    (found,) = read_points(tmp_path)
+    assert (found["point"], found["replicate"], found["seed"]) == (3, 1, 4)
+    assert set(found["analyses"]) == {"pressure", "temperature"}
+    assert "seconds" not in found["summary"]
+    assert parse_scene(found["scene"]) == parse_scene(SCENE)
+
+
+def test_what_is_done_is_not_done_again(task, tmp_path):
+    result_path(tmp_path, 3).write_text("as it was")
+    run_point(task)
+    assert result_path(tmp_path, 3).read_text() == "as it was"
+    assert not log_path(tmp_path, 3).exists()
+
+
+def test_results_do_not_depend_on_what_a_dead_worker_left(task, tmp_path):
+    run_point(task)
+    first = result_path(tmp_path, 3).read_bytes()
+    result_path(tmp_path, 3).unlink()
+    log_path(tmp_path, 3).rename(log_path(tmp_path, 3).with_suffix(".h5.part"))
+    run_point(replace(task, keep_log=False))
+    assert result_path(tmp_path, 3).read_bytes() == first
+    assert [path.name for path in points_folder(tmp_path).iterdir()] == ["0003.json"]
+
+
+def test_the_table_is_tidy(task, tmp_path):
+    run_point(task)
+    tables = write_tables(tmp_path)
+    with (tmp_path / "results.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0])[:5] == ["point", "replicate", "seed", "phi", "species.x"]
+    by_name = {(row["analysis"], row["quantity"]): row for row in rows}
+    assert len(by_name) == len(rows)
+    pairs = by_name["pressure", "routes/pairs, virial/compressibility"]
+    ((label, result, _),) = stored(tmp_path, "pressure")
+    assert label == "phi = 0.1, species.x = [1, 2]"
+    sample = restore_pressure(result, label)
+    assert float(pairs["value"]) == sample.compressibility.value
+    assert float(pairs["theory"]) == sample.compressibility.theory
+    assert pairs["species.x"] == "[1, 2]"
+    assert by_name["temperature", "species/gas/both"]["standard_error"]
+    if len(tables) == 2:
+        from pyarrow import parquet
+
+        assert parquet.read_table(tables[1]).num_rows == len(rows)
+
+
+def test_folders_without_results_are_refused(task, tmp_path):
+    with pytest.raises(UserError, match="holds no results of a sweep"):
+        read_points(tmp_path)
+    run_point(replace(task, analyses=("temperature",)))
+    with pytest.raises(UserError, match='without the analysis "pressure"'):
+        list(stored(tmp_path, "pressure"))
+    result_path(tmp_path, 3).write_text(json.dumps({})[:1])
+    with pytest.raises(UserError, match="damaged results"):
+        read_points(tmp_path)
