@@ -185,9 +185,9 @@ def _results(
 ) -> Iterator[Any]:
     """Yield the result of a log, or the results of all points of a sweep from its folder."""
     if analysis.folders and os.path.isdir(path):
-        from idealgas.sweep.results import stored
+        from idealgas.sweep.results import stored_results
 
-        for label, found, origin in stored(path, analysis.key):
+        for label, found, origin in stored_results(path, analysis.key):
             yield analysis.restore(found, label, origin)
         return
     with open_log(path) as log:

@@ -33,7 +33,7 @@ def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from
         else:
             _print(summary, path, from_start)
         if interrupted():
-            echo(f"interrupted; `idealgas resume {shlex.quote(path)}` goes on where it stopped", err=True)
+            echo(f"interrupted; `idealgas resume {shlex.quote(path)}` continues it", err=True)
             raise SystemExit(EXIT_CODE)
 
 

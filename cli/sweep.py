@@ -75,7 +75,7 @@ def sweep(
             if not interrupted():  # else it may be anything that was torn down in the middle
                 raise
         if interrupted():
-            echo("interrupted; the same command goes on where this one stopped", err=True)
+            echo("interrupted; run the same command again to continue", err=True)
             raise SystemExit(EXIT_CODE)
     if plot:
         from idealgas.analysis.core.style import save

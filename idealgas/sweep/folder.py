@@ -1,4 +1,4 @@
-"""Folder of a sweep: one process at a time runs a sweep in it, and what is done there is part of the sweep."""
+"""Folder of a sweep: one process at a time runs a sweep in it, and finished points keep their numbers and seeds."""
 
 import errno
 import json
@@ -20,25 +20,24 @@ from idealgas.sweep.results import done_points
 from idealgas.toml.dump import dump_document
 
 LOCK, PLAN = ".lock", "sweep.toml"
-"""Files beside the results: which a running sweep holds, and the file of the sweep."""
-
+"""Names of the lock file and of the copy of the sweep's own file."""
 
 Entry = TypeVar("Entry")
 
 
 @contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """Make the folder of a sweep if it is not there, and hold it as long as the process lives.
+def hold_folder(folder: Path) -> Iterator[None]:
+    """Create the folder of a sweep if it is missing, and lock it until the block ends.
 
     Raises:
-        UserError: if another process holds it, or if it has other files.
+        UserError: if another process has locked it, or if it contains other files.
         OutputError: if it cannot be written.
     """
     try:
         plan = folder / PLAN
         ours = (folder / LOCK).exists() or (plan.exists() and is_of_kind(plan, ".toml"))
         if not ours and folder.exists() and any(folder.iterdir()):
-            raise UserError(f"{folder}: exists and is no sweep's folder")
+            raise UserError(f"{folder}: exists and is not the folder of a sweep")
         points_folder(folder).mkdir(parents=True, exist_ok=True)
         file = (folder / LOCK).open("w")
     except OSError as error:
@@ -51,14 +50,14 @@ def held(folder: Path) -> Iterator[None]:
         yield
 
 
-def continued(sweep: Sweep, folder: Path) -> Sweep:
-    """The sweep with the numbers and seeds that its points have in a folder, into which its file is written.
+def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
+    """The sweep with the point numbers and seeds of a folder; writes the file of the sweep there.
 
-    What is done keeps its numbers, wherever new values stand among the old ones; all else has the free numbers in
-    order, so that a new sweep is as it is, and one that was stopped goes on as it began.
+    Finished points keep their numbers, wherever new values are inserted among the old ones; all others get the free
+    numbers in order, so a new sweep is unchanged and a stopped one resumes as it began.
 
     Raises:
-        UserError: if something that is done is not of this sweep.
+        UserError: if a finished point is not part of this sweep.
         OutputError: if the folder cannot be written.
     """
     done = dict(_labelled((found["values"], found["replicate"], found) for found in done_points(folder)))
@@ -72,25 +71,25 @@ def continued(sweep: Sweep, folder: Path) -> Sweep:
             numbers[point.combination] = next(free)
         combination = numbers[point.combination]
         scene = _with_seed(point.scene, seed_of(sweep.seed, combination, point.replicate))
-        if found and not _is_of(found, scene, sweep):
-            raise _another(folder, found)
+        if found and not _matches(found, scene, sweep):
+            raise _foreign_point(folder, found)
         index = found["point"] if found else next(free_indices)
         points.append(replace(point, index=index, combination=combination, scene=scene))
     for found in done.values():
-        raise _another(folder, found)
+        raise _foreign_point(folder, found)
     with replacing(folder / PLAN) as part:
         part.write_text(sweep.text, encoding="utf-8")
     return replace(sweep, points=tuple(points))
 
 
 def check_folder(folder: Path) -> None:
-    """Raise OutputError if the folder has been removed meanwhile."""
+    """Raise OutputError if the folder has been removed in the meantime."""
     if not points_folder(folder).is_dir():
         raise OutputError(f"{folder}: cannot be written: {os.strerror(errno.ENOENT)}", exit_code=1)
 
 
 def _labelled(entries: Iterable[tuple[dict[str, Any], int, Entry]]) -> Iterator[tuple[tuple[str, int], Entry]]:
-    """What comes with values and a replicate, by these, and by which of the same it is."""
+    """Label entries by their values, their replicate and a counter of equal labels."""
     seen: Counter[str] = Counter()
     for values, replicate, entry in entries:
         text = json.dumps([values, replicate], sort_keys=True)
@@ -107,16 +106,16 @@ def _with_seed(scene: Scene, seed: int) -> Scene:
     return scene.model_copy(update={"scene": scene.scene.model_copy(update={"seed": seed})})
 
 
-def _another(folder: Path, found: dict[str, Any]) -> UserError:
+def _foreign_point(folder: Path, found: dict[str, Any]) -> UserError:
     where = ", ".join(f"{key} = {value}" for key, value in found["values"].items()) or "base scene"
     return UserError(
-        f"{folder}: holds another sweep, its point {found['point']} ({where}) is none of this one: "
-        "give another folder, or remove it"
+        f"{folder}: holds another sweep: point {found['point']} ({where}) is not part of this one; "
+        "use another folder or remove it"
     )
 
 
-def _is_of(found: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
-    """Whether the results of a point are those of a scene, with the analyses of the sweep."""
+def _matches(found: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
+    """Whether stored results belong to this scene and contain the analyses of the sweep."""
     if set(found["analyses"]) != set(sweep.analyses):
         return False
     return found["scene"] == dump_document(scene) or parse_scene(found["scene"]) == scene

@@ -16,7 +16,7 @@ from idealgas.scene import parse_scene
 from idealgas.sweep.point import points_folder
 
 KEYS = {"point", "seed", "combination", "replicate", "values", "scene", "summary", "analyses"}
-"""What is in the file of a point."""
+"""Keys of the result file of a point."""
 
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
 
@@ -37,7 +37,7 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
 
 
 def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """As `read_points`, of a sweep that may have no results yet."""
+    """Like `read_points`, but an empty list if the sweep has no results yet."""
     paths = sorted(points_folder(folder).glob("[0-9]*.json"), key=lambda path: int(path.stem))
     try:
         found = [json.loads(path.read_text()) for path in paths]
@@ -49,7 +49,7 @@ def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     return found
 
 
-def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:
+def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:
     """Yield the label (the values of the axes), the stored result of an analysis and the run of each point of a sweep.
 
     Raises:
@@ -57,7 +57,7 @@ def stored(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str,
     """
     for point in read_points(folder):
         if analysis not in point["analyses"]:
-            raise UserError(f'{folder}: a sweep without the analysis "{analysis}"')
+            raise UserError(f'{folder}: the sweep does not include the analysis "{analysis}"')
         label = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
         run = origin_of(parse_scene(point["scene"]), f"{folder}, point {point['point']}")
         yield label, point["analyses"][analysis], run
@@ -101,7 +101,7 @@ def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
         if isinstance(value, bool | int | float):
             yield {**labels, "analysis": "run", "quantity": name, "value": float(value)}
     for analysis, found in point["analyses"].items():
-        premises = {"premises": " ".join(found.get("premises", ()))}  # those of before have none
+        premises = {"premises": " ".join(found.get("premises", ()))}
         for quantity, estimate in _estimates(found):
             yield {**labels, "analysis": analysis, "quantity": quantity, **estimate, **premises}
 

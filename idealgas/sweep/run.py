@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from idealgas.errors import OutputError, UserError
 from idealgas.sweep.cost import estimate_cost
-from idealgas.sweep.folder import check_folder, continued, held
+from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
 from idealgas.sweep.plan import Sweep
 from idealgas.sweep.point import Task, result_path, run_point
 from idealgas.toml.dump import dump_document
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 RETRIES = 2
 """Number of further attempts for a point that failed, or whose worker died."""
 
-DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+IGNORE_SIGINT = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """First command of a local worker: ignore Ctrl-C, which the main process handles."""
 
 LOCAL = {
@@ -37,11 +37,11 @@ LOCAL = {
     "distributed.admin.tick.interval": "1s",
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
 }
-"""Settings of the local cluster: no time for anything but points, and workers reuse their memory."""
+"""Settings of the local cluster: no profiling, and workers reuse their memory."""
 
-GOES_ON = "; the same command goes on where this one stopped"
+CONTINUE = "; run the same command again to continue"
 
-PATIENCE = 10.0  # seconds in which a scheduler must answer
+TIMEOUT = 10.0  # seconds in which a scheduler must answer
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Outcome:
     """Outcome of a sweep.
 
     ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
-    seconds: time that it took. estimated: time that it was to take by the estimate of the cost, seconds; None where
-    nothing is known of the machines, or of one of the points.
+    seconds: time taken. estimated: estimated time, seconds; None where the machines are unknown or a point cannot be
+    estimated.
     """
 
     ran: int
@@ -81,17 +81,17 @@ def run_sweep(
 
     Args:
         sweep: the sweep to run.
-        folder: folder of logs and results; it is made, or goes on where it stands, even if axes have got new values.
+        folder: folder of logs and results; created, or resumed even if axes have new values.
         workers: number of processes on this machine; None for one per core.
         scheduler: address of a dask scheduler, instead of local workers; its workers see the folder at the same path.
         on_progress: called when a point has finished or failed.
 
     Raises:
-        UserError: if the sweep cannot be run at all, or not go on for a reason that concerns all points.
+        UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
     """
     folder = Path(folder).absolute()
-    with held(folder):
-        sweep = continued(sweep, folder)
+    with hold_folder(folder):
+        sweep = resume_numbering(sweep, folder)
         open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
         before = len(sweep.points) - len(open_points)
         tasks = [
@@ -118,7 +118,7 @@ def run_sweep(
 
 
 def _estimate(sweep: Sweep, workers: int) -> float | None:
-    """Time that a sweep is to take on a number of workers, seconds; None if a point of it cannot be run."""
+    """Estimated time of a sweep on a number of workers, seconds; None if one of its points cannot be run."""
     with suppress(UserError):
         return sum(cost.seconds for cost in estimate_cost(sweep)) / workers
     return None
@@ -136,10 +136,10 @@ def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]
                 raise CancelledError
             error = None if future.status == "finished" else future.exception()
             if isinstance(error, OutputError) and error.exit_code == 1:
-                raise OutputError(f"{error}{GOES_ON}", exit_code=1)
+                raise OutputError(f"{error}{CONTINUE}", exit_code=1)
             yield index[future.key], error and _reason(error)
     except (CancelledError, asyncio.CancelledError):
-        raise UserError(f"the scheduler is gone{GOES_ON}") from None
+        raise UserError(f"the scheduler is gone{CONTINUE}") from None
 
 
 def _reason(error: Any) -> str:
@@ -165,11 +165,11 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
     if scheduler is not None:
         try:
             parse_host_port(parse_address(scheduler)[1])  # a client of an invalid address cannot be closed cleanly
-            client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+            client = Client(scheduler, timeout=TIMEOUT, set_as_default=False)
         except ValueError as error:
-            raise UserError(f"{scheduler}: no address of a scheduler ({error})") from None
+            raise UserError(f"{scheduler}: not the address of a scheduler ({error})") from None
         except OSError:
-            raise UserError(f"{scheduler}: no scheduler answers there within {PATIENCE:g} s") from None
+            raise UserError(f"{scheduler}: no answer from a scheduler within {TIMEOUT:g} s") from None
         with silence_logging_cmgr(logging.CRITICAL), client:
             yield client
         return
@@ -183,7 +183,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
                 scheduler_kwargs={"dashboard": False},
                 memory_limit=0,
                 silence_logs=logging.CRITICAL,
-                preload=DEAF,
+                preload=IGNORE_SIGINT,
             )
             client = stack.enter_context(Client(stack.enter_context(cluster), set_as_default=False))
         except (OSError, RuntimeError) as error:

@@ -170,7 +170,7 @@ def test_ctrl_c_ends_the_run_with_a_readable_log(tmp_path):
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         stdout, stderr = process.communicate(timeout=60)
-    assert (process.returncode, stderr) == (130, "interrupted; `idealgas resume run.h5` goes on where it stopped\n")
+    assert (process.returncode, stderr) == (130, "interrupted; `idealgas resume run.h5` continues it\n")
     assert "run.h5 (interrupted)" in stdout
     with open_log(output) as log:
         assert not log.complete

@@ -34,7 +34,7 @@ run.events = 2000
 """
 
 
-INTERRUPTED = "interrupted; the same command goes on where this one stopped\n"
+INTERRUPTED = "interrupted; run the same command again to continue\n"
 
 
 @pytest.fixture
@@ -88,12 +88,12 @@ def test_failing_points_do_not_stop_the_others(plan, tmp_path):
     [
         pytest.param(
             ("-o", "out", "--scheduler", "tcp://127.0.0.1:9"),
-            "tcp://127.0.0.1:9: no scheduler answers there within 10 s",
+            "tcp://127.0.0.1:9: no answer from a scheduler within 10 s",
             marks=pytest.mark.slow,
         ),
-        (("-o", "out", "--scheduler", "nowhere"), "nowhere: no address of a scheduler"),
+        (("-o", "out", "--scheduler", "nowhere"), "nowhere: not the address of a scheduler"),
         ((), "-o DIR: missing"),
-        (("-o", "full"), "exists and is no sweep's folder"),
+        (("-o", "full"), "exists and is not the folder of a sweep"),
     ],
 )
 def test_bad_input_is_one_line(plan, tmp_path, arguments, message):
@@ -264,7 +264,7 @@ def test_a_full_disk_ends_a_sweep_which_goes_on_later(plan, tmp_path):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limit)
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.endswith("cannot be written: File too large; the same command goes on where this one stopped\n")
+    assert done.stderr.endswith("cannot be written: File too large; run the same command again to continue\n")
     assert done.stderr.count("\n") == 1
     again = idealgas("sweep", plan, "-o", tmp_path / "out")
     assert again.stdout.startswith("3 points run, 3 done before, 0 failed")
@@ -291,7 +291,7 @@ def test_a_scheduler_that_dies_is_one_line(plan, tmp_path):
         started[0].kill()
         stdout, stderr = running.communicate(timeout=120)
     assert (running.returncode, stdout) == (2, "")
-    assert stderr == "the scheduler is gone; the same command goes on where this one stopped\n"
+    assert stderr == "the scheduler is gone; run the same command again to continue\n"
     again = idealgas("sweep", plan, "-o", folder)
     assert again.returncode == 0, again.stderr
     assert ", 0 failed" in again.stdout

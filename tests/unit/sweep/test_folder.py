@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from idealgas.errors import UserError
-from idealgas.sweep.folder import continued, held
+from idealgas.sweep.folder import hold_folder, resume_numbering
 from idealgas.sweep.plan import load_sweep
 from idealgas.sweep.point import points_folder, result_path
 from idealgas.toml.dump import dump_document
@@ -32,8 +32,8 @@ run.events = 100
 HOLD = """
 import sys
 from pathlib import Path
-from idealgas.sweep.folder import held
-with held(Path(sys.argv[1])):
+from idealgas.sweep.folder import hold_folder
+with hold_folder(Path(sys.argv[1])):
     print(flush=True)
     sys.stdin.read()
 """
@@ -76,14 +76,14 @@ def numbers(sweep):
 
 
 def test_a_new_sweep_is_as_it_is(plan, folder):
-    assert continued(plan(), folder) == plan()
+    assert resume_numbering(plan(), folder) == plan()
     assert (folder / "sweep.toml").read_text().endswith((folder.parent / "plan.toml").read_text())
 
 
 def test_new_values_get_new_numbers_and_seeds(plan, folder):
     old = plan()
     finish(old, folder, old.points[1:3])
-    more = continued(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder)
+    more = resume_numbering(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder)
     before, after = numbers(old), numbers(more)
     for point in old.points[1:3]:
         label = (*point.values.values(), point.replicate)
@@ -94,13 +94,13 @@ def test_new_values_get_new_numbers_and_seeds(plan, folder):
     assert sorted(point.index for point in more.points) == list(range(18))
     for point in more.points[::4]:
         finish(more, folder, [point])
-        assert continued(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder) == more
+        assert resume_numbering(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder) == more
 
 
 def test_values_that_are_there_twice(plan, folder):
     twice = plan(temperatures=(1, 1))
     finish(twice, folder, twice.points[:3])
-    assert continued(twice, folder) == twice
+    assert resume_numbering(twice, folder) == twice
 
 
 @pytest.mark.parametrize(
@@ -108,11 +108,11 @@ def test_values_that_are_there_twice(plan, folder):
 )
 def test_what_is_done_must_be_of_the_sweep(plan, folder, change):
     old = plan()
-    continued(old, folder)
+    resume_numbering(old, folder)
     finish(old, folder, old.points)
     before = {path: path.read_bytes() for path in folder.rglob("*.*")}
-    with pytest.raises(UserError, match=r"out: holds another sweep, its point \d \(species\..*remove it"):
-        continued(plan(**change), folder)
+    with pytest.raises(UserError, match=r"out: holds another sweep: point \d \(species\..*remove it"):
+        resume_numbering(plan(**change), folder)
     assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before
 
 
@@ -120,16 +120,16 @@ def test_a_folder_has_one_sweep_at_a_time(tmp_path):
     folder = tmp_path / "out"
     with subprocess.Popen([sys.executable, "-c", HOLD, folder], stdin=-1, stdout=-1) as other:
         other.stdout.readline()
-        with pytest.raises(UserError, match="out: another sweep is running in this folder"), held(folder):
+        with pytest.raises(UserError, match="out: another sweep is running in this folder"), hold_folder(folder):
             pass
         other.kill()
-    with held(folder):
+    with hold_folder(folder):
         assert points_folder(folder).is_dir()
 
 
 @pytest.mark.parametrize("name", ["precious", "sweep.toml"])
 def test_a_folder_of_others_is_left_alone(tmp_path, name):
     (tmp_path / name).write_text("[sweep]")
-    with pytest.raises(UserError, match="exists and is no sweep's folder"), held(tmp_path):
+    with pytest.raises(UserError, match="exists and is not the folder of a sweep"), hold_folder(tmp_path):
         pass
     assert [path.name for path in tmp_path.iterdir()] == [name]

@@ -8,7 +8,7 @@ from idealgas.analysis.pressure.combine import restore_pressure
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
 from idealgas.sweep.point import Task, log_path, points_folder, result_path, run_point
-from idealgas.sweep.results import read_points, stored, write_tables
+from idealgas.sweep.results import read_points, stored_results, write_tables
 from idealgas.toml.dump import dump_document
 
 SCENE = """
@@ -62,7 +62,7 @@ def test_the_table_is_tidy(task, tmp_path):
     by_name = {(row["analysis"], row["quantity"]): row for row in rows}
     assert len(by_name) == len(rows)
     pairs = by_name["pressure", "routes/pairs, virial/compressibility"]
-    ((label, result, _),) = stored(tmp_path, "pressure")
+    ((label, result, _),) = stored_results(tmp_path, "pressure")
     assert label == "phi = 0.1, species.x = [1, 2]"
     sample = restore_pressure(result, label)
     assert float(pairs["value"]) == sample.compressibility.value
@@ -79,8 +79,8 @@ def test_folders_without_results_are_refused(task, tmp_path):
     with pytest.raises(UserError, match="holds no results of a sweep"):
         read_points(tmp_path)
     run_point(replace(task, analyses=("temperature",)))
-    with pytest.raises(UserError, match='without the analysis "pressure"'):
-        list(stored(tmp_path, "pressure"))
+    with pytest.raises(UserError, match='does not include the analysis "pressure"'):
+        list(stored_results(tmp_path, "pressure"))
     result_path(tmp_path, 3).write_text(json.dumps({})[:1])
     with pytest.raises(UserError, match="damaged results"):
         read_points(tmp_path)
