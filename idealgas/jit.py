@@ -29,7 +29,7 @@ from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 from numba.core.types.containers import BaseTuple
 from numba.core.typing.templates import infer_global
-from numba.extending import overload
+from numba.extending import overload as _overload
 
 from idealgas._compiler import Compiler, PartType
 
@@ -301,8 +301,8 @@ def inline(function: Callable) -> Any:
     return _make_part(function, _INLINE)
 
 
-def out_of_line(function: Callable) -> Any:
-    """Compile a long or seldom function as part of the entry points that call it; in Python it stays as it is."""
+def noinline(function: Callable) -> Any:
+    """Compile a long or rarely called function as part of the entry points that call it; in Python it stays as it is."""
     return _make_part(function, {"forceinline": False, **_PART})
 
 
@@ -313,9 +313,9 @@ def _make_part(function: Callable, options: dict[str, Any]) -> Callable:
     return function
 
 
-def inline_by_type(function: Callable) -> Callable:
+def overload(function: Callable) -> Callable:
     """Decorate a function that chooses inlined code by the types of its arguments; `function` is what Python calls."""
-    return overload(function, jit_options=_INLINE)
+    return _overload(function, jit_options=_INLINE)
 
 
 def compile_timer() -> AbstractContextManager[TimingListener]:

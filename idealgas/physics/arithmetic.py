@@ -13,7 +13,7 @@ import numpy as np
 from numba.core import cgutils, types
 from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
 
-from idealgas.jit import inline, inline_by_type
+from idealgas.jit import inline, overload
 from idealgas.physics import double_double
 
 
@@ -103,7 +103,7 @@ def _code_of_pair(context: Any, builder: Any, signature: Any, arguments: Any) ->
 def _operate(sign: Any, operation: Any) -> None:
     """Define an operator for compiled code that makes a pair from two pairs."""
 
-    @inline_by_type(sign)
+    @overload(sign)
     def choose(a, b):
         if a is PAIR and b is PAIR:
 
@@ -122,7 +122,7 @@ _operate(operator.truediv, double_double.divide)
 
 def _compare(sign: Any, operate: Any) -> None:
     """Define an operator for compiled code that compares two pairs, or chooses one of them."""
-    inline_by_type(sign)(lambda a, b: operate if a is PAIR and b is PAIR else None)
+    overload(sign)(lambda a, b: operate if a is PAIR and b is PAIR else None)
 
 
 _compare(operator.lt, lambda a, b: double_double.less(parts(a), parts(b)))
@@ -137,7 +137,7 @@ def root(a):
     return Pair(*double_double.root(parts(a))) if isinstance(a, Pair) else type(a)(math.sqrt(a))
 
 
-@inline_by_type(root)
+@overload(root)
 def _root(a):
     if a is PAIR:
 
@@ -156,7 +156,7 @@ def number(value, like):
     return np.float32(value) if isinstance(like, np.float32) else value
 
 
-@inline_by_type(number)
+@overload(number)
 def _number(value, like):
     if like is PAIR:
         return lambda value, like: Pair(value, 0.0)
@@ -170,7 +170,7 @@ def rounded(a):
     return a.high if isinstance(a, Pair) else np.float64(a)
 
 
-@inline_by_type(rounded)
+@overload(rounded)
 def _rounded(a):
     return (lambda a: a.high) if a is PAIR else (lambda a: np.float64(a))
 
@@ -180,7 +180,7 @@ def load(column, i):
     return Pair(column[i, 0], column[i, 1]) if column.ndim == 2 else column[i]
 
 
-@inline_by_type(load)
+@overload(load)
 def _load(column, i):
     return (lambda column, i: Pair(column[i, 0], column[i, 1])) if column.ndim == 2 else (lambda column, i: column[i])
 
@@ -190,7 +190,7 @@ def store(column, i, value):
     column[i] = parts(value) if isinstance(value, Pair) else value
 
 
-@inline_by_type(store)
+@overload(store)
 def _store(column, i, value):
     if column.ndim == 1:
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from idealgas.jit import aligned, inline, out_of_line
+from idealgas.jit import aligned, inline, noinline
 
 SUM = np.dtype(
     [
@@ -62,7 +62,7 @@ def add_words(total, high, low):
     total.low = lower
 
 
-@out_of_line
+@noinline
 def add_large(total, units):
     """Add a number of units of 2^62 or more, which is whole, to a SUM."""
     if not abs(units) < LARGEST:
@@ -77,7 +77,7 @@ def add_large(total, units):
     add_words(total, high, low)
 
 
-@out_of_line
+@noinline
 def add_all(total, terms):
     """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most TOGETHER.
 

@@ -2,7 +2,7 @@
 
 import math
 
-from idealgas.jit import inline, out_of_line
+from idealgas.jit import inline, noinline
 from idealgas.physics.constants import NEVER
 
 BISECTIONS = 200  # enough to halve any interval of floats down to neighbouring ones
@@ -90,7 +90,7 @@ def gap(x, y, vx, vy, gx, gy, r, t):
     return x_then * x_then + y_then * y_then - r * r
 
 
-@out_of_line
+@noinline
 def first_descent(x, y, vx, vy, gx, gy, r, after):
     """Smallest t ≥ 0 at which a body on a parabola is within r of the origin and approaches it; NEVER if there is none.
 

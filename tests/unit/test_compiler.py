@@ -21,7 +21,7 @@ from numba.extending import intrinsic
 from idealgas._compiler.code import EntryPoint, Part
 from idealgas._compiler.contexts import Typing
 from idealgas._compiler.steps import STEPS
-from idealgas.jit import inline, njit, out_of_line
+from idealgas.jit import inline, njit, noinline
 
 
 def compiled(function):
@@ -41,7 +41,7 @@ def _below(x):
     return _deepest(x) + 1.0
 
 
-@out_of_line
+@noinline
 def _long(x):
     return _below(x) * 3.0
 
@@ -161,7 +161,7 @@ def test_a_part_is_compiled_once_for_types_whatever_the_literals(monkeypatch):
     finish = Part.finalize
     monkeypatch.setattr(Part, "finalize", lambda self: (compiled_parts.append(self.name), finish(self)))
 
-    @out_of_line
+    @noinline
     def product(x, factor):
         return x * factor
 
@@ -179,7 +179,7 @@ def test_a_part_is_compiled_once_for_all_integers_of_at_most_64_bits(monkeypatch
     finish = Part.finalize
     monkeypatch.setattr(Part, "finalize", lambda self: (compiled_parts.append(self.name), finish(self)))
 
-    @out_of_line
+    @noinline
     def itself(k):
         return k
 
@@ -243,7 +243,7 @@ def _element(outer, k):
     return outer.inner.numbers[k] * outer.inner.scale + outer.offsets[0]
 
 
-@out_of_line
+@noinline
 def _total(outer, first):
     total = 0.0
     for k in range(first, outer.inner.numbers.shape[0]):

@@ -1,4 +1,4 @@
-"""What machine code tells the processor and the compiler: which memory comes next, and what is seldom."""
+"""What machine code tells the processor: which memory comes next."""
 
 import pytest
 from fresh_python import python
@@ -29,31 +29,3 @@ def test_memory_behind_an_array_is_asked_for_and_left_alone(tmp_path):
     """Its last row has no line behind it; in Python nothing is asked for."""
     (tmp_path / "module.py").write_text(NEAR)
     assert python(NEAR_THE_END, tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "1 1 1"
-
-
-SELDOM = """
-from idealgas._expect import seldom
-from idealgas.jit import njit
-
-@njit
-def number(column):
-    found = 0
-    for k in range(column.shape[0]):
-        if seldom(column[k] > 1.5):
-            found += 1
-    return found
-"""
-EITHER_WAY = """
-import numpy as np
-from idealgas._expect import seldom
-from module import number
-assert [number(np.array(column)) for column in ([0.0, 1.0], [2.0, 3.0], [0.0, 2.0])] == [0, 2, 1]
-assert seldom(True) is True and seldom(False) is False
-print(*(code.count("@llvm.expect.i1(i1") for code in number.inspect_llvm().values()))
-"""
-
-
-def test_what_is_said_to_be_seldom_may_be_true_or_false(tmp_path):
-    """LLVM has taken note of it: nothing is left to be called."""
-    (tmp_path / "module.py").write_text(SELDOM)
-    assert python(EITHER_WAY, tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "0"

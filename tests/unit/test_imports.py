@@ -18,7 +18,7 @@ ALLOWED = {
     "physics": {"jit"},
     "scene": {"toml", "physics", "initial"},  # defaults that follow from a law; room for a lattice
     "initial": {"jit", "state", "toml", "scene", "physics"},  # discs are placed by the nearest image's distance
-    "engine": {"_expect", "jit", "prefetch", "state", "initial", "physics"},
+    "engine": {"jit", "prefetch", "state", "initial", "physics"},
     "log": {"jit", "state", "initial", "scene", "physics"},  # states between two events are free flight
     "run": {"jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
     "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
@@ -28,7 +28,6 @@ ALLOWED = {
     "accuracy": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "bench": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "_compiler": set(),
-    "_expect": set(),
     "_version": set(),
     "errors": set(),
     "events": set(),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.jit import njit, out_of_line
+from idealgas.jit import njit, noinline
 from idealgas.log import Log
 from idealgas.physics.motion import position_after
 
@@ -49,7 +49,7 @@ def _finish(tracks, reached, times, places, velocities):
             _put(tracks[k], k, reached, times, places, velocities)
 
 
-@out_of_line
+@noinline
 def _put(track, k, reached, times, places, velocities):
     g = reached[k]
     for axis in range(2):

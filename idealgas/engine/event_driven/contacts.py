@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from idealgas._expect import seldom
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import (
     NO_CONTACT,
@@ -14,7 +13,7 @@ from idealgas.engine.event_driven.prediction import (
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
-from idealgas.jit import inline, out_of_line
+from idealgas.jit import inline, noinline
 from idealgas.physics.disc_disc import contact_time, first_touch, will_touch
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.wall import misses_segment, segment_contact
@@ -36,7 +35,7 @@ def wrapped_index(index, count, is_periodic):
     return index, 0
 
 
-@out_of_line
+@noinline
 def gather_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
     """Do the work of `gather_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
     for step in range(3):
@@ -64,7 +63,7 @@ def gather_line(state, count, column, row, along_y, periodic):
     Returns the new number of candidates.
     """
     cells = state.cells
-    if periodic is not None and seldom(not is_inside(cells, column, row, along_y)):
+    if periodic is not None and not is_inside(cells, column, row, along_y):
         return gather_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
@@ -155,7 +154,7 @@ def test_candidates(record, ids, state, count, i, now, effects):
         tied |= time == best
         chosen = k if time < best else chosen
         best = min(time, best)
-    if seldom(tied | (best <= now)):
+    if tied | (best <= now):
         resolve_ties(record, ids, state, count, i, effects)
     elif chosen >= 0:
         store_contact(state, record, ids, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
@@ -174,7 +173,7 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
     return precedes(own, rank, own, partner_rank(ids, prediction.partner))
 
 
-@out_of_line
+@noinline
 def resolve_ties(record, ids, state, count, i, effects):
     """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
 
@@ -205,7 +204,7 @@ def test_segments(record, ids, state, i, segments, effects):
             )
 
 
-@out_of_line
+@noinline
 def test_entries(disc, ids, prediction, own, walls, first, last, effects):
     """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
     for entry in range(first, last):

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from idealgas._expect import seldom
 from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave
 from idealgas.engine.event_driven.prediction import KICK, SIDE_OF_BOX
 from idealgas.jit import inline
@@ -132,7 +131,7 @@ def is_kick(crossing_code, thermostat):
 @inline
 def wrap_cell(disc, own, cells, along_y, periodic):
     """Wrap the column or row of a disc that crossed a periodic side, and count the boundary crossing."""
-    if periodic is not None and seldom(is_in_ring(cells, disc)):
+    if periodic is not None and is_in_ring(cells, disc):
         if along_y:
             cross_boundary = 1 if disc.row > cells.rows - 2 else -1
             disc.row -= cross_boundary * (cells.rows - 2)

@@ -6,7 +6,6 @@ predicted again. One thread may have all discs, or several one strip of the box 
 
 import numpy as np
 
-from idealgas._expect import seldom
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
 from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
@@ -87,7 +86,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
-    if seldom(state.unpredicted[0]):
+    if state.unpredicted[0]:
         state.unpredicted[0] = False
         predict_piston(record, ids, state, effects.piston, effects.gravity)
         for k in range(record.shape[0]):
@@ -104,10 +103,10 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             if change == EVENT:
                 events += 1
                 now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
-            if seldom((events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity)):
+            if (events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity):
                 break
         i = next_turn(record, ids, state, limits.until, border)
-        if seldom(i < 0):
+        if i < 0:
             reached = i == OVER
             break
         prediction = state.prediction[U(i)]
@@ -128,7 +127,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             other = np.int64(prediction.partner)
             tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
             withdraw(state.tree, state.prediction, ids, other)
-        if seldom(tied or not is_settled(state.tree, time)):
+        if tied or not is_settled(state.tree, time):
             settle(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
             change = np.int64(STALE)
             i = other = np.int64(-1)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.engine.event_driven.ties import comes_first, settle_path
-from idealgas.jit import aligned, inline, njit, out_of_line
+from idealgas.jit import aligned, inline, njit, noinline
 from idealgas.physics.constants import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
@@ -173,7 +173,7 @@ def is_settled(tree, time):
     return (next_time(tree) != time) | (tree.settled[0] == time)
 
 
-@out_of_line
+@noinline
 def settle(tree, predictions, ids, i, j):
     """Put back the next events of disc i and, unless it is -1, of disc j, and settle the tree for their time.
 

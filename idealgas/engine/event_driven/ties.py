@@ -8,12 +8,12 @@ import numpy as np
 
 from idealgas.engine.event_driven.prediction import event_ids
 from idealgas.engine.order import precedes
-from idealgas.jit import inline, out_of_line
+from idealgas.jit import inline, noinline
 
 U = np.uintp
 
 
-@out_of_line
+@noinline
 def comes_first(predictions, ids, i, j):
     """Whether disc i's next event comes before that of disc j at the same time."""
     a, b = event_ids(predictions[U(i)], ids, i)
@@ -33,7 +33,7 @@ def settle_group(tree, predictions, ids, group, parent):
     tree.winner[U(parent)] = first
 
 
-@out_of_line
+@noinline
 def settle_path(tree, predictions, ids, i, time):
     """Settle the groups of disc i on all levels, as far as they have events of a time."""
     group = np.int64(i)

@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas._expect import seldom
 from idealgas.engine.event_driven.scheduler import UNSETTLED, reschedule, withdraw
 from idealgas.engine.parallel.atomics import LINE, add, exchange, load, store, wait
-from idealgas.jit import inline, out_of_line
+from idealgas.jit import inline, noinline
 
 ZONE = 4
 """Rows at a border whose events are border events. An event at r reads the rows r - 2 to r + 2, and writes the next."""
@@ -147,7 +146,7 @@ def is_posted(b):
     return found
 
 
-@out_of_line
+@noinline
 def absorb(ids, state, until, b):
     """Enter what neighbours have posted; the clock is set back before they go on."""
     own = b.own[0]
@@ -173,7 +172,7 @@ def absorb(ids, state, until, b):
         store(b.words, word, np.int64(-1))
 
 
-@out_of_line
+@noinline
 def hand_over(ids, state, i, b):
     """Post disc i to the neighbour beyond the border that is held, and wait until it is in that schedule."""
     own = b.own[0]
@@ -196,7 +195,7 @@ def hand_over(ids, state, i, b):
 def unlock(b):
     """Leave the border event that happened last, if there was one."""
     own = b.own[0]
-    if seldom(own.held != 0):
+    if own.held != 0:
         if own.held & LOW:
             store(b.words, lock_word(b, b.below), np.int64(0))
         if own.held & HIGH:

@@ -8,7 +8,6 @@ one thread. The argument in full: engine/README.md.
 
 import numpy as np
 
-from idealgas._expect import seldom
 from idealgas.engine.event_driven.prediction import contact_is_next
 from idealgas.engine.event_driven.scheduler import next_disc, next_time, schedule
 from idealgas.engine.parallel.atomics import add, load, pause, store, wait
@@ -59,7 +58,7 @@ def next_turn(record, ids, state, until, border):
 @inline
 def enter_in_schedule(record, ids, state, i, border):
     """Enter disc i's next event in the schedule of the thread that owns the disc."""
-    if border is not None and seldom(not border.low <= record[U(i)].row < border.high):
+    if border is not None and not border.low <= record[U(i)].row < border.high:
         hand_over(ids, state, i, border)
     else:
         schedule(state.tree, state.prediction, ids, i)
@@ -91,7 +90,7 @@ def note_rows(time, b):
     If that disc is in this event, nobody has asked which of the two comes first, and their rows stand side by side.
     """
     own = b.own[0]
-    if seldom(own.posted > 0):
+    if own.posted > 0:
         own.posted -= 1
         if time == own.row_time:
             abandon(b, TIE)
@@ -250,7 +249,7 @@ def is_in_order(record, ids, state, i, time, where, b):
 def clock_runs(time, b):
     """Whether this thread's time goes on as it should; notes the event."""
     own = b.own[0]
-    if seldom(time <= own.last):
+    if time <= own.last:
         own.at_once += 1
         return time == own.last and own.at_once < MOST_AT_ONCE
     own.at_once = 0
@@ -261,7 +260,7 @@ def clock_runs(time, b):
 @inline
 def loiter(b):
     """Lose time at random, where a test asks for that."""
-    if seldom(b.delay > 0):
+    if b.delay > 0:
         own = b.own[0]
         own.draw = own.draw * np.uint64(6364136223846793005) + np.uint64(1442695040888963407)
         if np.int64(own.draw >> np.uint64(33)) % b.delay == 0:
@@ -277,7 +276,7 @@ def may_happen(record, ids, state, i, time, b):
     """
     own = b.own[0]
     where = 0
-    if seldom(is_at_border(record, ids, state, i, b)):
+    if is_at_border(record, ids, state, i, b):
         where = place_of(record, ids, state, i, b)
         store(b.words, clock_word(b.me) + 2, i)
         store(b.times, clock_word(b.me) + 1, time)
@@ -296,13 +295,13 @@ def may_happen(record, ids, state, i, time, b):
             return abandon(b, VIOLATION)
     else:
         announce(b, time)
-        if seldom(time > own.horizon):
+        if time > own.horizon:
             own.horizon = least_clock(b) + b.lead
             if time > own.horizon:
                 return 0
-    if seldom(not clock_runs(time, b)):
+    if not clock_runs(time, b):
         return abandon(b, CLOCK)
-    if seldom(not is_in_order(record, ids, state, i, time, where, b)):
+    if not is_in_order(record, ids, state, i, time, where, b):
         return abandon(b, VIOLATION)
     return 1
 
@@ -315,7 +314,7 @@ def wait_for_turn(record, ids, state, until, b):
     loiter(b)
     rounds = 0
     while load(b.words, FLAG) == 0:
-        if seldom(is_posted(b)):
+        if is_posted(b):
             absorb(ids, state, until, b)
         time = next_time(state.tree)
         if time <= until:
