@@ -302,7 +302,7 @@ def inline(function: Callable) -> Any:
 
 
 def noinline(function: Callable) -> Any:
-    """Compile a long or rarely called function as part of the entry points that call it; in Python it stays as it is."""
+    """Compile a long or rarely called function as part of its entry points; in Python it stays as it is."""
     return _make_part(function, {"forceinline": False, **_PART})
 
 
