@@ -10,11 +10,11 @@ from idealgas.jit import aligned
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
-from idealgas.physics.momentum_flow import MomentumFlow, none_waiting
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
+from idealgas.physics.stress import StressAccumulator, empty_buffer
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat, draw_first_kicks
 from idealgas.run.effects.wall import make_segments
@@ -88,15 +88,15 @@ def make_thermostat(n: int, seed: int) -> Thermostat:
     return thermostat
 
 
-def make_flow(gas: Gas, faces: int, tensor: int = 6) -> MomentumFlow:
+def make_flow(gas: Gas, faces: int, tensor: int = 6) -> StressAccumulator:
     """Sums of the momentum flow for a number of faces and of parts of the tensor."""
     kinds = len(gas.species_names)
-    return MomentumFlow(
+    return StressAccumulator(
         tensor=make_sums([1.0] * tensor),
-        waiting=none_waiting(),
+        buffer=empty_buffer(),
         walls=make_sums([1.0]),
-        push=make_sums([1.0] * faces),
-        drag=make_sums([1.0] * faces),
+        normal_impulse=make_sums([1.0] * faces),
+        tangential_impulse=make_sums([1.0] * faces),
         hits=np.zeros(faces, np.int64),
         pairs=np.zeros((kinds, kinds), np.int64) if kinds > 1 else None,
         species=gas.species.copy() if kinds > 1 else None,

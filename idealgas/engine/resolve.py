@@ -6,11 +6,11 @@ from idealgas.jit import inline
 from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.exact_sum import add
-from idealgas.physics.momentum_flow import flights_to, record_collision_flow, record_flight, record_hit
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston
 from idealgas.physics.restitution import record_collision
+from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import kick
 from idealgas.physics.wall import segment_normal
@@ -88,7 +88,7 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
     collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
     energy -= energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
     record_pair_loss(effects.dissipated, energy)
-    record_collision_flow(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
+    record_collision_stress(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
     finish(a, a_id, time, effects)
     finish(b, b_id, time, effects)
 

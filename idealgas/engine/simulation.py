@@ -12,11 +12,11 @@ from idealgas.engine.epoch import encounters_per_length, epoch_length, kick_rate
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
-from idealgas.physics import momentum_flow
+from idealgas.physics import stress
 from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
 from idealgas.physics.exact_sum import SumRangeError
-from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
+from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
 TRAJECTORY = 6
@@ -242,7 +242,7 @@ class Simulation:
 
     def state(self) -> tuple[Gas, Effects]:
         """Copies of the gas, its images and its momentum flow, and the effects, at the time reached."""
-        periodic, flow = copy_of(self.effects.periodic), momentum_flow.copy_of(self.effects.flow)
+        periodic, flow = copy_of(self.effects.periodic), stress.copy_of(self.effects.flow)
         record = self.method.discs.record
         moved = np.array(record.view(np.uint8)).view(record.dtype)  # copied as bytes: seven times as fast
         gas = self._synchronised(moved, self._local_now, periodic, flow)
@@ -253,7 +253,7 @@ class Simulation:
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
     def _synchronised(
-        self, record: np.ndarray, local_time: float, periodic: Periodic | None, flow: MomentumFlow | None
+        self, record: np.ndarray, local_time: float, periodic: Periodic | None, flow: StressAccumulator | None
     ) -> Gas:
         """The gas at a local time, to which the records are brought, and the images and the momentum flow too."""
         ids = self.method.discs.id

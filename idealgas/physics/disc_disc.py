@@ -1,14 +1,14 @@
 """Collision of two discs: the time at which they touch, and their velocities afterwards.
 
 Both laws are symmetric to the last bit under exchange of the discs: each difference only changes its sign. For smooth
-elastic discs they run on numbers of any length, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
+elastic discs they run in any precision, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
 """
 
 from idealgas.jit import inline
 from idealgas.physics.arithmetic import number, root
 from idealgas.physics.constants import NEVER
 from idealgas.physics.periodic import shift_by_images
-from idealgas.physics.restitution import rebound
+from idealgas.physics.restitution import restitution_factor
 from idealgas.physics.rotation import tangential_impulse
 
 
@@ -37,8 +37,8 @@ def relative_motion(a, b, gravity, periodic, images):
 
 
 @inline
-def path_to_touch(x, y, vx, vy, reach):
-    """Whether a point in straight flight comes within `reach` of the origin, and what the time until then follows from.
+def collision_discriminant(x, y, vx, vy, reach):
+    """Whether a point in straight flight comes within `reach` of the origin, and the coefficients of that time.
 
     x, y, reach: length. vx, vy: length/time. Returns (meets, approach b = r·v, gap c = r² - S², discriminant D).
 
@@ -55,32 +55,32 @@ def path_to_touch(x, y, vx, vy, reach):
 
 
 @inline
-def touch(x, y, vx, vy, reach):
+def collision_delay(x, y, vx, vy, reach):
     """Whether a point in straight flight comes within `reach` of the origin, and the time until it does.
 
-    Arguments as of `path_to_touch`. The delay is 0 for an approaching point that is within reach already. The root
-    c/(√D - b) of the distance equation has no cancellation for small c.
+    Arguments as of `collision_discriminant`. The delay is 0 for an approaching point that is already within reach. The
+    root c/(√D - b) of the distance equation has no cancellation for small c.
     """
-    meets, approach, gap, discriminant = path_to_touch(x, y, vx, vy, reach)
+    meets, approach, gap, discriminant = collision_discriminant(x, y, vx, vy, reach)
     zero = number(0.0, x)
     return meets, max(gap, zero) / (root(max(discriminant, zero)) - approach)
 
 
 @inline
-def will_touch(a, b, gravity, periodic, images):
-    """Whether two discs approach each other and will touch, or do so already; quicker than `first_touch`."""
+def will_collide(a, b, gravity, periodic, images):
+    """Whether two discs approach each other and will touch or already do; faster than `collision_time`."""
     _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-    return path_to_touch(x, y, vx, vy, a.r + b.r)[0]
+    return collision_discriminant(x, y, vx, vy, a.r + b.r)[0]
 
 
 @inline
-def first_touch(a, b, gravity, periodic, images):
+def collision_time(a, b, gravity, periodic, images):
     """Local time at which two approaching discs touch; NEVER if they do not.
 
     For approaching discs that touch or overlap at the later of the two records' times, it is that time.
     """
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-    meets, delay = touch(x, y, vx, vy, a.r + b.r)
+    meets, delay = collision_delay(x, y, vx, vy, a.r + b.r)
     return time + delay if meets else number(NEVER, time)
 
 
@@ -88,17 +88,18 @@ def first_touch(a, b, gravity, periodic, images):
 def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
     """Local time of the next collision of discs a and b; NEVER if there is none.
 
-    Touching discs whose collision would not change a digit of any velocity count as having collided. The result differs
-    from `first_touch` only where that gives the time of a record.
+    Touching discs whose collision would change no digit of any velocity count as having collided. The result differs
+    from `collision_time` only if that is the time of a record.
+
     """
-    touch = first_touch(a, b, gravity, periodic, images)
-    if touch == max(a.t, b.t):
+    touched = collision_time(a, b, gravity, periodic, images)
+    if touched == max(a.t, b.t):
         _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-        factor = rebound(restitution, a_id, b_id, touch)
+        factor = restitution_factor(restitution, a_id, b_id, touched)
         a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, x, y, vx, vy, factor)
         if (a_vx == a.vx) & (a_vy == a.vy) & (b_vx == b.vx) & (b_vy == b.vy):
-            return number(NEVER, touch)
-    return touch
+            return number(NEVER, touched)
+    return touched
 
 
 @inline
@@ -121,5 +122,5 @@ def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
     x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)
-    factor = rebound(restitution, a_id, b_id, a.t)
+    factor = restitution_factor(restitution, a_id, b_id, a.t)
     a.vx, a.vy, b.vx, b.vy = velocities_after(a, b, x, y, a.vx - b.vx, a.vy - b.vy, factor)

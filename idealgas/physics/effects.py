@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas.physics import momentum_flow, periodic, piston, restitution, thermostat, wall
+from idealgas.physics import periodic, piston, restitution, stress, thermostat, wall
 from idealgas.physics.exact_sum import add_sums, clear
 from idealgas.physics.gravity import Gravity
-from idealgas.physics.momentum_flow import MomentumFlow
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
+from idealgas.physics.stress import StressAccumulator
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat
 
@@ -52,7 +52,7 @@ class Effects(NamedTuple):
     wall_energy: np.recarray | None = None
     dissipated: np.recarray | None = None
     bath_energy: np.recarray | None = None
-    flow: MomentumFlow | None = None
+    flow: StressAccumulator | None = None
 
 
 AT_BEGIN: dict[str, Callable[[Any, float], None]] = {"periodic": periodic.begin_epoch, "segments": wall.begin_epoch}
@@ -89,7 +89,7 @@ def end_epoch(effects: Effects, length: float) -> None:
 def with_own_sums(effects: Effects) -> Effects:
     """The same effects with sums of their own, which are 0: what several threads add up can be put together."""
     sums = {name: None if (found := getattr(effects, name)) is None else found.copy() for name in ENERGIES}
-    own = effects._replace(flow=momentum_flow.copy_of(effects.flow), **sums)
+    own = effects._replace(flow=stress.copy_of(effects.flow), **sums)
     clear_sums(own)
     return own
 
@@ -101,7 +101,7 @@ def clear_sums(effects: Effects) -> None:
     for counts in _counts(effects):
         counts[...] = 0
     if effects.flow is not None:
-        effects.flow.waiting.number[0] = 0
+        effects.flow.buffer.number[0] = 0
 
 
 def add_sums_of(effects: Effects, part: Effects) -> None:
@@ -114,13 +114,13 @@ def add_sums_of(effects: Effects, part: Effects) -> None:
 
 def _sums(effects: Effects) -> list[np.ndarray]:
     """All arrays of SUM."""
-    found = [] if effects.flow is None else momentum_flow.sums_of(effects.flow)
+    found = [] if effects.flow is None else stress.sums_of(effects.flow)
     return [*found, *(sums for name in ENERGIES if (sums := getattr(effects, name)) is not None)]
 
 
 def _counts(effects: Effects) -> list[np.ndarray]:
     """All arrays of numbers of collisions."""
-    return [] if effects.flow is None else momentum_flow.counts_of(effects.flow)
+    return [] if effects.flow is None else stress.counts_of(effects.flow)
 
 
 def next_change(effects: Effects, time: float) -> float:

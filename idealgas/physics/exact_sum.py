@@ -29,9 +29,9 @@ FARTHEST = 1000
 """Largest exponent k of a unit, in size: 2^k and 2^-k are floats."""
 
 U = np.uintp
-TOGETHER = 64  # terms that wait for each other
+BATCH = 64  # terms that wait for each other
 SMALL = 2.0**62  # terms that are one word
-FITS = SMALL / TOGETHER  # terms of which TOGETHER are one word
+FITS = SMALL / BATCH  # terms of which BATCH are one word
 LARGEST = 2.0**100
 FULL = 1 << 61  # of the upper word of a sum, so that it can be stored
 HALF = 2.0**32  # terms are rounded in two parts, each a whole number far below 2^51
@@ -79,7 +79,7 @@ def add_large(total, units):
 
 @noinline
 def add_all(total, terms):
-    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most TOGETHER.
+    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most BATCH.
 
     Few processors turn several floats at a time into whole numbers; rounded by a sum, their bits are read as such.
     """

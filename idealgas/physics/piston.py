@@ -11,7 +11,7 @@ from idealgas.physics.ballistic import stays_above, time_to_plane
 from idealgas.physics.constants import NEVER
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import position_after, velocity_after
-from idealgas.physics.restitution import wall_rebound
+from idealgas.physics.restitution import wall_restitution_factor
 
 PISTON = np.dtype(
     [
@@ -116,7 +116,7 @@ def collide_with_piston(disc, own, piston, restitution):
     """Exchange momentum along the axis between a disc and the piston, whose records are at the time of contact."""
     along_y = piston.side >= 2
     velocity = disc.vy if along_y else disc.vx
-    factor = wall_rebound(restitution, own, disc.t)
+    factor = wall_restitution_factor(restitution, own, disc.t)
     approach = velocity - piston.v
     if piston.m > 0.0:
         velocity -= factor * piston.m / (disc.m + piston.m) * approach

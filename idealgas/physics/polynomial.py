@@ -51,7 +51,7 @@ def quadratic_roots(a, b, c):
 
 
 @inline
-def cubic_turns(b, c, d, e, last):
+def cubic_extrema(b, c, d, e, last):
     """Points in (0, last) where the cubic b t³ + c t² + d t + e changes sign, in order: three, padded with `last`."""
     left, right = quadratic_roots(3.0 * b, 2.0 * c, d)
     found = 0
@@ -91,7 +91,7 @@ def gap(x, y, vx, vy, gx, gy, r, t):
 
 
 @noinline
-def first_descent(x, y, vx, vy, gx, gy, r, after):
+def first_contact_root(x, y, vx, vy, gx, gy, r, after):
     """Smallest t ≥ 0 at which a body on a parabola is within r of the origin and approaches it; NEVER if there is none.
 
     x, y, r: length. vx, vy: length/time. gx, gy: length/time². Only an approach that begins after the time `after`
@@ -112,7 +112,7 @@ def first_descent(x, y, vx, vy, gx, gy, r, after):
     last = 1.0 + largest / a  # Cauchy's bound on the roots
     bound = 2.0 * max(max(abs(b / a), math.sqrt(abs(c / a))), max(abs(d / a) ** (1.0 / 3.0), abs(e / a) ** 0.25))
     last = min(last, bound)  # Fujiwara's bound
-    first, second, third = cubic_turns(4.0 * a, 3.0 * b, 2.0 * c, d, last)
+    first, second, third = cubic_extrema(4.0 * a, 3.0 * b, 2.0 * c, d, last)
     low = 0.0
     for k in range(4):
         high = first if k == 0 else (second if k == 1 else (third if k == 2 else last))

@@ -1,4 +1,4 @@
-"""Inelastic collisions, and the rule that prevents infinitely many of them in a finite time.
+"""Inelastic collisions, and the rule that prevents inelastic collapse: infinitely many of them in a finite time.
 
 A collision is elastic if one of its discs had a collision, with a disc or a wall, less than the contact duration before
 (the TC model of Luding & McNamara, Granular Matter 1, 113 (1998)).
@@ -33,7 +33,7 @@ def end_epoch(restitution: Restitution, length: float) -> None:
 
 
 @inline
-def rebound(restitution, a_id, b_id, time):
+def restitution_factor(restitution, a_id, b_id, time):
     """1 + the coefficient of restitution of two discs that collide at a local time; 2 if the collision is elastic."""
     if restitution is not None:
         last = max(restitution.last[np.uintp(a_id)], restitution.last[np.uintp(b_id)])
@@ -42,7 +42,7 @@ def rebound(restitution, a_id, b_id, time):
 
 
 @inline
-def wall_rebound(restitution, own, time):
+def wall_restitution_factor(restitution, own, time):
     """1 + the coefficient of restitution of a disc that hits a wall at a local time; 2 if the collision is elastic."""
     if restitution is not None:
         recent = time - restitution.last[np.uintp(own)] < restitution.contact_duration

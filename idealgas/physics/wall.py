@@ -10,10 +10,10 @@ import numpy as np
 
 from idealgas.jit import inline
 from idealgas.physics.constants import NEVER
-from idealgas.physics.disc_disc import path_to_touch, touch
+from idealgas.physics.disc_disc import collision_delay, collision_discriminant
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
-from idealgas.physics.polynomial import first_descent, parabola
+from idealgas.physics.polynomial import first_contact_root, parabola
 from idealgas.physics.wall_collision import reflection_factor
 
 SEGMENT = np.dtype(
@@ -97,7 +97,7 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
 @inline
 def straight_end_delay(x, y, disc):
     """Time until a disc in straight flight, at (x, y) from an end of a segment, touches that end; else NEVER."""
-    meets, delay = touch(x, y, disc.vx, disc.vy, disc.r)
+    meets, delay = collision_delay(x, y, disc.vx, disc.vy, disc.r)
     return delay if meets else NEVER
 
 
@@ -128,7 +128,7 @@ def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
     delay = -1.0
     for _ in range(2):  # on a parabola a disc approaches a point at most twice
         if gravity is not None:
-            delay = first_descent(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r, delay)
+            delay = first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r, delay)
         else:
             delay = straight_end_delay(x, y, disc)
         if delay == NEVER or not moves_off(delay, far, d, s, vn, vt, an, at, length):
@@ -173,7 +173,7 @@ def misses_segment(disc, segment, gravity, periodic, images):
         return False
     half = 0.5 * segment.length
     x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
-    meets, _, gap, _ = path_to_touch(
+    meets, _, gap, _ = collision_discriminant(
         x - half * segment.tx, y - half * segment.ty, disc.vx, disc.vy, (half + disc.r) * (1.0 + 1e-6)
     )
     return (gap > 0.0) & (not meets)

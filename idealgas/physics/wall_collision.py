@@ -1,7 +1,7 @@
 """Collision of a disc with any wall: a reflection, inelastic or rough, or an emission at the wall's temperature."""
 
 from idealgas.jit import inline
-from idealgas.physics.restitution import wall_rebound
+from idealgas.physics.restitution import wall_restitution_factor
 from idealgas.physics.rotation import tangential_impulse_at_wall
 from idealgas.physics.thermal import emit, is_thermal
 
@@ -13,7 +13,7 @@ def reflection_factor(disc, own, nx, ny, restitution):
     It is exact although (nx, ny) has unit length only up to rounding.
     """
     speed = disc.vx * nx + disc.vy * ny
-    return wall_rebound(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
+    return wall_restitution_factor(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
 
 
 @inline

@@ -9,7 +9,7 @@ from idealgas.engine.epoch import encounters_per_length, energy_beyond, speed_be
 from idealgas.events import Column, Values
 from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
-from idealgas.physics.momentum_flow import COLLISION, KINETIC, MomentumFlow, none_waiting
+from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.sides import FIRST_SEGMENT
@@ -40,7 +40,7 @@ def with_sums(
     )
 
 
-def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
+def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
     """Sums of the momentum flow. speed: typical one of the discs, length/time."""
     momentum = float(gas.mass.mean()) * speed
     encounters = encounters_per_length(gas, scene.properties.periodic)
@@ -50,13 +50,13 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> MomentumFlow:
     heat = [momentum * speed * flight] * 2 + [momentum * speed * apart] * 2 if scene.log.heat_flow else []
     frame = gas.mass @ gas.velocity / gas.mass.sum() if heat else np.zeros(2)
     faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
-    push, drag = (make_sums([momentum] * faces) for _ in range(2))
-    return MomentumFlow(
+    normal_impulse, tangential_impulse = (make_sums([momentum] * faces) for _ in range(2))
+    return StressAccumulator(
         tensor=make_sums(tensor),
-        waiting=none_waiting(),
+        buffer=empty_buffer(),
         walls=make_sums([momentum * max(gas.box)]),
-        push=push,
-        drag=drag,
+        normal_impulse=normal_impulse,
+        tangential_impulse=tangential_impulse,
         hits=np.zeros(faces, np.int64),
         pairs=np.zeros((species, species), np.int64) if species > 1 else None,
         species=gas.species.copy() if species > 1 else None,
@@ -88,10 +88,10 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
     if (flow := effects.flow) is not None:
         tensor = np.asarray(flow.tensor)  # a slice of a recarray takes ten times as long
         yield Column("kinetic_flow", "f8", (3,), ACTION), tensor[KINETIC]
-        yield Column("collision_flow", "f8", (4,), ACTION), tensor[COLLISION]
+        yield Column("collision_flow", "f8", (4,), ACTION), tensor[COLLISIONAL]
         yield Column("wall_virial", "f8", (), ACTION), flow.walls
-        yield Column("face_push", "f8", (len(flow.push),), MOMENTUM), flow.push
-        yield Column("face_drag", "f8", (len(flow.drag),), MOMENTUM), flow.drag
+        yield Column("face_push", "f8", (len(flow.normal_impulse),), MOMENTUM), flow.normal_impulse
+        yield Column("face_drag", "f8", (len(flow.tangential_impulse),), MOMENTUM), flow.tangential_impulse
         if flow.heat is not None:
             flowing = np.asarray(flow.heat)
             yield Column("kinetic_heat_flow", "f8", (2,), HEAT), flowing[:2]

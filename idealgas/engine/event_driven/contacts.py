@@ -14,7 +14,7 @@ from idealgas.engine.event_driven.state import copy_image, image_of, record_imag
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
 from idealgas.jit import inline, noinline
-from idealgas.physics.disc_disc import contact_time, first_touch, will_touch
+from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.wall import misses_segment, segment_contact
 
@@ -131,7 +131,7 @@ def keep_those_in_the_way(record, ids, state, count, i, effects):
         images = images_to(state, k, ids, i, j, effects.periodic)
         candidates[U(kept)] = j
         copy_image(state.images, kept, k)
-        kept += 1 if will_touch(disc, record[U(j)], effects.gravity, effects.periodic, images) else 0
+        kept += 1 if will_collide(disc, record[U(j)], effects.gravity, effects.periodic, images) else 0
         k += 1
     return kept
 
@@ -150,7 +150,7 @@ def test_candidates(record, ids, state, count, i, now, effects):
     for k in range(count):
         j = state.candidates[U(k)]
         images = images_to(state, k, ids, i, j, effects.periodic)
-        time = first_touch(disc, record[U(j)], effects.gravity, effects.periodic, images)
+        time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
         tied |= time == best
         chosen = k if time < best else chosen
         best = min(time, best)

@@ -23,7 +23,7 @@ from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, V
 from idealgas.engine.records import COUNTERS, UNLIMITED, Discs, Limits
 from idealgas.events import EventBatch
 from idealgas.jit import aligned
-from idealgas.physics import momentum_flow
+from idealgas.physics import stress
 from idealgas.physics.effects import Effects, add_sums_of, clear_sums, with_own_sums
 from idealgas.physics.periodic import periodic_axes
 
@@ -327,7 +327,7 @@ class _Strip:
             record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
         )
         if self._effects.flow is not None:
-            momentum_flow.settle(self._effects.flow)
+            stress.flush(self._effects.flow)
 
     def add_to(self, effects: Effects) -> None:
         """Add the sums of the slice to those of the run."""

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from idealgas.jit import njit
 from idealgas.physics.exact_sum import (
+    BATCH,
     FITS,
-    TOGETHER,
     SumRangeError,
     add,
     add_all,
@@ -102,24 +102,24 @@ def test_the_error_of_a_term_is_half_a_unit():
     assert 0 < abs(number * unit - exact) <= len(terms) * unit / 2
 
 
-@given(terms=st.lists(st.floats(-FITS, FITS) | st.integers(-(2**53), 2**53).map(lambda n: n / 2), max_size=TOGETHER))
+@given(terms=st.lists(st.floats(-FITS, FITS) | st.integers(-(2**53), 2**53).map(lambda n: n / 2), max_size=BATCH))
 @settings(max_examples=300)
 def test_a_group_is_rounded_as_one_by_one(terms):
-    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, TOGETHER))
+    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, BATCH))
     assert whole(sums) == [sum(map(round, terms))]
 
 
 @pytest.mark.parametrize("part", [2.0**31, 2.0**31 - 0.5, 2.0**31 + 0.5, 3 * 2.0**31, 2.0**50 + 2.0**31 - 0.5])
 def test_a_group_between_two_upper_parts(part):
     terms = [part, -part, part + 1.0, 0.5 - part, part]
-    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, TOGETHER))
+    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, BATCH))
     assert whole(sums) == [sum(map(round, terms))]
 
 
 @pytest.mark.parametrize("term", [FITS - 8, -(FITS - 8), FITS, -FITS, 0.5, 1.5])
 def test_the_largest_group(term):
-    terms = [term] * TOGETHER
-    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, TOGETHER))
+    terms = [term] * BATCH
+    sums = summed(terms, way=lambda total, terms: add_in_groups(total, terms, BATCH))
     assert whole(sums) == [sum(map(round, terms))]
 
 
@@ -160,7 +160,7 @@ def test_what_is_beyond_all_sums_is_not_restored(entry):
 @np.errstate(over="ignore")  # words wrap around, of which Python warns
 def test_parts_of_sums_add_up_to_the_bit():
     draw = np.random.default_rng(5)
-    terms = draw.normal(size=TOGETHER) * 10.0 ** draw.integers(-9, 12, TOGETHER)
+    terms = draw.normal(size=BATCH) * 10.0 ** draw.integers(-9, 12, BATCH)
     whole, *parts = (make_sums([1.0]) for _ in range(4))
     add_all(whole[0], terms)
     for k in range(3):

@@ -9,7 +9,7 @@ import pytest
 from rounding import exact, gamma
 
 from idealgas.physics.constants import NEVER
-from idealgas.physics.polynomial import cubic, cubic_turns, first_descent, gap, parabola, quadratic_roots
+from idealgas.physics.polynomial import cubic, cubic_extrema, first_contact_root, gap, parabola, quadratic_roots
 
 pytestmark = pytest.mark.interpreted
 
@@ -108,7 +108,7 @@ def test_turns_of_a_cubic():
                 continue
             scale = draw.choice([-1, 1]) * 10.0 ** draw.uniform(-3, 3)
             coefficients = scale * np.poly(zeros)
-            found = cubic_turns(*coefficients, last)
+            found = cubic_extrema(*coefficients, last)
             inside = zeros[(zeros > 0) & (zeros < last)]
             assert list(found[len(inside) :]) == [last] * (3 - len(inside))
             assert found[: len(inside)] == pytest.approx(inside, rel=1e-9)
@@ -149,26 +149,28 @@ def test_first_descent(strength):
             y = 0.5 * r * math.sin(angle) - vy * after - 0.5 * gy * after**2
             if math.hypot(x, y) < r:
                 continue
-            found = first_descent(x, y, vx, vy, gx, gy, r, -1.0)
+            found = first_contact_root(x, y, vx, vy, gx, gy, r, -1.0)
             met += 1
             for time, slope in exact_descents(x, y, vx, vy, gx, gy, r):
                 assert abs(found - time) <= 2 * rounding_of_gap(x, y, vx, vy, gx, gy, r, found) / abs(slope)
-                found = first_descent(x, y, vx, vy, gx, gy, r, found)
+                found = first_contact_root(x, y, vx, vy, gx, gy, r, found)
             assert found == NEVER
     assert met > 30
 
 
 def test_a_parabola_that_passes_by():
-    assert first_descent(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0, -1.0) == NEVER
+    assert first_contact_root(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0, -1.0) == NEVER
     assert exact_descents(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0) == []
 
 
 def test_a_descent_that_has_begun():
-    assert first_descent(1.0, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # touches and comes nearer
-    assert first_descent(0.5, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # overlaps and comes nearer
-    back = first_descent(0.0, 1.0, 0.0, 3.0, 0.0, -1.0, 1.0, -1.0)  # thrown up from contact: falls back after 2 v/g
+    assert first_contact_root(1.0, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # touches and comes nearer
+    assert first_contact_root(0.5, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # overlaps and comes nearer
+    back = first_contact_root(
+        0.0, 1.0, 0.0, 3.0, 0.0, -1.0, 1.0, -1.0
+    )  # thrown up from contact: falls back after 2 v/g
     assert back == pytest.approx(6.0, rel=1e-15)
-    assert first_descent(5.0, 5.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0) == NEVER
+    assert first_contact_root(5.0, 5.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0) == NEVER
 
 
 def test_the_gap_near_contact_keeps_its_digits():

@@ -7,7 +7,7 @@ from rounding import body, copy_of, exact, gamma
 
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.periodic import NO_IMAGES
-from idealgas.physics.restitution import Restitution, rebound, record_collision, wall_rebound
+from idealgas.physics.restitution import Restitution, record_collision, restitution_factor, wall_restitution_factor
 from idealgas.physics.wall_collision import collide_with_wall
 
 pytestmark = pytest.mark.interpreted
@@ -19,13 +19,13 @@ def inelastic(*last, normal=0.7, wall=0.6, contact_duration=0.25):
 
 def test_factors():
     """1 + e, rounded once; exactly 2 of what collided less than the contact duration ago, or without the effect."""
-    assert rebound(None, 0, 1, 3.0) == wall_rebound(None, 0, 3.0) == 2.0
-    assert rebound(inelastic(0.0, 2.0), 0, 1, 3.0) == 1.7
-    assert rebound(inelastic(0.0, 2.75), 0, 1, 3.0) == 1.7  # a contact duration ago is not less
-    assert rebound(inelastic(0.0, 2.875), 0, 1, 3.0) == 2.0
-    assert rebound(inelastic(2.875, 0.0), 0, 1, 3.0) == 2.0
-    assert wall_rebound(inelastic(2.0, 2.9), 0, 3.0) == 1.6
-    assert wall_rebound(inelastic(2.0, 2.9), 1, 3.0) == 2.0
+    assert restitution_factor(None, 0, 1, 3.0) == wall_restitution_factor(None, 0, 3.0) == 2.0
+    assert restitution_factor(inelastic(0.0, 2.0), 0, 1, 3.0) == 1.7
+    assert restitution_factor(inelastic(0.0, 2.75), 0, 1, 3.0) == 1.7  # a contact duration ago is not less
+    assert restitution_factor(inelastic(0.0, 2.875), 0, 1, 3.0) == 2.0
+    assert restitution_factor(inelastic(2.875, 0.0), 0, 1, 3.0) == 2.0
+    assert wall_restitution_factor(inelastic(2.0, 2.9), 0, 3.0) == 1.6
+    assert wall_restitution_factor(inelastic(2.0, 2.9), 1, 3.0) == 2.0
 
 
 def test_collisions_are_recorded():

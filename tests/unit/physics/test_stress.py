@@ -10,17 +10,17 @@ from idealgas.engine.records import DISC
 from idealgas.engine.resolve import resolve_pair, resolve_segment, resolve_side
 from idealgas.jit import aligned
 from idealgas.physics.effects import Effects
-from idealgas.physics.exact_sum import TOGETHER, stored, values
+from idealgas.physics.exact_sum import BATCH, stored, values
 from idealgas.physics.gravity import Gravity
-from idealgas.physics.momentum_flow import (
-    COLLISION,
+from idealgas.physics.rotation import Rotation
+from idealgas.physics.stress import (
+    COLLISIONAL,
     KINETIC,
     complete_flights,
     copy_of,
-    flow_carried,
-    settle,
+    flush,
+    kinetic_flow,
 )
-from idealgas.physics.rotation import Rotation
 from idealgas.run.effects.wall import make_segments
 
 
@@ -41,7 +41,7 @@ def discs(*rows):
 @pytest.mark.parametrize("gravity", [None, Gravity(0.7, -1.3)])
 def test_a_flight_is_an_integral(gravity):
     g = gravity or (0.0, 0.0)
-    found = flow_carried(2.5, 1.1, -0.4, 1.7, gravity)
+    found = kinetic_flow(2.5, 1.1, -0.4, 1.7, gravity)
     for part, (a, b) in zip(found, ((0, 0), (0, 1), (1, 1)), strict=True):
         v = [lambda t, k=k: (1.1, -0.4)[k] + g[k] * t for k in (a, b)]
         expected = quad(lambda t: 2.5 * v[0](t) * v[1](t), 0, 1.7, epsabs=1e-14)[0]  # noqa: B023
@@ -63,11 +63,11 @@ def test_exchanged_discs_give_the_same_bits(rough):
             effects = Effects(flow=flow, rotation=rotation)
             before = [(disc.vx, disc.vy) for disc in pair]
             resolve_pair(*pair, *order, 0.2, (0, 0), effects)
-            settle(flow)
+            flush(flow)
             flows.append(stored(flow.tensor))
             impulse = pair[0].m * (np.array([pair[0].vx, pair[0].vy]) - before[0])
             apart = np.array([pair[0].x - pair[1].x, pair[0].y - pair[1].y])
-            xx, xy, yy, *yx = values(flow.tensor[COLLISION])
+            xx, xy, yy, *yx = values(flow.tensor[COLLISIONAL])
             transfer = np.outer(impulse, apart)
             assert [[xx, xy], [yx[0] if rough else xy, yy]] == pytest.approx(transfer, rel=1e-12, abs=1e-14)
         assert np.array_equal(*flows)
@@ -80,25 +80,25 @@ def test_what_a_collision_adds(gravity):
     pair = discs((0, 0, 1.1, 0.3, 0.05, 1, 1), (1.9, 0.4, -0.6, 0.2, 0.15, 1, 3))
     flights = [(disc.m.item(), disc.vx.item(), disc.vy.item(), 0.2 - disc.t.item()) for disc in pair]
     resolve_pair(*pair, 0, 1, 0.2, (0, 0), Effects(flow=flow, gravity=gravity))
-    settle(flow)
-    carried = np.sum([flow_carried(*flight, gravity) for flight in flights], axis=0)
+    flush(flow)
+    carried = np.sum([kinetic_flow(*flight, gravity) for flight in flights], axis=0)
     assert values(flow.tensor[KINETIC]) == pytest.approx(carried, rel=1e-14)
     mass, vx, vy, delay = flights[0]
     received = mass * (np.array([pair[0].vx, pair[0].vy]) - [vx, vy] - pull * delay)
     (xx, xy), (_, yy) = np.outer(received, [pair[0].x - pair[1].x, pair[0].y - pair[1].y])
-    assert values(flow.tensor[COLLISION]) == pytest.approx([xx, xy, yy], rel=1e-13)
+    assert values(flow.tensor[COLLISIONAL]) == pytest.approx([xx, xy, yy], rel=1e-13)
     assert abs(xx) > 0.5
 
 
 def test_collisions_are_added_together_and_one_by_one():
     flow, other = flow_of(), flow_of()
-    for _ in range(3 * TOGETHER + 5):
+    for _ in range(3 * BATCH + 5):
         for each in (flow, other):
             pair = discs((0, 0, 0.7, 0.1, 0, 1, 1), (2, 0.1, -0.3, 0.2, 0, 1, 2))
             resolve_pair(*pair, 0, 1, 0.05, (0, 0), Effects(flow=each))
-        settle(other)
-    assert flow.waiting.number[0] == 5
-    settle(flow)
+        flush(other)
+    assert flow.buffer.number[0] == 5
+    flush(flow)
     assert stored(flow.tensor).tolist() == stored(other.tensor).tolist()
     assert values(flow.tensor).all()
 
@@ -114,13 +114,13 @@ def test_flights_in_the_air():
 
 
 @pytest.mark.parametrize(
-    ("side", "velocity", "push"), [(0, (-1, 2), 4), (1, (1, 2), 4), (2, (1, -2), 8), (3, (1, 2), 8)]
+    ("side", "velocity", "normal_impulse"), [(0, (-1, 2), 4), (1, (1, 2), 4), (2, (1, -2), 8), (3, (1, 2), 8)]
 )
-def test_sides_are_pushed_outwards(side, velocity, push):
+def test_sides_are_pushed_outwards(side, velocity, normal_impulse):
     flow = flow_of()
     (disc,) = discs((2, 7, *velocity, 0, 1, 2))
     resolve_side(disc, 0, side, 0.0, Effects(flow=flow))
-    assert values(flow.push).tolist() == [push * (k == side) for k in range(4)]
+    assert values(flow.normal_impulse).tolist() == [normal_impulse * (k == side) for k in range(4)]
     assert flow.hits.tolist() == [int(k == side) for k in range(4)]
     received = 2 * np.array([disc.vx - velocity[0], disc.vy - velocity[1]])
     assert values(flow.walls)[0] == -((2 - 5) * received[0] + (7 - 4) * received[1])
@@ -142,6 +142,8 @@ def test_both_faces_of_a_segment(face, at_end):
     given = -2 * (np.array([disc.vx, disc.vy]) - velocity)
     k = 4 + face
     assert flow.hits.tolist() == [int(j == k) for j in range(6)]
-    assert values(flow.push)[k] > 0
-    assert values(flow.push)[k] * -left + values(flow.drag)[k] * tangent == pytest.approx(given, rel=1e-12, abs=1e-14)
-    assert abs(values(flow.drag)[k]) > 0.1 or not at_end
+    assert values(flow.normal_impulse)[k] > 0
+    assert values(flow.normal_impulse)[k] * -left + values(flow.tangential_impulse)[k] * tangent == pytest.approx(
+        given, rel=1e-12, abs=1e-14
+    )
+    assert abs(values(flow.tangential_impulse)[k]) > 0.1 or not at_end

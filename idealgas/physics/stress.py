@@ -1,0 +1,289 @@
+"""Stress tensor, heat flux and wall impulses of a gas, accumulated as exact sums.
+
+Pressure tensor times area and time: P_ab A τ = ∫ Σ m v_a v_b dt + Σ Δp_a r_b. The integral is the kinetic part. The
+sum over collisions of two discs is the collisional part: Δp is the impulse on one disc, r its position relative to the
+other. Every term is unchanged to the last bit if the two discs are exchanged. Both parts are energies times time.
+
+The heat flux is accumulated in the same way: ∫ Σ (m v²/2) v_a dt + Σ ΔE r_a, where ΔE is the energy gained by one disc
+and velocities are relative to the centre of mass; energies times length. It is recorded only if velocities change in
+collisions of smooth elastic discs alone.
+
+A face is one side of a wall: faces 0 to 3 are the sides of the box, followed by the two faces of each wall segment,
+first the face to the left when looking from its start to its end.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from idealgas.jit import aligned, inline, njit
+from idealgas.physics.exact_sum import BATCH, add, add_all
+from idealgas.physics.periodic import shift_by_images
+
+U = np.uintp
+KINETIC, COLLISIONAL = slice(0, 3), slice(3, None)
+"""Components of the tensor: xx, xy, yy of the kinetic part; xx, xy, yy and, for rough discs, yx of the collisional."""
+
+TERMS = np.dtype([("column", "f8", (BATCH,))])
+"""Terms of one sum, one per collision."""
+
+PARTS = 7
+"""Largest number of sums of the tensor, that of rough discs."""
+
+HEAT = 4
+"""Number of sums of the heat flux."""
+
+
+class Buffer(NamedTuple):
+    """Terms of collisions that `flush` adds together, which is faster than one by one.
+
+    Attributes:
+        number: (1,) i8, number of buffered collisions.
+        terms: (PARTS + HEAT,) TERMS, terms of the tensor, then of the heat flux.
+    """
+
+    number: np.ndarray
+    terms: np.recarray
+
+
+class StressAccumulator(NamedTuple):
+    """Sums of a run for the stress tensor, the heat flux and the walls, and numbers of collisions.
+
+    Attributes:
+        tensor: (6,) SUM, kinetic xx, xy, yy, then collisional xx, xy, yy, energy times time; for rough discs (7,), with
+            the collisional yx, which equals xy for smooth discs.
+        buffer: terms that are not in these sums yet.
+        walls: (1,) SUM, -Σ r·Δp over all wall hits, with r from the centre of the box and Δp the impulse on the disc,
+            energy times time.
+        normal_impulse: (F,) SUM, impulse on each face along its normal, into the wall, mass length/time.
+        tangential_impulse: (F,) SUM, impulse on each face along its tangent, mass length/time; the tangent points
+            towards larger coordinates for a side, from start to end for a segment.
+        hits: (F,) i8, number of hits of each face.
+        pairs: (S, S) i8, numbers of collisions of species i and j, in the upper triangle; None for one species.
+        species: (N,) u2, species of each disc by id; None for one species.
+        x: x coordinate of the centre of the box, length.
+        y: y coordinate of the centre of the box, length.
+        heat: (4,) SUM, kinetic heat flux along x and y, then collisional along x and y, energy times length; None if
+            not recorded.
+        vx: centre-of-mass velocity along x, length/time; 0 without heat flux.
+        vy: centre-of-mass velocity along y, length/time; 0 without heat flux.
+    """
+
+    tensor: np.recarray
+    buffer: Buffer
+    walls: np.recarray
+    normal_impulse: np.recarray
+    tangential_impulse: np.recarray
+    hits: np.ndarray
+    pairs: np.ndarray | None
+    species: np.ndarray | None
+    x: float
+    y: float
+    heat: np.recarray | None = None
+    vx: float = 0.0
+    vy: float = 0.0
+
+
+def empty_buffer() -> Buffer:
+    """Buffer without terms."""
+    return Buffer(np.zeros(1, np.int64), aligned(PARTS + HEAT, TERMS))
+
+
+@inline
+def kinetic_flow(mass, vx, vy, delay, gravity):
+    """Kinetic stress (xx, xy, yy), energy times time, of a disc in free flight.
+
+    vx, vy: velocity at the start, length/time. delay: duration of the flight, time.
+    """
+    carried = mass * delay
+    if gravity is not None:  # v_a v_b in the middle of the flight, plus the variance of the velocity
+        vx += 0.5 * gravity.x * delay
+        vy += 0.5 * gravity.y * delay
+        third = carried * delay * delay / 12.0
+        return (
+            carried * vx * vx + third * gravity.x * gravity.x,
+            carried * vx * vy + third * gravity.x * gravity.y,
+            carried * vy * vy + third * gravity.y * gravity.y,
+        )
+    return carried * vx * vx, carried * vx * vy, carried * vy * vy
+
+
+@inline
+def kinetic_heat_flow(mass, vx, vy, delay):
+    """Kinetic heat flux (x, y), energy times length, of a disc in free flight, relative to the centre of mass."""
+    energy = 0.5 * mass * (vx * vx + vy * vy) * delay
+    return energy * vx, energy * vy
+
+
+@inline
+def energy_gained(mass, vx, vy, vx_after, vy_after, frame_x, frame_y):
+    """Energy (mass length²/time²) gained by a disc whose velocity changed, in a frame moving at (frame_x, frame_y)."""
+    along_x = (vx_after - vx) * (vx_after + vx - 2.0 * frame_x)
+    along_y = (vy_after - vy) * (vy_after + vy - 2.0 * frame_y)
+    return 0.5 * mass * (along_x + along_y)
+
+
+@inline
+def record_flight(flow, disc, time, gravity):
+    """Add the flight of a disc, from its record to a local time, if stress is recorded."""
+    if flow is not None:
+        xx, xy, yy = kinetic_flow(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
+        add(flow.tensor[U(0)], xx)
+        add(flow.tensor[U(1)], xy)
+        add(flow.tensor[U(2)], yy)
+
+
+@inline
+def flights_to(flow, a, b, time):
+    """Flights of two discs up to a local time; zeros if stress is not recorded.
+
+    Returns their durations (a, b), time, and the velocities (a_vx, a_vy, b_vx, b_vy) at their start, length/time.
+    """
+    if flow is not None:
+        return (time - a.t, time - b.t), (a.vx, a.vy, b.vx, b.vy)
+    return (0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+
+
+@inline
+def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, images, gravity):
+    """Record the collision of two discs at their contact, if stress is recorded.
+
+    flights: result of `flights_to`. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
+    images: numbers of box lengths (x, y) between the records, where sides are periodic.
+    """
+    if flow is not None:
+        number, terms = flow.buffer.number, flow.buffer.terms
+        k = U(number[0])
+        x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
+        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy) = flights
+        a_xx, a_xy, a_yy = kinetic_flow(a.m, a_vx, a_vy, a_delay, gravity)
+        b_xx, b_xy, b_yy = kinetic_flow(b.m, b_vx, b_vy, b_delay, gravity)
+        px = 0.5 * (a.m * (a.vx - before[0]) - b.m * (b.vx - before[2]))
+        py = 0.5 * (a.m * (a.vy - before[1]) - b.m * (b.vy - before[3]))
+        terms[U(0)].column[k] = a_xx + b_xx
+        terms[U(1)].column[k] = a_xy + b_xy
+        terms[U(2)].column[k] = a_yy + b_yy
+        terms[U(3)].column[k] = px * x
+        terms[U(4)].column[k] = px * y
+        terms[U(5)].column[k] = py * y
+        terms[U(6)].column[k] = py * x  # added for rough discs only
+        buffer_heat(flow.heat, terms, k, a, b, flights, x, y, flow.vx, flow.vy)
+        number[0] += 1
+        if number[0] == BATCH:
+            flush(flow)
+        count_pair(flow.pairs, flow.species, a_id, b_id)
+
+
+@inline
+def buffer_heat(heat, terms, k, a, b, flights, x, y, vx, vy):
+    """Buffer the terms of a collision in the heat flux as number k, if it is recorded.
+
+    x, y: position of a relative to b, length. vx, vy: centre-of-mass velocity, length/time.
+    """
+    if heat is not None:
+        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy) = flights
+        a_x, a_y = kinetic_heat_flow(a.m, a_vx - vx, a_vy - vy, a_delay)
+        b_x, b_y = kinetic_heat_flow(b.m, b_vx - vx, b_vy - vy, b_delay)
+        a_gain = energy_gained(a.m, a_vx, a_vy, a.vx, a.vy, vx, vy)
+        b_gain = energy_gained(b.m, b_vx, b_vy, b.vx, b.vy, vx, vy)
+        gain = 0.5 * (a_gain - b_gain)
+        terms[U(PARTS)].column[k] = a_x + b_x
+        terms[U(PARTS + 1)].column[k] = a_y + b_y
+        terms[U(PARTS + 2)].column[k] = gain * x
+        terms[U(PARTS + 3)].column[k] = gain * y
+
+
+@njit
+def flush(flow):
+    """Add all buffered terms to their sums."""
+    number, terms = flow.buffer.number[0], flow.buffer.terms
+    add_terms(flow.tensor, terms, 0, flow.tensor.shape[0], number)
+    add_terms(flow.heat, terms, PARTS, HEAT, number)
+    flow.buffer.number[0] = 0
+
+
+@inline
+def add_terms(sums, terms, first, parts, number):
+    """Add `number` terms to each of the first `parts` sums, from the columns `first` onwards; sums: None for none."""
+    if sums is not None:
+        for k in range(parts):
+            add_all(sums[U(k)], terms[U(first + k)].column[:number])
+
+
+@inline
+def count_pair(pairs, species, a_id, b_id):
+    """Count a collision by the species of its discs, if there are several."""
+    if species is not None:
+        i = species[U(a_id)]
+        j = species[U(b_id)]
+        pairs[U(min(i, j)), U(max(i, j))] += 1
+
+
+@inline
+def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
+    """Add a hit of a face, if stress is recorded; the disc's record is at the contact, inside the box.
+
+    nx, ny: unit normal of the face towards the disc. tx, ty: its unit tangent. px, py: impulse on the disc,
+    mass length/time.
+    """
+    if flow is not None:
+        k = U(face)
+        add(flow.normal_impulse[k], nx * px + ny * py)
+        add(flow.tangential_impulse[k], -(tx * px + ty * py))
+        add(flow.walls[0], -((disc.x - flow.x) * px + (disc.y - flow.y) * py))
+        flow.hits[k] += 1
+
+
+@njit
+def complete_flights(record, time, gravity, flow):
+    """Add the buffered collisions, then the flights of all discs from their records to a local time."""
+    flush(flow)
+    terms = flow.buffer.terms
+    for first in range(0, record.shape[0], BATCH):
+        number = min(BATCH, record.shape[0] - first)
+        for k in range(number):
+            disc = record[U(first + k)]
+            xx, xy, yy = kinetic_flow(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
+            terms[U(0)].column[U(k)] = xx
+            terms[U(1)].column[U(k)] = xy
+            terms[U(2)].column[U(k)] = yy
+        add_terms(flow.tensor, terms, 0, 3, number)
+        complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy)
+
+
+@inline
+def complete_heat(heat, terms, record, first, number, time, vx, vy):
+    """Add the kinetic heat flux of a number of discs from their records to a local time, if it is recorded."""
+    if heat is not None:
+        for k in range(number):
+            disc = record[U(first + k)]
+            x, y = kinetic_heat_flow(disc.m, disc.vx - vx, disc.vy - vy, time - disc.t)
+            terms[U(0)].column[U(k)] = x
+            terms[U(1)].column[U(k)] = y
+        add_terms(heat, terms, 0, 2, number)
+
+
+def sums_of(flow: StressAccumulator) -> list[np.ndarray]:
+    """All arrays of SUM."""
+    return [
+        flow.tensor,
+        flow.walls,
+        flow.normal_impulse,
+        flow.tangential_impulse,
+        *([] if flow.heat is None else [flow.heat]),
+    ]
+
+
+def counts_of(flow: StressAccumulator) -> list[np.ndarray]:
+    """All arrays of collision counts."""
+    return [flow.hits] if flow.pairs is None else [flow.hits, flow.pairs]
+
+
+def copy_of(flow: StressAccumulator | None) -> StressAccumulator | None:
+    """Independent copy of the sums and the buffer; None for None."""
+    if flow is None:
+        return None
+    copies: Any = {name: part.copy() for name, part in flow._asdict().items() if isinstance(part, np.ndarray)}
+    buffer = empty_buffer()
+    buffer.number[:], buffer.terms[:] = flow.buffer
+    return flow._replace(buffer=buffer, **copies)
