@@ -8,7 +8,8 @@ import pytest
 from against_theory import LEAST_P, STANDARD_ERRORS, agrees, kinetic_at_even_times, of_runs
 from scipy import stats
 
-from idealgas.analysis.core.statistics import estimate, inefficiency, mean, ratio
+from idealgas.analysis.core.autoregression import inefficiency
+from idealgas.analysis.core.statistics import estimate, mean, ratio
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.evolution.theory import expected_course, push
 from idealgas.analysis.profile.measure import profile

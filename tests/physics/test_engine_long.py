@@ -12,7 +12,8 @@ import pytest
 from scipy import stats
 from support import batches
 
-from idealgas.analysis.core.statistics import ensemble_inefficiency, mean
+from idealgas.analysis.core.autoregression import inefficiency
+from idealgas.analysis.core.statistics import mean
 from idealgas.analysis.theory import hard_discs
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
@@ -114,7 +115,7 @@ def test_speeds(phi):
     """
     found = run(phi)
     speeds = found.speeds[len(found.speeds) // 8 :]
-    spacing = 2 * int(np.ceil(ensemble_inefficiency(speeds)))
+    spacing = 2 * int(np.ceil(inefficiency(speeds)))
     assert spacing <= 10
     samples = speeds[::spacing].ravel()
     assert len(samples) >= 30_000

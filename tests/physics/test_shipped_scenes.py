@@ -11,7 +11,8 @@ import pytest
 from against_theory import LEAST_P, STANDARD_ERRORS, agrees, of_runs
 from scipy import stats
 
-from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean
+from idealgas.analysis.core.autoregression import inefficiency
+from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.effusion.measure import effusion
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.pressure.measure import pressure
@@ -129,7 +130,7 @@ def test_atmosphere(run):
         agrees(warmth, 0.06)
     t = air.temperature[0].theory
     heights = np.array([state.position[:, 1] for state in log.frames(np.arange(50.0, 800.0, 2.5))])
-    spacing = 2 * math.ceil(ensemble_inefficiency(heights))
+    spacing = 2 * math.ceil(inefficiency(heights))
     samples = heights[::spacing].ravel()
     assert len(samples) >= 5000
     low, high, scale = 0.01, 59.99, t / 0.2

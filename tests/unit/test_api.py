@@ -15,7 +15,7 @@ from support import ROOT
 import idealgas
 from idealgas.analysis import registry
 
-HEAVY = {"numpy", "numba", "h5py", "scipy", "pydantic", "matplotlib", "pandas", "pymbar", "rich", "click"}
+HEAVY = {"numpy", "numba", "h5py", "scipy", "pydantic", "matplotlib", "pandas", "rich", "click"}
 LOGS = ROOT / "tests" / "cases" / "logs"
 PACKED = ".h5.xz"
 TYPES = (

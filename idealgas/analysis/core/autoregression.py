@@ -1,4 +1,4 @@
-"""Error of the mean of a correlated series, from autoregressive models of it.
+"""Error of the mean and statistical inefficiency of a correlated series, from autoregressive models of it.
 
 A model of order p predicts a sample from the p samples before it, x_t = Σ a_k x_{t-k} + noise of variance s. Its
 spectrum at frequency 0, s/(1 - Σ a_k)², is the variance of the mean times the number of samples. Unlike a sum of
@@ -6,9 +6,10 @@ autocorrelations that is cut off, or batches of a fixed length, it does justice 
 any length that the series can show.
 
 Coefficients: Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral Analysis for Physical
-Applications, 1993, chapter 9). Orders are not chosen but averaged with the weights of Akaike's corrected criterion
-(Burnham & Anderson, Model Selection and Multimodel Inference, 2002), so that the error knows how little a short series
-tells of its order.
+Applications, 1993, chapter 9). Several series of one process share their coefficients: all sums run over all of them
+(de Waele & Broersen, The Burg algorithm for segments, IEEE Trans. Signal Process. 48, 2876 (2000)). Orders are not
+chosen but averaged with the weights of Akaike's corrected criterion (Burnham & Anderson, Model Selection and Multimodel
+Inference, 2002), so that the error contains how uncertain the order of a short series is.
 """
 
 import math
@@ -62,7 +63,7 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True)
 class Process:
-    """Stationary process behind a series: models with their weights. length: of the series."""
+    """Stationary process behind one or several series of one length: models with their weights."""
 
     models: tuple[Model, ...]
     weights: np.ndarray
@@ -112,6 +113,31 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
     return process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
 
 
+def inefficiency(series: np.ndarray) -> float:
+    """Statistical inefficiency g ≥ 1 of a stationary process: number of successive samples per independent one.
+
+    g = 1 + 2 Σ (1 - k/n) ρ(k) over the lags k before the first one at which the models' autocorrelation ρ is not
+    positive (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007), who estimate ρ without a model). Later, negative
+    values are not subtracted: samples that are g apart are decorrelated even if the series oscillates. The error of
+    a mean, which does profit from anticorrelation, comes from `error_of_mean`.
+
+    Args:
+        series: (n,), one series, or (n, M), series of M members with a common mean, such as the discs of a species.
+
+    Returns:
+        g; 1 for fewer than 4 samples and for a constant, n if the members differ but never change.
+    """
+    n = len(series)
+    if n < 4 or is_constant(series):
+        return 1.0
+    if np.ptp(series, axis=0).max() <= NOISE * np.abs(series).max():
+        return float(n)
+    covariance = process_of(series - series.mean()).covariances(n)
+    ends = np.flatnonzero(covariance <= 0)
+    lags = np.arange(1, ends[0] if len(ends) else n)
+    return float(1 + 2 * ((1 - lags / n) * covariance[lags]).sum() / covariance[0])
+
+
 def is_constant(series: np.ndarray) -> bool:
     """Whether a series changes by rounding only, or so little that squares of the changes are 0."""
     return not (changes(series) and np.ptp(series) > LEAST)
@@ -123,19 +149,19 @@ def changes(series: np.ndarray) -> bool:
 
 
 def process_of(series: np.ndarray) -> Process:
-    """Process behind a series (n,) of mean 0 that is not constant, n ≥ 2."""
-    models, n = tuple(_models(series)), len(series)
+    """Process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2."""
+    models, n = tuple(_models(series.reshape(len(series), -1))), series.size
     orders, noise = np.arange(len(models)), np.array([model.noise for model in models])
     criterion = n * np.log(noise) + 2 * (orders + 1) * n / np.maximum(n - orders - 2, 0.5)
     weight = np.exp((criterion.min() - criterion) / 2)
     kept = np.flatnonzero(weight >= LEAST_WEIGHT)
-    return Process(tuple(models[p] for p in kept), weight[kept] / weight[kept].sum(), n)
+    return Process(tuple(models[p] for p in kept), weight[kept] / weight[kept].sum(), len(series))
 
 
 def _models(series: np.ndarray) -> list[Model]:
-    """Models of a series (n,) of mean 0, of orders 0 to n/8 or, in a long series, 20 log₁₀ n."""
-    n = len(series)
-    most = min(n // 8, int(20 * math.log10(n)))
+    """Models of M series (n, M) of mean 0, of orders 0 to n/8 or, if they are long, 20 log₁₀ n."""
+    length, n = len(series), series.size
+    most = min(length // 8, int(20 * math.log10(length)))
     coefficients = np.zeros((most + 1, most))
     noise, covariance, doubt = np.zeros((3, most + 1))
     found = _fit(np.array(series, float), np.array(series, float), coefficients, noise, covariance, doubt)
@@ -147,15 +173,16 @@ def _models(series: np.ndarray) -> list[Model]:
 
 @njit
 def _fit(forward, backward, coefficients, noise, covariance, doubt):
-    """Fill arrays by order from a series given twice, (n,), which is lost: numbers of orders that have a model.
+    """Fill arrays by order from M series given twice, (n, M), which are lost: numbers of orders that have a model.
 
     coefficients: (P + 1, P), of order p in row p. noise, covariance: (P + 1,). doubt: (P + 1,), mean square error of
-    Σ a_k in units of (1 - Σ a_k)²/n.
+    Σ a_k in units of (1 - Σ a_k)²/(n M).
     """
-    n = forward.shape[0]
+    n, members = forward.shape
     left = 0.0
     for t in range(n):
-        left += forward[t] * forward[t] / n
+        for m in range(members):
+            left += forward[t, m] * forward[t, m] / (n * members)
     least = NOISE * left
     covariance[0] = left
     rest = 1.0  # 1 - Σ a_k
@@ -164,8 +191,10 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
         if p > 0:
             both = power = 0.0
             for t in range(p, n):
-                both += forward[t] * backward[t - 1]
-                power += forward[t] * forward[t] + backward[t - 1] * backward[t - 1]
+                for m in range(members):
+                    ahead, behind = forward[t, m], backward[t - 1, m]
+                    both += ahead * behind
+                    power += ahead * ahead + behind * behind
             reflection = 2 * both / power if power > 0 else 0.0
             certainty += rest * rest / left
             covariance[p] = reflection * left
@@ -177,9 +206,10 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
             coefficients[p, p - 1] = reflection
             left *= 1 - reflection * reflection
             for t in range(n - 1, p - 1, -1):
-                ahead, behind = forward[t], backward[t - 1]
-                forward[t] = ahead - reflection * behind
-                backward[t] = behind - reflection * ahead
+                for m in range(members):
+                    ahead, behind = forward[t, m], backward[t - 1, m]
+                    forward[t, m] = ahead - reflection * behind
+                    backward[t, m] = behind - reflection * ahead
         if left <= least:
             return p
         noise[p] = left

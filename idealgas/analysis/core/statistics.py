@@ -1,11 +1,9 @@
 """Estimates with error bars from correlated series.
 
-A series is an observable averaged over consecutive blocks of time. The error of its mean comes from autoregressive
-models (`autoregression`). pymbar measures how far apart decorrelated samples are (Chodera et al., J. Chem. Theory
-Comput. 3, 26 (2007)).
+A series is an observable averaged over consecutive blocks of time. The error of its mean, and how far apart
+decorrelated samples are, come from autoregressive models (`autoregression`).
 """
 
-import logging
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -14,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy import special
 
-from idealgas.analysis.core.autoregression import changes, error_of_mean, is_constant
+from idealgas.analysis.core.autoregression import changes, error_of_mean, inefficiency
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
@@ -127,31 +125,6 @@ def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
     if any(deviation is None or not math.isfinite(deviation) for deviation in known.values()):
         raise UserError("nothing to check: too few events for an error bar")
     return Verdict(all(abs(deviation or 0.0) <= TOLERANCE for deviation in known.values()), tuple(known))
-
-
-def inefficiency(series: np.ndarray) -> float:
-    """Statistical inefficiency g ≥ 1 of a series: samples per independent sample; 1 if it is too short or constant."""
-    if len(series) < 4 or is_constant(series):
-        return 1.0
-    return float(_timeseries().statistical_inefficiency(series))
-
-
-def ensemble_inefficiency(series: np.ndarray) -> float:
-    """Statistical inefficiency g ≥ 1 from many series of one process, such as all discs of a species.
-
-    series: array of shape (samples, members).
-    """
-    if len(series) < 4 or is_constant(series):
-        return 1.0
-    return float(_timeseries().statistical_inefficiency_multiple(list(series.T)))
-
-
-def _timeseries() -> Any:
-    """The module of pymbar, imported where it is used: that takes as long as all else that most analyses import."""
-    logging.getLogger("pymbar").setLevel(logging.ERROR)  # it logs at import that JAX would be faster
-    from pymbar import timeseries
-
-    return timeseries
 
 
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.equilibrium import degrees_of_freedom, energy_of_drift
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, estimate, inefficiency, mean
+from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
 from idealgas.analysis.pressure.measure import WALLS, pressure
 from idealgas.analysis.theory import hard_discs, values

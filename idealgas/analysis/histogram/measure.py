@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.settling import why_never_stationary
-from idealgas.analysis.core.statistics import Estimate, ensemble_inefficiency, mean, mean_of_flux, ratio
+from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
 from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.histogram.laws import premise
@@ -170,7 +171,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = known.laws(quantity, discs, s, measured)
         # A light disc among heavy ones keeps its speed for longer than its direction.
-        spacing = int(np.ceil(max(ensemble_inefficiency(snapshots), ensemble_inefficiency(snapshots**2))))
+        spacing = int(np.ceil(max(inefficiency(snapshots), inefficiency(snapshots**2))))
         expected = list(possible.values())[-1].mean if possible and measured is None else None
         found.append(
             _distribution(

@@ -89,3 +89,34 @@ def test_short_and_constant_series():
     assert autoregression.error_of_mean(np.full(9, 3.7)) == (0.0, 9)
     two = autoregression.error_of_mean(np.array([1.0, 3.0]))
     assert two == (pytest.approx(1.0), pytest.approx(2.0))
+
+
+@pytest.mark.parametrize(("memory", "expected"), [(0.0, 1.0), (0.5, 3.0), (0.9, 19.0)])
+def test_inefficiency_of_a_known_process(memory, expected):
+    rng = np.random.default_rng(5)
+
+    def error(samples):  # four standard errors: the model's a has √((1 - a²)/n), and dg/da = 2/(1 - a)²
+        return 4 * np.sqrt((1 - memory**2) / samples) * 2 / (1 - memory) ** 2 + 8 * expected / samples
+
+    one = autoregression.inefficiency(series_of([memory], 20_000, rng))
+    assert one == pytest.approx(expected, abs=error(20_000))
+    members = np.column_stack([series_of([memory], 400, rng) for _ in range(100)])
+    many = autoregression.inefficiency(members)
+    assert expected * (1 - expected / 400) - error(40_000) < many < expected + error(40_000)  # weights 1 - k/n
+
+
+def test_inefficiency_counts_no_swing_back():
+    """Samples that swing are as far from independent as their first swing; anticorrelated ones are no less than 1."""
+    rng = np.random.default_rng(6)
+    phases = rng.uniform(0, 2 * np.pi, 30)
+    swings = np.cos(0.4 * np.arange(300)[:, None] + phases)
+    first = 1 + 2 * np.cos(0.4 * np.arange(1, 4)).sum()
+    assert autoregression.inefficiency(swings) == pytest.approx(first, rel=0.05)
+    assert autoregression.inefficiency(series_of([-0.6], 500, rng)) == 1.0
+
+
+def test_inefficiency_of_constant_and_short_series():
+    assert autoregression.inefficiency(np.full(50, 2.5)) == 1.0
+    assert autoregression.inefficiency(np.arange(3.0)) == 1.0
+    frozen = np.tile(np.random.default_rng(7).normal(size=8), (40, 1))
+    assert autoregression.inefficiency(frozen) == 40.0

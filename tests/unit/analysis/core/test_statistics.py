@@ -95,19 +95,6 @@ def test_common_fluctuations_cancel_in_a_ratio():
     assert result.standard_error < 1e-8  # slopes are finite differences
 
 
-@pytest.mark.parametrize(("memory", "expected"), [(0.0, 1.0), (0.5, 3.0), (0.9, 19.0)])
-def test_inefficiency_of_a_known_process(memory, expected):
-    rng = np.random.default_rng(5)
-
-    def error(samples):  # three standard errors √(4W/n) with a window W of 3g: Wolff, Comput. Phys. Commun. 156, 143
-        return 3 * np.sqrt(12 * expected / samples)
-
-    one = statistics.inefficiency(autoregressive(rng, 20_000, memory)[:, 0])
-    assert one == pytest.approx(expected, rel=error(20_000))
-    many = statistics.ensemble_inefficiency(autoregressive(rng, 400, memory, runs=100))
-    assert many == pytest.approx(expected, rel=error(40_000))
-
-
 def test_constant_and_short_series():
     constant = statistics.mean(np.full(50, 2.5), theory=2.5)
     assert (constant.value, constant.standard_error, constant.deviation) == (2.5, 0.0, None)
@@ -128,12 +115,10 @@ def test_bootstrap_error_of_a_mean():
     assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(30), rel=0.06)  # 4/√(2·2000) resamples
 
 
-def test_pymbar_is_imported_where_it_is_used_and_says_nothing():
-    """It and what it takes of scipy would be half of the time in which most analyses start."""
+def test_statistics_import_little_of_scipy():
+    """The rest of it would be half of the time in which most analyses start."""
     code = (
-        "import sys\nimport numpy as np\nfrom idealgas.analysis.core import equilibrium, statistics, steadiness\n"
-        "assert not {'pymbar', 'scipy.stats', 'scipy.optimize'} & set(sys.modules)\n"
-        "assert statistics.inefficiency(np.arange(8.0)) > 1.0"
+        "import sys\nfrom idealgas.analysis.core import equilibrium, statistics, steadiness\n"
+        "assert not {'scipy.stats', 'scipy.optimize'} & set(sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout + done.stderr == ""
+    subprocess.run([sys.executable, "-c", code], check=True)
