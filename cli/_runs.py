@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from idealgas.log.summary import Summary
 
 
-def carry_out(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
+def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
     """Call `simulate` with a progress bar and a stop at Ctrl-C, and print the summary of its log.
 
     simulate: function that runs a scene. path: of the log. as_json: whether to print JSON. from_start: whether this run

@@ -23,6 +23,6 @@ def run(path: str, overrides: tuple[str, ...], output: str, force: bool, as_json
 
     from idealgas.run.simulate import simulate
 
-    from ._runs import carry_out
+    from ._runs import run_with_progress
 
-    carry_out(partial(simulate, scene, output, force=force), output, as_json)
+    run_with_progress(partial(simulate, scene, output, force=force), output, as_json)
