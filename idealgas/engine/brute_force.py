@@ -26,10 +26,10 @@ from idealgas.engine.resolve import (
 )
 from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
-from idealgas.physics.box_side import arrival_delay, side_contact
-from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time
+from idealgas.physics.disc_wall import arrival_delay, side_contact
 from idealgas.physics.effects import Effects
+from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact

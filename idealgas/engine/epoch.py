@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from idealgas.physics.collision_rates import encounters_of_discs
+from idealgas.physics.collision_rates import collisions_per_length
 from idealgas.physics.effects import Effects
 from idealgas.state import Gas
 
@@ -26,7 +26,7 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
     n = len(gas)
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
     phi = math.pi * math.fsum((gas.radius**2).tolist()) / gas.area
-    return encounters_of_discs(n, mean_diameter, float(gas.radius.max()), phi, gas.box, periodic)
+    return collisions_per_length(n, mean_diameter, float(gas.radius.max()), phi, gas.box, periodic)
 
 
 def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:

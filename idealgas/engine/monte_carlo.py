@@ -24,11 +24,11 @@ from idealgas.engine.resolve import energy_of_pair, record_pair_loss
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
 from idealgas.jit import inline, njit
-from idealgas.physics.disc_disc import collide
+from idealgas.physics.collision_rates import mean_trial_time
+from idealgas.physics.disc_disc import collide, random_contact
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
-from idealgas.physics.random_pair import mean_trial_time, touch_at_random
 from idealgas.physics.restitution import record_collision
 from idealgas.state import Gas
 
@@ -61,7 +61,7 @@ def collide_at_random(record, ids, i, j, time, offset, effects):
     """Collide discs i and j at a local time; offset: impact parameter divided by the sum of the radii."""
     a = record[U(i)]
     b = record[U(j)]
-    touch_at_random(a, b, offset)
+    random_contact(a, b, offset)
     a.t = time
     b.t = time
     energy = energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)

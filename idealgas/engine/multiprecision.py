@@ -15,11 +15,10 @@ from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_cou
 from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.arithmetic import load, number, rounded, store
-from idealgas.physics.box_side import side_contact
-from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import contact_time, velocities_after
+from idealgas.physics.disc_wall import side_contact
 from idealgas.physics.effects import Effects
-from idealgas.physics.motion import position_after
+from idealgas.physics.motion import NEVER, position_after
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.state import Gas
 

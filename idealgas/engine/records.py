@@ -8,8 +8,7 @@ import numpy as np
 
 from idealgas.events import Column
 from idealgas.jit import aligned, inline, njit
-from idealgas.physics.constants import NEVER
-from idealgas.physics.motion import advance
+from idealgas.physics.motion import NEVER, advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.stress import complete_flights
 from idealgas.state import Gas

@@ -3,8 +3,8 @@
 import numpy as np
 
 from idealgas.jit import inline
-from idealgas.physics.box_side import inward_normal
 from idealgas.physics.disc_disc import collide
+from idealgas.physics.disc_wall import collide_with_wall, inward_normal
 from idealgas.physics.exact_sum import add
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
@@ -14,7 +14,6 @@ from idealgas.physics.stress import flights_to, record_collision_stress, record_
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import kick
 from idealgas.physics.wall import segment_normal
-from idealgas.physics.wall_collision import collide_with_wall
 from idealgas.sides import FIRST_SEGMENT
 
 U = np.uintp

@@ -3,8 +3,7 @@
 import math
 
 from idealgas.jit import inline
-from idealgas.physics.constants import NEVER
-from idealgas.physics.motion import position_after
+from idealgas.physics.motion import NEVER, position_after
 
 
 @inline

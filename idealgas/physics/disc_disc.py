@@ -1,12 +1,14 @@
-"""Collision of two discs: the time at which they touch, and their velocities afterwards.
+"""Collision of two discs: the time of their contact, and their velocities afterwards.
 
 Both laws are symmetric to the last bit under exchange of the discs: each difference only changes its sign. For smooth
 elastic discs they run in any precision, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
 """
 
+import math
+
 from idealgas.jit import inline
 from idealgas.physics.arithmetic import number, root
-from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.restitution import restitution_factor
 from idealgas.physics.rotation import tangential_impulse
@@ -124,3 +126,21 @@ def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)
     factor = restitution_factor(restitution, a_id, b_id, a.t)
     a.vx, a.vy, b.vx, b.vy = velocities_after(a, b, x, y, a.vx - b.vx, a.vy - b.vy, factor)
+
+
+@inline
+def random_contact(a, b, offset):
+    """Place two records at a contact with a given impact parameter: b at the origin, a along the line of centres.
+
+    offset: impact parameter divided by the sum of the radii, -1 to 1; it is the sine of the angle from the relative
+    velocity to the line of centres. The distance between the discs does not enter the collision law and is set to the
+    relative speed: with unit vectors the rounding in `collide` would be biased, and the energy would grow by half a
+    last digit per collision.
+    """
+    vx = a.vx - b.vx
+    vy = a.vy - b.vy
+    cosine = math.sqrt(1.0 - offset * offset)
+    a.x = -(cosine * vx + offset * vy)
+    a.y = -(cosine * vy - offset * vx)
+    b.x = 0.0
+    b.y = 0.0

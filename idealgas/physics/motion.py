@@ -2,6 +2,9 @@
 
 from idealgas.jit import inline
 
+NEVER = 1e300
+"""Time of an event that does not happen: after all events, but finite, so that sums and comparisons stay ordinary."""
+
 
 @inline
 def position_after(position, velocity, acceleration, delay):

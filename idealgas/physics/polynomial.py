@@ -3,7 +3,7 @@
 import math
 
 from idealgas.jit import inline, noinline
-from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import NEVER
 
 BISECTIONS = 200  # enough to halve any interval of floats down to neighbouring ones
 

@@ -9,12 +9,11 @@ import math
 import numpy as np
 
 from idealgas.jit import inline
-from idealgas.physics.constants import NEVER
 from idealgas.physics.disc_disc import collision_delay, collision_discriminant
-from idealgas.physics.motion import position_after, velocity_after
+from idealgas.physics.disc_wall import reflection_factor
+from idealgas.physics.motion import NEVER, position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.polynomial import first_contact_root, parabola
-from idealgas.physics.wall_collision import reflection_factor
 
 SEGMENT = np.dtype(
     [

@@ -6,7 +6,7 @@ import numpy as np
 
 from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.physics.collision_rates import pair_encounters
+from idealgas.physics.collision_rates import disc_collisions_per_length
 from idealgas.physics.effects import next_change
 from idealgas.state import Gas
 
@@ -104,4 +104,10 @@ class Watch:
 def _expected_collisions(gas: Gas, duration: float) -> float:
     """Collisions of two discs to be expected in a time, by kinetic theory; a common motion brings none."""
     n, speed = len(gas), float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
-    return n / 2 * pair_encounters(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box) * speed * duration
+    return (
+        n
+        / 2
+        * disc_collisions_per_length(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box)
+        * speed
+        * duration
+    )

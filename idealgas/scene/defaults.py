@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from idealgas.physics.collision_rates import DENSEST, encounters_of_discs
-from idealgas.physics.random_pair import mean_trial_time
+from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
 
 if TYPE_CHECKING:
     from idealgas.scene.tables.discs import Disc, Species
@@ -53,7 +52,7 @@ def mean_free_time(
     size = room[2] - room[0], room[3] - room[1]
     phi = math.pi * math.fsum(r * r * count for r, count in radii) / (size[0] * size[1])
     diameter = sum_of_diameters(species, disc) / n
-    encounters = encounters_of_discs(n, diameter, max(radii)[0], phi, size, periodic) / n
+    encounters = collisions_per_length(n, diameter, max(radii)[0], phi, size, periodic) / n
     way = 1.0 / max(encounters, 1.0 / sum(size))
     speed = math.sqrt(mean_speed(species, disc) ** 2 + abs(press[0]) * size[0] + abs(press[1]) * size[1])
     return way / speed if speed > 0 else math.inf

@@ -7,8 +7,7 @@ as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy.
 import math
 
 from idealgas.jit import inline
-from idealgas.physics.constants import NEVER
-from idealgas.physics.motion import velocity_after
+from idealgas.physics.motion import NEVER, velocity_after
 
 SPEED, ALONG_X, ALONG_Y = range(3)
 

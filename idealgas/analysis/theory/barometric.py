@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import hard_discs
-from idealgas.physics.contact_value import contact_value
+from idealgas.physics.collision_rates import contact_value
 
 DENSEST = 0.2
 """Largest packing fraction of the lowest layer at which the law of a dilute column says anything."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
-from idealgas.physics.contact_value import contact_value
+from idealgas.physics.collision_rates import contact_value
 
 VIRIAL = (1.0, 1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114873, 0.064993, 0.036219, 0.019954)
 """Virial coefficients B_k/B_2^(k-1) for k = 1 to 10 (no unit): Clisby & McCoy, J. Stat. Phys. 122, 15 (2006)."""

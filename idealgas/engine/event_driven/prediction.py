@@ -4,7 +4,7 @@ import numpy as np
 
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import inline
-from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import NEVER
 from idealgas.sides import FIRST_SEGMENT, HEAT_BATH
 
 PREDICTION = np.dtype(

@@ -11,7 +11,7 @@ import numpy as np
 
 from idealgas.engine.event_driven.ties import comes_first, settle_path
 from idealgas.jit import aligned, inline, njit, noinline
-from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
 UNSETTLED = -1.0  # no time

@@ -8,7 +8,7 @@ import pytest
 from rounding import exact, gamma
 
 from idealgas.physics.ballistic import stays_above, time_to_plane
-from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import NEVER
 
 pytestmark = pytest.mark.interpreted
 

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from idealgas.engine.records import DISC
 from idealgas.jit import aligned, njit
-from idealgas.physics.constants import NEVER
-from idealgas.physics.disc_disc import collide, contact_time
+from idealgas.physics.disc_disc import collide, contact_time, random_contact
+from idealgas.physics.motion import NEVER
+from idealgas.physics.periodic import NO_IMAGES
 
 pytestmark = pytest.mark.interpreted
 
@@ -124,3 +125,29 @@ def test_a_collision_conserves_energy_and_momentum_and_turns_the_approach_round(
         return (d.x[0] - d.x[1]) * (d.vx[0] - d.vx[1]) + (d.y[0] - d.y[1]) * (d.vy[0] - d.vy[1])
 
     assert approach(discs) == pytest.approx(-approach(before), abs=1e-13 * reach * speed)
+
+
+def two_discs(a, b, masses=(1.0, 3.0)):
+    record = np.zeros(2, DISC).view(np.recarray)
+    record.vx, record.vy = np.transpose([a, b])
+    record.r, record.m = (0.3, 0.7), masses
+    return record
+
+
+@pytest.mark.parametrize("offset", [-1.0, -0.6, 0.0, 0.25, 0.999])
+def test_the_line_of_centres_has_the_sine_of_the_offset(offset):
+    record = two_discs((1.0, 2.0), (-0.5, 1.0))
+    random_contact(record[0], record[1], offset)
+    centres = np.array([record[0].x - record[1].x, record[0].y - record[1].y])
+    relative = np.array([1.5, 1.0])
+    unit, ahead = centres / np.hypot(*centres), relative / np.hypot(*relative)
+    assert ahead[0] * unit[1] - ahead[1] * unit[0] == pytest.approx(offset, abs=1e-15)
+    assert unit @ ahead == pytest.approx(-math.sqrt(1 - offset**2), abs=1e-15)  # a comes from behind b's surface
+
+
+def test_a_head_on_contact_of_equal_discs_exchanges_the_velocities():
+    record = two_discs((2.0, 1.0), (-1.0, 0.5), masses=(1.0, 1.0))
+    random_contact(record[0], record[1], 0.0)
+    collide(record[0], record[1], 0, 1, None, None, None, NO_IMAGES)
+    assert (record[0].vx, record[0].vy) == pytest.approx((-1.0, 0.5), abs=1e-15)
+    assert (record[1].vx, record[1].vy) == pytest.approx((2.0, 1.0), abs=1e-15)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from rounding import body, exact, gamma
 
-from idealgas.physics.constants import NEVER
 from idealgas.physics.gravity import Gravity
+from idealgas.physics.motion import NEVER
 from idealgas.physics.piston import (
     advance_piston,
     collide_with_piston,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rounding import exact, gamma
 
-from idealgas.physics.constants import NEVER
+from idealgas.physics.motion import NEVER
 from idealgas.physics.polynomial import cubic, cubic_extrema, first_contact_root, gap, parabola, quadratic_roots
 
 pytestmark = pytest.mark.interpreted

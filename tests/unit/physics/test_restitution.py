@@ -6,9 +6,9 @@ import pytest
 from rounding import body, copy_of, exact, gamma
 
 from idealgas.physics.disc_disc import collide
+from idealgas.physics.disc_wall import collide_with_wall
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.restitution import Restitution, record_collision, restitution_factor, wall_restitution_factor
-from idealgas.physics.wall_collision import collide_with_wall
 
 pytestmark = pytest.mark.interpreted
 

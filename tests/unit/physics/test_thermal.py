@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from rounding import body, exact, gamma
 
+from idealgas.physics.disc_wall import collide_with_wall
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal, emit, is_thermal, uniform
-from idealgas.physics.wall_collision import collide_with_wall
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:overflow encountered")]
 

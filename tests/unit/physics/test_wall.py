@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from rounding import U, body, exact, gamma
 
-from idealgas.physics.constants import NEVER
+from idealgas.physics.disc_wall import collide_with_wall
 from idealgas.physics.gravity import Gravity
+from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.wall import (
     accelerated_body_delay,
@@ -22,7 +23,6 @@ from idealgas.physics.wall import (
     straight_body_delay,
     straight_end_delay,
 )
-from idealgas.physics.wall_collision import collide_with_wall
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:.*encountered")]
 

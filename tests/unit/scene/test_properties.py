@@ -6,7 +6,7 @@ from itertools import combinations
 
 import pytest
 
-from idealgas.physics.box_side import inward_normal
+from idealgas.physics.disc_wall import inward_normal
 from idealgas.scene import EFFECTS, parse_scene
 from idealgas.scene.properties import Properties
 from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across

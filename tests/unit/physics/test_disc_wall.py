@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from rounding import body, exact, gamma
 
-from idealgas.physics.box_side import arrival_delay, centre_range, inward_normal, side_contact
-from idealgas.physics.constants import NEVER
+from idealgas.physics.disc_wall import arrival_delay, centre_range, inward_normal, side_contact
 from idealgas.physics.gravity import Gravity
+from idealgas.physics.motion import NEVER
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:.*encountered")]
 

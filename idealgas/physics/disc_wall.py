@@ -1,13 +1,16 @@
-"""Contact of a disc with a side of the box: left 0, right 1, bottom 2, top 3.
+"""Contact of a disc with a side of the box (left 0, right 1, bottom 2, top 3), and its collision with any wall.
 
-Without gravity the laws run on numbers of any length, see `arithmetic`.
+Without gravity the contact times run in any precision, see `arithmetic`.
 """
 
 from idealgas.jit import inline
 from idealgas.physics.arithmetic import number
 from idealgas.physics.ballistic import time_to_plane
-from idealgas.physics.constants import NEVER
 from idealgas.physics.gravity import acceleration_along
+from idealgas.physics.motion import NEVER
+from idealgas.physics.restitution import wall_restitution_factor
+from idealgas.physics.rotation import tangential_impulse_at_wall
+from idealgas.physics.thermal import emit, is_thermal
 
 
 @inline
@@ -56,3 +59,29 @@ def side_contact(disc, side, length, gravity):
     else:
         delay = arrival_delay(position, velocity, low) if velocity < zero else never
     return disc.t + delay if delay < never else never
+
+
+@inline
+def reflection_factor(disc, own, nx, ny, restitution):
+    """Multiple of (nx, ny) that a reflection subtracts from a disc's velocity, length/time.
+
+    It is correct although (nx, ny) has unit length only up to rounding.
+    """
+    speed = disc.vx * nx + disc.vy * ny
+    return wall_restitution_factor(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
+
+
+@inline
+def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
+    """Change the velocity and spin of a disc that touches a wall at rest.
+
+    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
+    """
+    if is_thermal(thermal, wall):
+        emit(disc, own, nx, ny, wall, thermal, rotation)
+        return
+    if rotation is not None:
+        tangential_impulse_at_wall(disc, own, nx, ny, rotation)
+    k = reflection_factor(disc, own, nx, ny, restitution)
+    disc.vx -= k * nx
+    disc.vy -= k * ny
