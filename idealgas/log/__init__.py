@@ -2,6 +2,7 @@
 
 from idealgas.events import Column
 from idealgas.log.errors import DamageError, LogError
+from idealgas.log.flights import Flights
 from idealgas.log.reader import Log, open_log
 from idealgas.log.recovery import recover
 from idealgas.log.replay import Checkpoint, LogState
@@ -12,6 +13,7 @@ __all__ = [
     "Checkpoint",
     "Column",
     "DamageError",
+    "Flights",
     "Log",
     "LogError",
     "LogLayout",

@@ -9,6 +9,7 @@ import numpy as np
 from idealgas.events import EventBatch, Kind, columns_named, empty_batch
 from idealgas.log.components import VECTORS, components
 from idealgas.log.errors import LogError
+from idealgas.log.flights import FLIGHT_COLUMNS, NO_EVENT, Flights
 from idealgas.log.replay import LogState
 from idealgas.log.schema import Wall
 from idealgas.state import Gas
@@ -21,7 +22,12 @@ Columns = dict[str, np.ndarray]
 KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
 """What the numbers in the column `kind` of events stand for."""
 
-CHOSEN_BY = {"events": ("disc", "t0", "t1"), "discs": ("disc", "times"), "observables": ("t0", "t1")}
+CHOSEN_BY = {
+    "events": ("disc", "t0", "t1"),
+    "flights": ("disc", "times"),
+    "discs": ("disc", "times"),
+    "observables": ("t0", "t1"),
+}
 """Tables that a log has, and the arguments of `Log.to_pandas` that choose rows of them."""
 
 
@@ -50,6 +56,13 @@ def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[
     yield flat(empty_batch(0, columns_named(names))._asdict())
     for block in blocks:
         yield flat(block._asdict())
+
+
+def flat_flights(batches: Iterable[Flights]) -> Iterator[Columns]:
+    """Flights batch by batch. `kind` is an index into KIND_NAMES, -1 where no event ends the flight."""
+    for batch in batches:
+        columns = flat(batch._asdict(), {column.name: column.parts for column in FLIGHT_COLUMNS if column.parts})
+        yield columns | {"kind": np.where(batch.kind == NO_EVENT, -1, batch.kind.astype(np.int8))}
 
 
 def flat_states(gas: Gas, states: Iterable[LogState]) -> Iterator[Columns]:

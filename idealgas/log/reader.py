@@ -38,11 +38,21 @@ from time import sleep
 from typing import TYPE_CHECKING, Any, Literal, Self, overload
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from idealgas.events import EventBatch
 from idealgas.files import is_locked
-from idealgas.log.dataframes import KIND_NAMES, check_choice, data_frame, flat_discs, flat_events, flat_samples
+from idealgas.log.dataframes import (
+    KIND_NAMES,
+    check_choice,
+    data_frame,
+    flat_discs,
+    flat_events,
+    flat_flights,
+    flat_samples,
+)
 from idealgas.log.errors import DamageError, LogError
+from idealgas.log.flights import FlightReader, Flights
 from idealgas.log.header import LogHeader
 from idealgas.log.pairs import check_pairs
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
@@ -263,6 +273,29 @@ class Log(LogHeader):
                 yield EventBatch._make(None if column is None else column[own] for column in block)
             row += len(ids.disc)
 
+    def flights(
+        self,
+        edges: ArrayLike | None = None,
+        *,
+        discs: ArrayLike | None = None,
+        columns: Sequence[str] | None = None,
+    ) -> Iterator[Flights]:
+        """Flights of discs from event to event, in batches of at most 131 072, unless a single one has more pieces.
+
+        A flight has the state in which a disc begins it, and the event that ends it; `Flights` describes the columns.
+        The flights of a disc fill the time from the first edge to the last, and are cut at the edges in between.
+
+        Args:
+            edges: (B + 1,), times in increasing order; by default the start and the end of the log.
+            discs: ids of the discs to follow; all by default.
+            columns: names of the columns to make, which takes less time; all that the log has by default.
+
+        Raises:
+            LogError: if the log has no events, if its flights have no such column, if there is no such disc, or if the
+                log does not cover the edges.
+        """
+        return FlightReader(self, edges, discs, columns).batches()
+
     def state_at(self, time: float) -> LogState:
         """All discs at one time, exactly; at the time of an event, after it. Raises LogError as `frames` does."""
         return next(self.frames([time]))
@@ -291,7 +324,7 @@ class Log(LogHeader):
 
     def to_pandas(
         self,
-        what: Literal["events", "discs", "observables"] = "events",
+        what: Literal["events", "flights", "discs", "observables"] = "events",
         *,
         disc: int | None = None,
         t0: float | None = None,
@@ -302,9 +335,10 @@ class Log(LogHeader):
 
         "events": one row for each event row at times t0 ≤ t < t1, of one disc (by its id) or of all: time, disc,
         partner, kind (disc, wall, wall_end or piston), then after the event x, y, vx, vy, and with the effect
-        angular_velocity, image_x, image_y. "discs": one row for each disc at each of `times`, or at the start: time,
-        disc, species, radius, mass, then as above. "observables": one row for each sample at times t0 ≤ t < t1, columns
-        as in `observables`, one for each component.
+        angular_velocity, image_x, image_y. "flights": one row for each flight of one disc or of all, cut at `times`,
+        with the columns of `Flights`; kind is missing where no event ends it. "discs": one row for each disc at each of
+        `times`, or at the start: time, disc, species, radius, mass, then as above. "observables": one row for each
+        sample at times t0 ≤ t < t1, columns as in `observables`, one for each component.
 
         Needs pandas: pip install 'idealgas[notebook]'. Raises LogError without it, if the log has no events, if it does
         not cover a time, or if an argument is of no use with `what`.
@@ -314,6 +348,9 @@ class Log(LogHeader):
             if not self.has_events:
                 raise LogError(f"{self.path}: has no events (made with log.events = false)")
             return data_frame(flat_events(self.events(disc, t0, t1), self.columns), {"kind": KIND_NAMES})
+        if what == "flights":
+            edges = None if times is None else list(times)
+            return data_frame(flat_flights(self.flights(edges, discs=disc)), {"kind": KIND_NAMES})
         if what == "discs":
             states = [LogState(self.start_time, **self._start_arrays())] if times is None else self.frames(times)
             return data_frame(flat_discs(self.discs, states, disc), {"species": self.discs.species_names})

@@ -151,7 +151,7 @@ def test_a_log_that_nothing_happened_in(tmp_path):
 @pytest.mark.parametrize(
     ("what", "choice", "line"),
     [
-        ("walls", {}, r"no table of walls \(allowed: events, discs, observables\)$"),
+        ("walls", {}, r"no table of walls \(allowed: events, flights, discs, observables\)$"),
         ("events", {"times": [1.0]}, r"rows of events are not chosen by times \(allowed: disc, t0, t1\)$"),
         ("discs", {"t0": 1.0}, r"rows of discs are not chosen by t0 \(allowed: disc, times\)$"),
         ("observables", {"disc": 1}, r"not chosen by disc \(allowed: t0, t1\)$"),

@@ -1,0 +1,289 @@
+"""Flights of discs: what every disc did between two of its events, in bounded memory.
+
+An event row says what a disc is like after an event. A flight says what it was like before: the state that its previous
+event left it in, when that was, and what the event at the end made of it. One pass over the rows joins the two.
+"""
+
+from collections.abc import Collection, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from idealgas.events import BLOCK, Column
+from idealgas.log.errors import LogError
+from idealgas.log.join import Arrays, Join, whole_pairs
+from idealgas.physics.motion import position_after, velocity_after
+from idealgas.physics.periodic import wrapped
+
+if TYPE_CHECKING:
+    from idealgas.log.reader import Log
+
+BATCH = 2 * BLOCK
+"""Number of flights in a batch, at most, unless a single flight is cut into more pieces."""
+
+NO_EVENT = 255
+"""Kind of a flight that no event ends: it is cut at an edge, or still open at the last one."""
+NOBODY = -(2**31)
+"""Partner of a disc at the end of such a flight."""
+
+FLIGHT_COLUMNS = (
+    Column("disc", "u4"),
+    Column("block", "i8"),
+    Column("start", "f8", (), "time"),
+    Column("end", "f8", (), "time"),
+    Column("kind", "u1"),
+    Column("partner", "i4"),
+    Column("velocity", "f8", (2,), "length/time", parts=("vx", "vy")),
+    Column("end_velocity", "f8", (2,), "length/time", parts=("end_vx", "end_vy")),
+    Column("new_velocity", "f8", (2,), "length/time", parts=("new_vx", "new_vy")),
+    Column("displacement", "f8", (2,), "length", parts=("displacement_x", "displacement_y")),
+    Column("position", "f8", (2,), "length", parts=("x", "y")),
+    Column("end_position", "f8", (2,), "length", parts=("end_x", "end_y")),
+    Column("image", "i4", (2,), parts=("image_x", "image_y")),
+    Column("angular_velocity", "f8", (), "1/time"),
+    Column("new_angular_velocity", "f8", (), "1/time"),
+)
+"""All columns that flights may have, in the order of `Flights`."""
+
+_NEEDS: dict[str, tuple[str, ...]] = {
+    "end_velocity": ("velocity",),
+    "new_velocity": ("velocity",),
+    "displacement": ("velocity",),
+    "position": ("velocity",),
+    "end_position": ("position", "velocity"),
+    "image": ("position", "velocity"),
+    "new_angular_velocity": ("angular_velocity",),
+}
+"""Columns from which a column follows at an edge."""
+
+_READ = {
+    "kind": "kind",
+    "partner": "partner",
+    "velocity": "velocity",
+    "new_velocity": "velocity",
+    "position": "position",
+    "end_position": "position",
+    "image": "image",
+    "angular_velocity": "angular_velocity",
+    "new_angular_velocity": "angular_velocity",
+}
+"""Event column that has the values of a column before or after events."""
+
+_STATE = {"position", "velocity", "image", "angular_velocity"}
+"""Columns that have a disc's state at the start."""
+
+
+class Flights(NamedTuple):
+    """Flights of discs, in the order of the events that end them; those that no event ends follow last.
+
+    The two flights that end in a collision of two discs are in one batch, that of the smaller id first, and nothing but
+    pieces of the second one lies between their ends. The pieces of a flight that is cut follow each other. A column is
+    None if it was not asked for. Columns may share memory: do not write into them.
+
+    Attributes:
+        disc: (n,) u4, id of the disc.
+        block: (n,) i8, block of time between two edges that the flight lies in, from 0; an event at an edge is in the
+            block before it.
+        start: (n,) f8, time of the disc's previous event, or of the edge at which the piece begins.
+        end: (n,) f8, time of the event or edge at the end.
+        kind: (n,) u1, `Kind` of the event at the end, or NO_EVENT.
+        partner: (n,) i4, id of the other disc in it, -1 - k for wall k, BATH, or NOBODY.
+        velocity: (n, 2) f8, length/time, at the start.
+        end_velocity: (n, 2) f8, length/time, at the end, before the event. It is `velocity` without gravity.
+        new_velocity: (n, 2) f8, length/time, after the event; `end_velocity` if no event ends the flight.
+        displacement: (n, 2) f8, length, from start to end, across periodic sides too.
+        position: (n, 2) f8, length, at the start, inside the box; None where the method has no positions.
+        end_position: (n, 2) f8, length, at the end, inside the box; None where the method has no positions.
+        image: (n, 2) i4, box lengths to add to `position` to unwrap it; None without periodic sides.
+        angular_velocity: (n,) f8, 1/time, during the flight; None where discs do not spin.
+        new_angular_velocity: (n,) f8, 1/time, after the event; None where discs do not spin.
+    """
+
+    disc: np.ndarray
+    block: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+    kind: np.ndarray
+    partner: np.ndarray
+    velocity: np.ndarray
+    end_velocity: np.ndarray
+    new_velocity: np.ndarray
+    displacement: np.ndarray
+    position: np.ndarray | None = None
+    end_position: np.ndarray | None = None
+    image: np.ndarray | None = None
+    angular_velocity: np.ndarray | None = None
+    new_angular_velocity: np.ndarray | None = None
+
+    @classmethod
+    def joined(cls, batches: Iterable["Flights"]) -> "Flights":
+        """All flights of some batches, at least one, in memory together."""
+        columns: Iterable[Any] = zip(*batches, strict=True)
+        return cls(*(cast(Any, None if column[0] is None else np.concatenate(column)) for column in columns))
+
+
+def flight_columns(events: Collection[str]) -> tuple[Column, ...]:
+    """Columns of the flights of a log whose events have the columns of these names."""
+    return tuple(column for column in FLIGHT_COLUMNS if _read_for(_made_for([column.name])) <= set(events))
+
+
+def _made_for(columns: Collection[str]) -> set[str]:
+    """Some columns and all those from which they follow."""
+    return {source for name in columns for source in (name, *_NEEDS.get(name, ()))}
+
+
+def _read_for(made: set[str]) -> set[str]:
+    """Event columns to read in order to make some columns."""
+    return {_READ[name] for name in made if name in _READ}
+
+
+class FlightReader:
+    """Flights of a log between the first and the last of some edges, cut at those in between.
+
+    `batches` is what most need. The steps in between are for sums over whole flights and over pieces in one pass;
+    there, flights are columns by name: those asked for, and those from which these follow where a flight is cut.
+    """
+
+    def __init__(
+        self,
+        log: "Log",
+        edges: ArrayLike | None = None,
+        discs: ArrayLike | None = None,
+        columns: Collection[str] | None = None,
+    ) -> None:
+        """Take what `Log.flights` takes. Raises LogError as that does."""
+        if not log.has_events:
+            raise LogError(f"{log.path}: no flights without events (made with log.events = false)")
+        known = [column.name for column in flight_columns(log.columns)]
+        if unknown := [name for name in columns or () if name not in known]:
+            raise LogError(f"{log.path}: its flights have no {' and no '.join(unknown)} (allowed: {', '.join(known)})")
+        times = np.array([log.start_time, log.end_time] if edges is None else edges, float)
+        if times.ndim != 1 or len(times) < 2 or not (np.diff(times) >= 0).all():
+            raise LogError(f"{log.path}: edges of flights are two times or more in increasing order")
+        if not log.start_time <= times[0] <= times[-1] <= log.end_time:
+            got = f"t = {times[0]:g} to {times[-1]:g} (allowed {log.start_time:g} to {log.end_time:g})"
+            raise LogError(f"{log.path}: no flights from {got}")
+        self._discs = None if discs is None else np.unique(np.asarray(discs))
+        if self._discs is not None and not np.isin(self._discs, np.arange(len(log.discs))).all():
+            raise LogError(f"{log.path}: flights of a disc that is not there (allowed: 0 to {len(log.discs) - 1})")
+        self._log, self._edges = log, times
+        self._columns = set(known if columns is None else columns)
+        self._made = _made_for(self._columns)
+        self._read = ("time", "disc", *sorted(_read_for(self._made)))
+        self._gravity = np.array(log.gravity) if any(log.gravity) else None
+
+    def batches(self) -> Iterator[Flights]:
+        """Pieces of flights between the edges, in batches."""
+        for flights in self.whole():
+            for pieces in self.cut(flights):
+                yield self.batch(pieces)
+
+    def whole(self) -> Iterator[Arrays]:
+        """Flights that are not cut, in batches: those that events end, then the last one of each disc.
+
+        Their block is that of their end.
+        """
+        log, (first, last) = self._log, self._edges[[0, -1]]
+        join = Join(log.state_at(first), self._read)
+        for rows in whole_pairs(log.chunks(self._read, log.row_at(first, "right"), log.row_at(last, "right"))):
+            if self._discs is not None:
+                chosen = np.flatnonzero(np.isin(rows["disc"], self._discs))
+                rows = {name: values[chosen] for name, values in rows.items()}
+            if len(rows["disc"]):
+                yield self._flights(join.pass_on(rows), rows["time"], rows)
+        every = np.arange(join.discs) if self._discs is None else self._discs
+        for some in np.split(every, range(BATCH, len(every), BATCH)):
+            yield self._flights(join.states(some), np.full(len(some), last), None)
+
+    def cut(self, flights: Arrays) -> Iterator[Arrays]:
+        """The pieces between edges of a batch of whole flights, in batches."""
+        edges, last = self._edges, flights["block"]
+        before = np.flatnonzero(flights["start"] < edges[last])
+        if len(before) == 0:
+            yield flights
+            return
+        first = last.copy()
+        first[before] = edges.searchsorted(flights["start"][before], "right") - 1
+        pieces = last - first + 1
+        done, stop = np.append(0, np.cumsum(pieces)), 0
+        pairs = "partner" in flights and self._discs is None
+        while stop < len(pieces):
+            start = stop
+            stop = max(int(done.searchsorted(done[start] + BATCH, "right")) - 1, start + 1)
+            if pairs and flights["disc"][stop - 1] < flights["partner"][stop - 1]:  # the second one would be left out
+                stop += 1 if stop - 1 == start else -1
+            some = slice(start, stop)
+            yield self._pieces({name: values[some] for name, values in flights.items()}, first[some], pieces[some])
+
+    def batch(self, flights: Arrays) -> Flights:
+        """Flights with the columns that were asked for."""
+        found = dict(flights)
+        if self._gravity is None and "end_velocity" in self._made:
+            found["end_velocity"] = flights["velocity"]
+        if "displacement" in self._made:
+            delay = (flights["end"] - flights["start"])[:, None]
+            found["displacement"] = position_after(0.0, flights["velocity"], self._gravity, delay)
+        return Flights(*(cast(Any, found[name] if name in self._columns else None) for name in Flights._fields))
+
+    def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
+        """Flights from the states (n,) that they start in. rows: of the events that end them, if these do."""
+        start, made = state["time"], self._made
+        found = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}
+        found |= {name: state[name] for name in _STATE & made}
+        if self._gravity is not None and "end_velocity" in made:
+            found["end_velocity"] = self._velocity(state["velocity"], end - start)
+        if rows is not None:
+            return found | {name: rows[source] for name, source in _READ.items() if name in made - _STATE}
+        if "end_position" in made:
+            found["end_position"], _ = self._position(state["position"], state["velocity"], end - start)
+        if "new_velocity" in made:
+            found["new_velocity"] = self._velocity(state["velocity"], end - start)
+        if "new_angular_velocity" in made:
+            found["new_angular_velocity"] = state["angular_velocity"]
+        none = {"kind": np.full(len(end), NO_EVENT, "u1"), "partner": np.full(len(end), NOBODY, "i4")}
+        return found | {name: values for name, values in none.items() if name in made}
+
+    def _pieces(self, flights: Arrays, first: np.ndarray, pieces: np.ndarray) -> Arrays:
+        """All pieces of some flights. first: (n,), blocks of their first pieces. pieces: (n,), numbers of them."""
+        source = np.repeat(np.arange(len(pieces)), pieces)
+        opening = np.cumsum(pieces) - pieces
+        found = {name: values.take(source, axis=0) for name, values in flights.items()}
+        found["block"] = (first - opening).take(source) + np.arange(len(source))
+        inner = np.ones(len(source), bool)
+        inner[opening] = False
+        later = np.flatnonzero(inner)  # pieces that begin at an edge; each ends the one before it
+        earlier, edge = later - 1, self._edges[found["block"][later]]
+        delay = edge - found["start"][later]
+        now = {name: found[name][later] for name in _STATE & found.keys()}
+        if "position" in now:
+            now["position"], boxes = self._position(now["position"], now["velocity"], delay)
+            if "image" in now:
+                now["image"] += boxes.astype(np.int32)
+        if "velocity" in now:
+            now["velocity"] = self._velocity(now["velocity"], delay)
+        for name, values in {"start": edge, **now}.items():
+            found[name][later] = values
+        ends: dict[str, Any] = {"end": edge, "kind": NO_EVENT, "partner": NOBODY}
+        ends |= {f"{when}_{name}": values for name, values in now.items() for when in ("end", "new")}
+        for name in ends.keys() & found.keys():
+            found[name][earlier] = ends[name]
+        return found
+
+    def _block_of(self, times: np.ndarray) -> np.ndarray:
+        """Blocks that times lie in, which do not decrease and come after the first edge."""
+        inner = self._edges[1:-1]
+        low, high = inner.searchsorted(times[[0, -1]]) if len(times) else (0, 0)
+        return np.asarray(low + inner[low:high].searchsorted(times))
+
+    def _velocity(self, velocity: np.ndarray, delay: np.ndarray) -> np.ndarray:
+        """Velocities (n, 2) after delays (n,) in free flight."""
+        return velocity if self._gravity is None else velocity_after(velocity, self._gravity, delay[:, None])
+
+    def _position(self, position: np.ndarray, velocity: np.ndarray, delay: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (n, 2) after delays (n,) in free flight, inside the box, and numbers (n, 2) of box lengths."""
+        place = position_after(position, velocity, self._gravity, delay[:, None])
+        boxes = np.zeros_like(place)
+        for axis in np.flatnonzero(self._log.periodic):
+            place[:, axis], boxes[:, axis] = wrapped(place[:, axis], self._log.box[axis])
+        return place, boxes
