@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from idealgas.plain import plain
+from idealgas.errors import plain
 
 from ._terminal import UNBOUNDED, echo, terminal
 

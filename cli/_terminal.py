@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from idealgas.plain import plain
+from idealgas.errors import plain
 
 if TYPE_CHECKING:
     from rich.console import Console

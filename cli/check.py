@@ -12,7 +12,7 @@ from ._terminal import data, echo
 if TYPE_CHECKING:
     from idealgas.analysis.core.tables import Number, Table
     from idealgas.analysis.theory.forecast import Forecast
-    from idealgas.scene import Rest, Scene
+    from idealgas.scene import RestingDisc, Scene
     from idealgas.scene.lattice import TriangularLattice
 
 LEAST_STRAIN = 1e-9
@@ -51,7 +51,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         sharing = {"threads": threads.number, "threads_because": threads.because}
         shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
-        others = {"lattice": shape, "warning": ROUGH_REST if scene.boundless_rest else None}
+        others = {"lattice": shape, "warning": ROUGH_REST if scene.collapse_risk else None}
         data(json.dumps({"scene": tables, **effects, **sharing, **others, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
@@ -66,7 +66,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
-    if scene.boundless_rest:
+    if scene.collapse_risk:
         echo(f"warning: {ROUGH_REST}")
     echo(f"threads: {threads.number} ({threads.because})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
@@ -81,7 +81,7 @@ def _lattice_line(lattice: "TriangularLattice") -> str:
     return f"{shape}, strain {lattice.strain:+.3g} across them; box.size = {list(lattice.unstrained)} has none"
 
 
-def _rest_lines(rest: "Rest", number: int) -> Iterator[str]:
+def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
     """What discs do that have come to rest, and a warning if that is to take most of the run."""
     least, most = rest.hits
     if most is None or rest.per_free_time is None:

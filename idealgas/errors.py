@@ -1,4 +1,9 @@
-"""Errors that a user can correct: printed as plain lines, never as a traceback."""
+"""Errors that a user can correct, printed as plain lines, never as a traceback; and text made safe to print."""
+
+import re
+
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+"""Control characters except tabs and line ends, those that change the direction of text, and lone surrogates."""
 
 
 class UserError(Exception):
@@ -17,3 +22,8 @@ class OutputError(UserError):
 
 class NotApplicableError(UserError):
     """An analysis does not apply to this gas."""
+
+
+def plain(text: str) -> str:
+    """The text with control characters written as escapes, as in TOML and JSON, so that a terminal only shows it."""
+    return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)

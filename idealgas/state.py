@@ -1,4 +1,4 @@
-"""State of all discs at one instant."""
+"""State of all discs at one instant, and the random numbers from which it is drawn."""
 
 from dataclasses import dataclass
 
@@ -51,3 +51,8 @@ class Gas:
     def temperature(self) -> float:
         """Kinetic temperature E/N, mass length²/time²; a disc has two degrees of freedom, and k_B = 1."""
         return self.kinetic_energy / len(self)
+
+
+def rng(seed: int, use: str) -> np.random.Generator:
+    """Random numbers of a seed for one use, independent of those for any other use."""
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))

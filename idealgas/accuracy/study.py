@@ -146,7 +146,7 @@ def check(scene: Scene) -> None:
     """
     if scene.run.method == "monte_carlo":
         raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
-    if strange := scene.lacking("in_steps"):
+    if strange := scene.lacking("allows_time_steps"):
         raise UserError(f"nothing to compare: time steps know nothing of {' and '.join(strange)}")
     if len(make_gas(scene)) < 2:
         raise UserError("nothing to compare: one disc alone collides with none")

@@ -15,7 +15,7 @@ from idealgas.engine.event_writer import (
     write_segment_hit,
     write_side_hit,
 )
-from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import (
     resolve_kick,
     resolve_pair,
@@ -229,7 +229,7 @@ class BruteForce:
     single_epoch = False
     pending = False
     threads = ONE_THREAD
-    kept = NOTHING_KEPT
+    extra_state = NO_EXTRA_STATE
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""

@@ -157,12 +157,12 @@ class MonteCarlo:
         where it is too small, instead of ending the run.
         """
         self._seed, self._v_ref, self._one_sided = seed, v_ref, one_sided
-        self.kept: dict[Column, float] = {V_REF: v_ref} if rises else {}
+        self.extra_state: dict[Column, float] = {V_REF: v_ref} if rises else {}
 
     @property
     def v_ref(self) -> float:
         """Relative speed at which a pair of the largest discs is accepted for certain, length/time."""
-        return self.kept.get(V_REF, self._v_ref)
+        return self.extra_state.get(V_REF, self._v_ref)
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""
@@ -177,7 +177,7 @@ class MonteCarlo:
         """Try pairs, see `advance_trials`; UserError if a pair is faster than a given v_ref allows."""
         record, ids, _ = self.discs
         v_ref, most = self.v_ref, min(limits.events, limits.collisions)
-        fastest_square = (FASTEST_DISC * v_ref) ** 2 if V_REF in self.kept else None
+        fastest_square = (FASTEST_DISC * v_ref) ** 2 if V_REF in self.extra_state else None
         rows, reached, excess, square = advance_trials(
             record, ids, self._effects, limits.until, most, limits.trials,
             epoch_key(self._seed, epoch_start), self._trial_time(v_ref), self._reach * v_ref, fastest_square,
@@ -190,7 +190,7 @@ class MonteCarlo:
                 f"(got {v_ref:.6g}; allowed >= {needed:.6g}, better {1.25 * needed:.3g})"
             )
         if square > 0:
-            self.kept[V_REF] = RAISED * math.sqrt(square)
+            self.extra_state[V_REF] = RAISED * math.sqrt(square)
         return rows, reached
 
     def deepest_overlap(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from idealgas.engine.audit import deepest_overlap_of_all
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
-from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.arithmetic import load, number, rounded, store
@@ -275,7 +275,7 @@ class PreciseBruteForce:
     single_epoch = True
     pending = False
     threads = ONE_THREAD
-    kept = NOTHING_KEPT
+    extra_state = NO_EXTRA_STATE
 
     def __init__(self, precision: str, start: Columns | None = None) -> None:
         """Set the precision: "float32", "float64" or "double-double".

@@ -38,7 +38,7 @@ COUNTERS = np.dtype(
 )  # fmt: skip
 
 
-NOTHING_KEPT: Mapping[Column, float] = MappingProxyType({})
+NO_EXTRA_STATE: Mapping[Column, float] = MappingProxyType({})
 """What a method keeps whose epochs all follow from the discs and the effects."""
 
 

@@ -42,8 +42,8 @@ class Method(Protocol):
         single_epoch: whether the run must be one epoch, because its digits would be lost between epochs.
         pending: whether rows of events that have happened are still to be handed on by `advance`.
         threads: how its work is shared.
-        kept: what of the method itself, beside the discs, the next epochs follow from: numbers by their columns in the
-            log; `advance` returns after each change.
+        extra_state: state of the method itself that later epochs depend on, by its columns in the log; `advance`
+            returns after each change.
     """
 
     discs: Discs
@@ -61,7 +61,7 @@ class Method(Protocol):
         ...
 
     @property
-    def kept(self) -> Mapping[Column, float]:
+    def extra_state(self) -> Mapping[Column, float]:
         """See above."""
         ...
 

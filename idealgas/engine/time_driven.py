@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
-from idealgas.engine.records import NOTHING_KEPT, ONE_THREAD, Limits, add_to_counters, make_discs
+from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
 from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
@@ -278,7 +278,7 @@ class TimeDriven:
     single_epoch = False
     pending = False
     threads = ONE_THREAD
-    kept = NOTHING_KEPT
+    extra_state = NO_EXTRA_STATE
 
     def __init__(self, dt: float) -> None:
         """Set the length of a step, dt (time)."""

@@ -7,7 +7,7 @@ import numpy as np
 from idealgas.initial.contacts import static_contact_issues
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.walls import walls_inside
-from idealgas.state import Gas
+from idealgas.state import Gas, rng
 from idealgas.toml.error import Issue
 
 
@@ -25,7 +25,7 @@ def make_gas(scene: Scene) -> Gas:
         velocity=np.concatenate(
             [
                 np.array([disc.velocity for disc in scene.disc]).reshape(-1, 2),
-                *(_velocities(s, stream(scene.scene.seed, f"velocities {s.name}")) for s in scene.species),
+                *(_velocities(s, rng(scene.scene.seed, f"velocities {s.name}")) for s in scene.species),
             ]
         ),
         radius=radius,
@@ -60,11 +60,6 @@ def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tu
     )
 
 
-def stream(seed: int, use: str) -> np.random.Generator:
-    """Random numbers for one use, independent of what else the scene needs random numbers for."""
-    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))
-
-
 def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
     """Velocities (count, 2) of a species, length/time; those of a temperature T have the kinetic energy count * T.
 
@@ -91,7 +86,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
     scale = loose_scale(radius, scene.box.size)
     position = _placed(scene, radius * scale)
-    reached = compress(position, radius, scene.box.size, scale, stream(scene.scene.seed, "compression"))
+    reached = compress(position, radius, scene.box.size, scale, rng(scene.scene.seed, "compression"))
     if reached < 1:
         dense = math.pi * float(radius @ radius) * reached**2 / (scene.box.size[0] * scene.box.size[1])
         got = f"jammed at a packing fraction of {dense:.4g}"
@@ -108,7 +103,7 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     walls = np.array([(*w.start, *w.end) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 4)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     grid = placement.make_grid(box.size, radius, periodic, walls)
-    random = stream(scene.scene.seed, "placement")
+    random = rng(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
     if scene.disc:
         position[ids[0]] = [disc.position for disc in scene.disc]

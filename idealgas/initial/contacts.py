@@ -34,25 +34,25 @@ def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     """Name of each wall to which discs may be pressed, and a mask (N,) of the discs in static contact with it."""
-    pull = np.array(scene.properties.acceleration)
+    acceleration = np.array(scene.properties.acceleration)
     for side, name in enumerate(SIDES):
         axis = axis_of(side)
-        if pull @ OUTWARD[side] > 0 and not (scene.piston and scene.piston.side == name):
+        if acceleration @ OUTWARD[side] > 0 and not (scene.piston and scene.piston.side == name):
             coordinate = gas.position[:, axis]
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
-    if pull.any():
+    if acceleration.any():
         for k, wall in enumerate(walls_inside(scene)):
             if wall.is_there(0.0):
                 start, along = np.array(wall.start), np.array(wall.end) - wall.start
                 share = np.clip((gas.position - start) @ along / (along @ along), 0.0, 1.0)
                 normal = gas.position - start - share[:, None] * along
                 touches = (normal**2).sum(axis=1) <= gas.radius**2
-                yield f"wall {k}", touches & (normal @ pull < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
+                yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:
         piston = scene.piston
         gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
-        pressed = piston.outward * (piston.acceleration(gas.box, scene.gravity) - pull[piston.axis]) < 0
+        pressed = piston.outward * (piston.acceleration(gas.box, scene.gravity) - acceleration[piston.axis]) < 0
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
         yield "the piston", in_contact & pressed
 

@@ -26,11 +26,11 @@ AUDITED = (
 
 
 def layout_of(
-    scene: Scene, gas: Gas, effects: Effects, without_positions: bool, kept: Iterable[Column] = ()
+    scene: Scene, gas: Gas, effects: Effects, without_positions: bool, extra_state: Iterable[Column] = ()
 ) -> LogLayout:
     """Of the log of a scene; gas, effects: at time 0.
 
-    without_positions: the method does not know where discs are. kept: what it keeps beside the discs.
+    without_positions: the method does not know where discs are. extra_state: what it keeps beside the discs.
     """
     x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
     return LogLayout(
@@ -41,8 +41,8 @@ def layout_of(
         disc_columns=bundle.disc_constants(effects),
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
-        checkpoint_values=(*totals(effects), *kept, *whole_state(effects)),
-        observables=(*AUDITED, *totals(effects), *kept, *observed(gas, effects)),
+        checkpoint_values=(*totals(effects), *extra_state, *whole_state(effects)),
+        observables=(*AUDITED, *totals(effects), *extra_state, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,

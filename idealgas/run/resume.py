@@ -110,7 +110,7 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     effects = make_effects(scene, start)
     v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
     method = method_of(scene, start, v_ref, rises=V_REF.name in log.observables)
-    _check_columns(log, layout_of(scene, start, effects, method.without_positions, method.kept))
+    _check_columns(log, layout_of(scene, start, effects, method.without_positions, method.extra_state))
     if checkpoint is None:
         return Simulation(start, method, effects)
     gas, effects = _restored(log, effects, checkpoint)

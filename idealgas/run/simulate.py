@@ -24,8 +24,8 @@ from idealgas.physics.effects import Effects
 from idealgas.run.effects.bundle import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
+from idealgas.run.stall import StallDetector
 from idealgas.run.sums import kept_before
-from idealgas.run.watch import Watch
 from idealgas.scene import Run, Scene
 from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
@@ -113,7 +113,7 @@ def simulate(
 
     Raises SceneError if the discs find no place, OutputError if the log exists (without `force`), cannot be written or
     is removed during the run; UserError, with a log that can be read and resumed, if a disc collides without end at one
-    instant, or if the events that are to end the run do not come (see `idealgas.run.watch`).
+    instant, or if the events that are to end the run do not come (see `idealgas.run.stall`).
     """
     with compile_timer() as compilation:
         gas = make_gas(scene)
@@ -122,7 +122,7 @@ def simulate(
         with LogWriter(
             path,
             gas,
-            layout_of(scene, gas, effects, method.without_positions, method.kept),
+            layout_of(scene, gas, effects, method.without_positions, method.extra_state),
             scene_text=dump_document(scene),
             seed=scene.scene.seed,
             command=command,
@@ -158,8 +158,8 @@ class LoggedRun:
         self._compilation = compilation
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
-        self._watch = Watch(simulation, self._stop, self._begun)
-        self._kept = dict(simulation.method.kept)
+        self._stall = StallDetector(simulation, self._stop, self._begun)
+        self._extra_state = dict(simulation.method.extra_state)
 
     def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
         """Go on to the stop, or until `interrupted` says True, and close the log; UserError if no event comes."""
@@ -179,7 +179,7 @@ class LoggedRun:
             if simulation.paused and self._scene.log.snapshot_every:  # not where time has no more numbers
                 self._snapshot()
             if simulation.epoch_over and not simulation.finished(stop):
-                self._watch.end_epoch()
+                self._stall.end_epoch()
                 simulation.next_epoch()
                 self._begin_epoch()
             on_progress(self._progress())
@@ -203,8 +203,8 @@ class LoggedRun:
                 self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
         else:
             simulation.advance(self._stop, None, events, self._next_snapshot)
-        if self._kept != simulation.method.kept:
-            self._kept = dict(simulation.method.kept)
+        if self._extra_state != simulation.method.extra_state:
+            self._extra_state = dict(simulation.method.extra_state)
             gas, effects = simulation.state()
             self._observe(simulation.last_event_time, gas, effects, simulation.audit_of(gas))
 
@@ -228,16 +228,16 @@ class LoggedRun:
 
         UserError, after the log is closed, if the end of the run does not come.
         """
-        simulation, watch = self._simulation, self._watch
-        missing = watch.in_vain()
-        if watch.sample_due or missing:
+        simulation, stall = self._simulation, self._stall
+        reason = stall.stall_reason()
+        if stall.sample_due or reason:
             self._observe(simulation.time, simulation.gas, simulation.effects, simulation.audit())
-        if watch.checkpoint_due(self._scene.log.checkpoint_every) or missing:
+        if stall.checkpoint_due(self._scene.log.checkpoint_every) or reason:
             self._checkpoint()
-        if missing:
+        if reason:
             self._log.close()
             raise UserError(
-                f"{self._log.path}: {missing}, up to t = {simulation.time:g}, so the end of the run may never come; "
+                f"{self._log.path}: {reason}, up to t = {simulation.time:g}, so the end of the run may never come; "
                 "the log can be read, and resumed (--until gives it an end in time)"
             )
 
@@ -246,14 +246,14 @@ class LoggedRun:
         simulation = self._simulation
         effects = simulation.effects
         state = by_name(disc_state(simulation.gas, effects, simulation.method.without_positions))
-        whole = kept_before(effects) | by_name(whole_state(effects)) | by_name(simulation.method.kept)
+        whole = kept_before(effects) | by_name(whole_state(effects)) | by_name(simulation.method.extra_state)
         self._log.checkpoint(simulation.time, simulation.epoch, state, simulation.totals._asdict() | whole)
 
     def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:
         self._overlap = max(self._overlap, audit.overlap)
         self._outside = max(self._outside, audit.outside)
         simulation = self._simulation
-        sample = by_name(observed(gas, effects, time - simulation.time)) | by_name(self._kept)
+        sample = by_name(observed(gas, effects, time - simulation.time)) | by_name(self._extra_state)
         self._log.observe(time, simulation.epoch, audit._asdict() | simulation.counters._asdict() | sample)
 
     def _finish(self, seconds: float) -> Summary:
@@ -288,4 +288,4 @@ class LoggedRun:
         done, stop = self._simulation.counters, self._stop
         now = self._simulation.last_event_time
         counted = (done.events / stop.events, done.disc_collisions / stop.disc_collisions, done.trials / stop.trials)
-        return Progress(max(now / stop.time, *counted), now, done.events, self._watch.busy())
+        return Progress(max(now / stop.time, *counted), now, done.events, self._stall.busy())

@@ -7,7 +7,7 @@ from idealgas.scene.tables.discs import Disc, Species
 from idealgas.scene.tables.document import EFFECTS
 from idealgas.scene.tables.gravity import Gravity
 from idealgas.scene.tables.piston import Piston
-from idealgas.scene.tables.restitution import Rest, Restitution
+from idealgas.scene.tables.restitution import RestingDisc, Restitution
 from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
 from idealgas.scene.tables.thermal import ThermalSide
@@ -23,7 +23,7 @@ __all__ = [
     "Header",
     "Log",
     "Piston",
-    "Rest",
+    "RestingDisc",
     "Restitution",
     "Rotation",
     "Run",

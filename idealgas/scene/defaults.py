@@ -39,11 +39,11 @@ def sum_of_diameters(species: Sequence[Species], disc: Sequence[Disc]) -> float:
 
 
 def mean_free_time(
-    species: Sequence[Species], disc: Sequence[Disc], room: Rectangle, periodic: tuple[bool, bool], press: Vector
+    species: Sequence[Species], disc: Sequence[Disc], room: Rectangle, periodic: tuple[bool, bool], body_force: Vector
 ) -> float:
     """Expected time between two collisions of a disc, with discs and sides, time; infinite if nothing moves.
 
-    room: what the discs have at the start. periodic: whether the sides along x and along y are. press: constant
+    room: what the discs have at the start. periodic: whether the sides along x and along y are. body_force: constant
     acceleration, length/time². The speed is that of a disc with the mean speed at the start after a fall through half
     of the room.
     """
@@ -54,7 +54,7 @@ def mean_free_time(
     diameter = sum_of_diameters(species, disc) / n
     encounters = collisions_per_length(n, diameter, max(radii)[0], phi, size, periodic) / n
     way = 1.0 / max(encounters, 1.0 / sum(size))
-    speed = math.sqrt(mean_speed(species, disc) ** 2 + abs(press[0]) * size[0] + abs(press[1]) * size[1])
+    speed = math.sqrt(mean_speed(species, disc) ** 2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
     return way / speed if speed > 0 else math.inf
 
 

@@ -15,13 +15,13 @@ def _sums(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
     return tuple(map(operator.add, a, b))
 
 
-def _said(a: Any, b: Any) -> Any:
-    """The one that says something."""
+def _first_not_none(a: Any, b: Any) -> Any:
+    """The first of the two, or the second if that is None."""
     return b if a is None else a
 
 
-def _either(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Entry by entry the one that says something."""
+def _merge(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The entries of the first, where that has None or False those of the second."""
     return tuple(y if x is None else x or y for x, y in zip_longest(a, b))
 
 
@@ -34,46 +34,52 @@ def _plain(value: Any, both: Callable[[Any, Any], Any]) -> Any:
 class Properties:
     """Of a gas. The defaults are those of the plain box: smooth elastic discs in a reflecting box.
 
-    True where an effect does not change that, and true of a scene if it is true with every effect it calls for:
+    True unless an effect changes it, and true of a scene if it is true with every effect in it:
 
     uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: between two events a disc flies
     along a straight line. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
-    lossless: no energy is lost at all when discs meet discs or walls. fixed_walls: all walls stay where they are.
-    without_places: it has a meaning for discs without positions. in_steps: it can be met in time steps.
-    scales: the box may grow or shrink around the gas, as nothing in it has a fixed position. local: what happens to a
-    disc depends on what is near it, so that several threads may have a part of the box each.
+    fixed_walls: all walls stay where they are. allows_monte_carlo: it has a meaning for discs without positions.
+    allows_time_steps: the time-driven method can simulate it. is_scalable: the box may grow or shrink around the gas,
+    as nothing in it has a fixed position. local: what happens to a disc depends only on what is near it, so that each
+    thread may simulate a part of the box.
 
-    False where an effect does not change that, and true of a scene if it is true with any effect:
+    False unless an effect changes it, and true of a scene if it is true with any effect:
 
-    driven: a wall moves whatever hits it. grip: walls take momentum along themselves. sets_in_motion: discs that are at
-    rest do not stay so.
+    driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
+    with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
+    motion.
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
-    are. acceleration: of all discs between events, length/time². emits: temperature of each wall that emits what it
-    takes, by number; None for those that reflect. bath: temperature of a heat bath that gives discs new velocities
-    wherever they are; None without one. kicks: how often it does so to one disc, 1/time. clear_from: time from which on
-    no wall is inside the box; infinite if one always is.
+    are. acceleration: of all discs between events, length/time². emits: temperature of each thermal wall, by
+    number; None for those that reflect. bath: temperature of a heat bath that gives discs new velocities wherever they
+    are; None without one. kicks: how often it does so to one disc, 1/time. last_wall_removed_at: time from which on no
+    wall is inside the box; infinite if one always is.
     """
 
     uniform: bool = _plain(True, operator.and_)
     straight_flight: bool = _plain(True, operator.and_)
     elastic: bool = _plain(True, operator.and_)
-    lossless: bool = _plain(True, operator.and_)
     fixed_walls: bool = _plain(True, operator.and_)
-    without_places: bool = _plain(True, operator.and_)
-    in_steps: bool = _plain(True, operator.and_)
-    scales: bool = _plain(True, operator.and_)
+    allows_monte_carlo: bool = _plain(True, operator.and_)
+    allows_time_steps: bool = _plain(True, operator.and_)
+    is_scalable: bool = _plain(True, operator.and_)
     local: bool = _plain(True, operator.and_)
     driven: bool = _plain(False, operator.or_)
-    grip: bool = _plain(False, operator.or_)
-    sets_in_motion: bool = _plain(False, operator.or_)
-    inertia: float | None = _plain(None, _said)
-    periodic: tuple[bool, bool] = _plain((False, False), _either)
+    dissipative: bool = _plain(False, operator.or_)
+    has_rough_walls: bool = _plain(False, operator.or_)
+    drives_discs: bool = _plain(False, operator.or_)
+    inertia: float | None = _plain(None, _first_not_none)
+    periodic: tuple[bool, bool] = _plain((False, False), _merge)
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
-    emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _either)
-    bath: float | None = _plain(None, _said)
+    emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _merge)
+    bath: float | None = _plain(None, _first_not_none)
     kicks: float = _plain(0.0, max)
-    clear_from: float = _plain(0.0, max)
+    last_wall_removed_at: float = _plain(0.0, max)
+
+    @property
+    def lossless(self) -> bool:
+        """Whether no energy is lost at all when discs collide with discs or walls."""
+        return not self.dissipative
 
     @property
     def spins(self) -> bool:
@@ -103,16 +109,16 @@ class Properties:
     @property
     def empty(self) -> bool:
         """Whether there never is a wall inside the box."""
-        return self.clear_from == 0
+        return self.last_wall_removed_at == 0
 
     @property
     def conserves_momentum(self) -> tuple[bool, bool]:
         """Along which axes nothing takes momentum from the discs: smooth walls take none along themselves."""
-        free = self.empty and self.bath is None and (all(self.periodic) or not self.grip)
+        free = self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
         return self.periodic[0] and free, self.periodic[1] and free
 
     def __and__(self, other: "Properties") -> "Properties":
-        """With the effects of both."""
+        """Properties of a gas with the effects of both."""
         pairs = ((entry, getattr(self, entry.name), getattr(other, entry.name)) for entry in fields(self))
         return Properties(**{entry.name: entry.metadata["both"](mine, others) for entry, mine, others in pairs})
 

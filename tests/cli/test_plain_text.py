@@ -14,7 +14,7 @@ from support import ROOT, called
 
 from idealgas.analysis.core.style import name_rows, panels, save, show_names
 from idealgas.analysis.core.tables import Table
-from idealgas.plain import plain
+from idealgas.errors import plain
 from idealgas.report.page import escape
 
 NASTY = "[/red] $\\frac{$ :smile: </script><b> \x1b]0;owned\x07\x9b31m \u202e\udcff"

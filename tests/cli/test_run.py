@@ -243,7 +243,7 @@ def test_discs_without_a_gap_end_the_run_with_one_line(text, method, tmp_path):
 
 
 def test_a_run_whose_events_do_not_come_is_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("idealgas.run.watch.EMPTY_EPOCHS", 50)
+    monkeypatch.setattr("idealgas.run.stall.EMPTY_EPOCHS", 50)
     (tmp_path / "scene.toml").write_text("""
 box = { size = [9, 9], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic" }
 run.events = 4000

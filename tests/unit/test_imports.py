@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-FREE = {"_version", "errors", "events", "files", "plain", "sides", ""}
-"""Version, errors of the user, files to write, plain text, columns of events and numbers of walls are for all."""
+FREE = {"_version", "errors", "events", "files", "sides", ""}
+"""Version, errors of the user and plain text, files to write, columns of events and numbers of walls are for all."""
 
 ALLOWED = {
     "jit": {"_compiler"},
@@ -32,7 +32,6 @@ ALLOWED = {
     "errors": set(),
     "events": set(),
     "files": set(),
-    "plain": set(),
     "sides": set(),
     "": {"scene", "log", "run", "analysis"},  # the Python interface, imported when it is asked for
     "__main__": set(),

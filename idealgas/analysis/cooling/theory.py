@@ -50,7 +50,7 @@ def grains_of(log: Log) -> Grains:
 def _harmless_walls(log: Log) -> bool:
     """Whether discs keep their energy when they meet walls."""
     table = log.scene.restitution
-    return not log.scene.properties.grip and (table is None or table.wall == 1)
+    return not log.scene.properties.has_rough_walls and (table is None or table.wall == 1)
 
 
 def collision_rate(log: Log, temperature: float) -> float | None:

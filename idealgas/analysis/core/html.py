@@ -4,7 +4,7 @@ import html
 from collections.abc import Iterable, Iterator
 
 from idealgas.analysis.core.tables import Table
-from idealgas.plain import plain
+from idealgas.errors import plain
 
 
 def escape(text: str) -> str:

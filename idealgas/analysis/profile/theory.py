@@ -62,7 +62,7 @@ def natural_axis(log: Log) -> int:
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
     """Profiles by theory in the strips between edges (K + 1,), for a gas from time `start` on; None if unknown."""
     properties, discs = log.scene.properties, composition(log.discs)
-    if start < properties.clear_from or not properties.fixed_walls or log.gravity[1 - axis]:
+    if start < properties.last_wall_removed_at or not properties.fixed_walls or log.gravity[1 - axis]:
         return None
     reach = (
         np.zeros_like(discs.radius) if log.periodic[axis] else discs.radius

@@ -12,7 +12,7 @@ from idealgas.analysis.theory.values import box_theory
 from idealgas.events import IMAGES, SPINS, event_columns
 from idealgas.physics.collision_rates import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
-from idealgas.scene import Rest, Scene
+from idealgas.scene import RestingDisc, Scene
 from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
 
@@ -76,7 +76,7 @@ class Forecast:
     species: tuple[SpeciesForecast, ...]
     rough: str = ""
     premises: tuple[str, ...] = ()
-    rest: Rest | None = None
+    rest: RestingDisc | None = None
 
 
 KNOWN = ("uniform", "conserves_energy")

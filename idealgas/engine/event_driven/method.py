@@ -13,7 +13,7 @@ from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
 from idealgas.engine.parallel.decomposition import Crew, Team
 from idealgas.engine.parallel.slabs import FAST, Tuning, share_out
-from idealgas.engine.records import NOTHING_KEPT, Discs, Limits, Threads, make_discs
+from idealgas.engine.records import NO_EXTRA_STATE, Discs, Limits, Threads, make_discs
 from idealgas.events import EventBatch
 from idealgas.physics.effects import Effects
 from idealgas.state import Gas
@@ -33,7 +33,7 @@ class EventDriven:
 
     without_positions = False
     single_epoch = False
-    kept = NOTHING_KEPT
+    extra_state = NO_EXTRA_STATE
     discs: Discs
     _state: EventDrivenState
     _shared: Threads

@@ -13,9 +13,9 @@ import h5py
 import numpy as np
 
 from idealgas._version import __version__
+from idealgas.errors import plain
 from idealgas.events import IMAGE, POSITION, VELOCITY
 from idealgas.log.reader import Log
-from idealgas.plain import plain
 
 
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:

@@ -5,12 +5,11 @@ import math
 import numpy as np
 
 from idealgas.events import ANGULAR_VELOCITY, Arrays, Column
-from idealgas.initial.build import stream
 from idealgas.physics.effects import Effects
 from idealgas.physics.rotation import Rotation, moment_of_inertia
 from idealgas.run.effects.slice import EnergyPart, Slice
 from idealgas.scene import Scene
-from idealgas.state import Gas
+from idealgas.state import Gas, rng
 
 INERTIA = Column("inertia", "f8", (), "mass length^2")
 
@@ -23,7 +22,7 @@ def _make(scene: Scene, gas: Gas) -> Rotation | None:
     for s in scene.species:
         spin = np.full(s.count, s.angular_velocity or 0.0)
         if s.spin_temperature:
-            spin = stream(scene.scene.seed, f"spins {s.name}").standard_normal(s.count)
+            spin = rng(scene.scene.seed, f"spins {s.name}").standard_normal(s.count)
             inertia = moment_of_inertia(table.inertia, s.mass, s.radius)
             spin *= math.sqrt(s.spin_temperature / (inertia * (spin**2).mean()))
         omega.extend(spin)

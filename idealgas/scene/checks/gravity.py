@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Gravity that does not pull, or pulls through periodic sides for ever."""
+    """Gravity that does not acceleration, or pulls through periodic sides for ever."""
     gravity = scene.gravity
     if gravity is None or {"gravity", "box"} & invalid:
         return
     key: Key = ("gravity", "acceleration")
     if not any(gravity.acceleration):
         yield Issue((key,), "no acceleration", str(list(gravity.acceleration)), "no [gravity], or one that pulls")
-    for axis, (pull, periodic) in enumerate(zip(gravity.acceleration, scene.box.periodic, strict=True)):
-        if pull and periodic:
+    for axis, (acceleration, periodic) in enumerate(zip(gravity.acceleration, scene.box.periodic, strict=True)):
+        if acceleration and periodic:
             low, high = (SIDES[side] for side in sides_across(axis))
             keys = (key, ("box", low), ("box", high))
             what = f"gravity through the periodic sides {low} and {high}"
-            yield Issue(keys, what, f"a component of {pull}", "0, or sides that end the fall")
+            yield Issue(keys, what, f"a component of {acceleration}", "0, or sides that end the fall")

@@ -57,7 +57,7 @@ def _step_issues(scene: Document) -> Iterator[Issue]:
     got = f'method = "{TIME_DRIVEN}"'
     if scene.run.dt is None:
         yield Issue((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
-    for place in _keys(scene, "in_steps"):
+    for place in _keys(scene, "allows_time_steps"):
         yield Issue((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
 
 
@@ -93,7 +93,7 @@ def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Effects that need positions, and gases in which no pair ever meets."""
-    for place in _keys(scene, "without_places"):
+    for place in _keys(scene, "allows_monte_carlo"):
         got = f'method = "{MONTE_CARLO}"'
         yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
     if not {"species", "disc"} & invalid and (scene.species or scene.disc):
@@ -160,7 +160,7 @@ def endless_issues(scene: Document) -> Iterator[Issue]:
     if (
         not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in scene.species)
         and not any(any(d.velocity) for d in scene.disc)
-        and not scene.properties.sets_in_motion
+        and not scene.properties.drives_discs
     ):
         yield Issue(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
     elif run.events is None and alone:

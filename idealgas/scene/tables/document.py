@@ -18,7 +18,7 @@ from idealgas.scene.tables.box import Box
 from idealgas.scene.tables.discs import Disc, Species
 from idealgas.scene.tables.gravity import Gravity
 from idealgas.scene.tables.piston import Piston
-from idealgas.scene.tables.restitution import Rest, Restitution
+from idealgas.scene.tables.restitution import RestingDisc, Restitution
 from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
 from idealgas.scene.tables.thermostat import Thermostat
@@ -73,18 +73,18 @@ class Document(Table):
         return triangular_lattice(number, self.box.size) if number else None
 
     @property
-    def press(self) -> Vector:
+    def body_force(self) -> Vector:
         """Constant acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
-        press = list(self.properties.acceleration)
+        body_force = list(self.properties.acceleration)
         if self.piston:
             axis = self.piston.axis
-            press[axis] = max(press[axis], self.piston.acceleration(self.box.size, self.gravity), key=abs)
-        return press[0], press[1]
+            body_force[axis] = max(body_force[axis], self.piston.acceleration(self.box.size, self.gravity), key=abs)
+        return body_force[0], body_force[1]
 
     @property
     def free_time(self) -> float:
         """Expected time between two collisions of a disc at the start, see `mean_free_time`, time."""
-        return mean_free_time(self.species, self.disc, self.room, self.box.periodic, self.press)
+        return mean_free_time(self.species, self.disc, self.room, self.box.periodic, self.body_force)
 
     @property
     def trial_time(self) -> float:
@@ -110,20 +110,20 @@ class Document(Table):
         if self.restitution is None or self.restitution.elastic:
             return 0.0
         return restitution.contact_duration(
-            self.restitution, self.species, self.disc, self.room, self.box.periodic, self.press
+            self.restitution, self.species, self.disc, self.room, self.box.periodic, self.body_force
         )
 
     @property
-    def rest(self) -> Rest | None:
+    def rest(self) -> RestingDisc | None:
         """What discs do that have come to rest; None if no constant force presses them, or nothing is lost."""
         if self.restitution is None:
             return None
-        return restitution.rest(self.restitution, self.contact_duration, self.free_time, self.press)
+        return restitution.rest(self.restitution, self.contact_duration, self.free_time, self.body_force)
 
     @property
-    def boundless_rest(self) -> bool:
+    def collapse_risk(self) -> bool:
         """Whether a constant force presses discs that roughness slows down, without bounds for their collisions."""
-        return any(self.press) and rotation.loses(self.rotation) and self.thermostat is None
+        return any(self.body_force) and rotation.loses(self.rotation) and self.thermostat is None
 
 
 CALLS: dict[str, Callable[[Document], Effect | None]] = {

@@ -21,8 +21,8 @@ def effect(gravity: Gravity | None) -> Effect | None:
     properties = Properties(
         uniform=False,
         straight_flight=False,
-        without_places=False,
-        sets_in_motion=True,
+        allows_monte_carlo=False,
+        drives_discs=True,
         acceleration=gravity.acceleration,
     )
     return Effect(NAME, (("gravity",),), properties)

@@ -17,4 +17,6 @@ def effect(sides: Sequence[object]) -> Effect | None:
     keys: tuple[Key, ...] = tuple(("box", name) for name, side in zip(SIDES, sides, strict=False) if side == PERIODIC)
     if not keys:
         return None
-    return Effect(NAME, keys, Properties(without_places=False, periodic=(sides[0] == PERIODIC, sides[2] == PERIODIC)))
+    return Effect(
+        NAME, keys, Properties(allows_monte_carlo=False, periodic=(sides[0] == PERIODIC, sides[2] == PERIODIC))
+    )

@@ -72,11 +72,11 @@ def effect(piston: Piston | None) -> Effect | None:
     properties = Properties(
         uniform=False,
         fixed_walls=False,
-        without_places=False,
-        in_steps=False,
+        allows_monte_carlo=False,
+        allows_time_steps=False,
         local=False,
-        scales=False,
+        is_scalable=False,
         driven=piston.mass is None and bool(piston.velocity),
-        sets_in_motion=True,
+        drives_discs=True,
     )
     return Effect(NAME, (("piston",),), properties)

@@ -40,11 +40,11 @@ class Restitution(Table):
 
 
 @dataclass(frozen=True)
-class Rest:
-    """What discs do that have come to rest on something to which a constant force presses them.
+class RestingDisc:
+    """A disc that has come to rest on a wall or disc to which a constant force presses it.
 
-    Such a disc goes on bouncing without loss, as each of its hits comes less than a contact duration t after the one
-    before: with the acceleration a its speed is a t/2 at most.
+    It keeps bouncing without loss, as each of its hits comes less than a contact duration t after the previous one:
+    with the acceleration a its speed is a t/2 at most.
 
     hits: (least, most) hits of one disc per time, 1/t and 1/(et), 1/time. height: largest height of its bounces,
     a t²/8, length. energy: their largest energy divided by the disc's mass, a² t²/8, (length/time)². per_free_time:
@@ -58,18 +58,19 @@ class Rest:
     per_free_time: float | None
 
 
-def rest(restitution: Restitution, duration: float, free_time: float, press: Vector) -> Rest | None:
+def rest(restitution: Restitution, duration: float, free_time: float, body_force: Vector) -> RestingDisc | None:
     """What discs do at rest; None if no constant force presses them, or nothing is lost.
 
-    duration: contact duration, time. free_time: mean free time at the start, time. press: acceleration, length/time².
+    duration: contact duration, time. free_time: mean free time at the start, time. body_force: acceleration,
+    length/time².
     """
-    force = math.hypot(*press)
+    force = math.hypot(*body_force)
     if force == 0 or restitution.elastic:
         return None
     e = min(restitution.normal, restitution.wall)
     most = 1 / (e * duration) if e > 0 else None
     height, energy = force * duration**2 / 8, (force * duration) ** 2 / 8
-    return Rest((1 / duration, most), height, energy, None if most is None else most * free_time)
+    return RestingDisc((1 / duration, most), height, energy, None if most is None else most * free_time)
 
 
 def contact_duration(
@@ -78,7 +79,7 @@ def contact_duration(
     disc: Sequence[Disc],
     room: Rectangle,
     periodic: tuple[bool, bool],
-    press: Vector,
+    body_force: Vector,
 ) -> float:
     """As given, or by default, time; infinite if nothing ever moves.
 
@@ -87,12 +88,12 @@ def contact_duration(
     cluster part as soon as their collisions are elastic, and the default only has to end the collapse: it is a
     millionth of the time in which a disc moves by its diameter, which no average can tell from zero.
 
-    room, periodic, press: see `mean_free_time`.
+    room, periodic, body_force: see `mean_free_time`.
     """
     if restitution.contact_duration is not None:
         return restitution.contact_duration
-    if any(press):
-        return SHARE * mean_free_time(species, disc, room, periodic, press)
+    if any(body_force):
+        return SHARE * mean_free_time(species, disc, room, periodic, body_force)
     speed = mean_speed(species, disc)
     if speed == 0:
         return math.inf
@@ -103,4 +104,4 @@ def effect(restitution: Restitution | None) -> Effect | None:
     """What restitution changes, if anything is lost."""
     if restitution is None or restitution.elastic:
         return None
-    return Effect(NAME, (("restitution",),), Properties(uniform=False, elastic=False, lossless=False))
+    return Effect(NAME, (("restitution",),), Properties(uniform=False, elastic=False, dissipative=True))

@@ -30,5 +30,7 @@ def effect(rotation: Rotation | None) -> Effect | None:
     """What spins change, if discs have any."""
     if rotation is None:
         return None
-    properties = Properties(lossless=not loses(rotation), inertia=rotation.inertia, grip=rotation.wall_roughness > -1)
+    properties = Properties(
+        dissipative=loses(rotation), inertia=rotation.inertia, has_rough_walls=rotation.wall_roughness > -1
+    )
     return Effect(NAME, (("rotation",),), properties)

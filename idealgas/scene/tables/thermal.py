@@ -31,4 +31,4 @@ def effect(sides: Iterable[object], walls: Iterable[Wall | None]) -> Effect | No
     if not any(temperatures):
         return None
     keys: tuple[Key, ...] = tuple(("box", name) for name, there in zip(SIDES, temperatures, strict=False) if there)
-    return Effect(NAME, keys, Properties(without_places=False, grip=True, emits=temperatures))
+    return Effect(NAME, keys, Properties(allows_monte_carlo=False, has_rough_walls=True, emits=temperatures))

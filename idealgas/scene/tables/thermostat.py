@@ -24,6 +24,10 @@ def effect(thermostat: Thermostat | None) -> Effect | None:
     if thermostat is None:
         return None
     properties = Properties(
-        without_places=False, in_steps=False, sets_in_motion=True, bath=thermostat.temperature, kicks=thermostat.rate
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        drives_discs=True,
+        bath=thermostat.temperature,
+        kicks=thermostat.rate,
     )
     return Effect(NAME, (("thermostat",),), properties)

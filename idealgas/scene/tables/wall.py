@@ -56,5 +56,11 @@ def effect(walls: Sequence[Wall | None]) -> Effect | None:
     if not present:
         return None
     gone = (opens if math.isinf(closes) else math.inf for opens, closes in (wall.absence for _, wall in present))
-    properties = Properties(uniform=False, without_places=False, in_steps=False, scales=False, clear_from=max(gone))
+    properties = Properties(
+        uniform=False,
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        is_scalable=False,
+        last_wall_removed_at=max(gone),
+    )
     return Effect(NAME, tuple(("wall", i) for i, _ in present), properties)

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from idealgas.initial.build import make_gas, stream
+from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
+from idealgas.state import rng
 
 BOX_AND_RUN = "box.size = [10, 10]\nrun.until = 1\n"
 
@@ -95,7 +96,7 @@ def test_another_species_leaves_the_velocities_as_they_were():
 
 
 def test_streams_differ_by_seed_and_use():
-    first = {stream(seed, use).random() for seed in (0, 1) for use in ("placement", "velocities a", "velocities b")}
+    first = {rng(seed, use).random() for seed in (0, 1) for use in ("placement", "velocities a", "velocities b")}
     assert len(first) == 6
 
 

@@ -22,7 +22,7 @@ def scene(*overrides):
 
 def test_without_a_force_it_is_far_below_every_free_time():
     found = scene()
-    assert found.press == (0, 0)
+    assert found.body_force == (0, 0)
     assert found.restitution.contact_duration == 1e-6 * 20 * 2 * 0.2 / 20 / 2
     assert found.rest is None
     assert scene("piston={ position=9, velocity=-0.1 }").restitution == found.restitution
@@ -43,7 +43,7 @@ def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
 
 def test_a_piston_that_is_pressed_is_a_force():
     found = scene(PISTON)
-    assert found.press == (-0.5 * 8 / 4, 0)
+    assert found.body_force == (-0.5 * 8 / 4, 0)
     assert found.restitution.contact_duration == pytest.approx(found.free_time / 20, rel=1e-14)
     assert found.free_time < scene("piston={ position=9, velocity=0 }").free_time
 

@@ -61,17 +61,18 @@ LACKING = {
     "isolated": {"thermal walls", "thermostat"},
     "conserves_energy": {"gravity", "restitution", "piston"},
     "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston", "thermostat"},
-    "without_places": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston", "thermostat"},
-    "in_steps": {"wall segments", "piston", "thermostat"},
+    "allows_monte_carlo": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston", "thermostat"},
+    "allows_time_steps": {"wall segments", "piston", "thermostat"},
     "local": {"piston"},
-    "scales": {"wall segments", "piston"},
+    "is_scalable": {"wall segments", "piston"},
     "empty": {"wall segments"},
 }
 BRINGING = {
-    "sets_in_motion": {"gravity", "piston", "thermostat"},
-    "grip": {"thermal walls"},
+    "drives_discs": {"gravity", "piston", "thermostat"},
+    "has_rough_walls": {"thermal walls"},
     "spins": {"rotation"},
     "driven": set(),
+    "dissipative": {"restitution"},
 }
 
 
@@ -101,12 +102,12 @@ def test_several_properties_at_once():
 @pytest.mark.parametrize(
     ("overrides", "changed"),
     [
-        (["rotation.roughness=0.5"], {"lossless": False, "inertia": 0.5}),
-        (["rotation.wall_roughness=0.5"], {"lossless": False, "inertia": 0.5, "grip": True}),
-        (["rotation.wall_roughness=1", "rotation.inertia=0.25"], {"inertia": 0.25, "grip": True}),
+        (["rotation.roughness=0.5"], {"dissipative": True, "inertia": 0.5}),
+        (["rotation.wall_roughness=0.5"], {"dissipative": True, "inertia": 0.5, "has_rough_walls": True}),
+        (["rotation.wall_roughness=1", "rotation.inertia=0.25"], {"inertia": 0.25, "has_rough_walls": True}),
         (["restitution.normal=1"], {}),
-        (["restitution.wall=0.5"], {"uniform": False, "elastic": False, "lossless": False}),
-        (["box.top=periodic", "box.bottom=periodic"], {"without_places": False, "periodic": (False, True)}),
+        (["restitution.wall=0.5"], {"uniform": False, "elastic": False, "dissipative": True}),
+        (["box.top=periodic", "box.bottom=periodic"], {"allows_monte_carlo": False, "periodic": (False, True)}),
     ],
 )
 def test_what_keys_decide(overrides, changed):
@@ -132,7 +133,7 @@ def wall(gate):
 
 
 @pytest.mark.parametrize(
-    ("walls", "clear_from"),
+    ("walls", "last_wall_removed_at"),
     [
         (wall("name='w'"), math.inf),
         (wall("opens_at=2"), 2.0),
@@ -141,8 +142,8 @@ def wall(gate):
         ("wall=[{from=[16, 4], to=[18, 5], opens_at=2}, {from=[16, 2], to=[18, 3], opens_at=3}]", 3.0),
     ],
 )
-def test_when_the_box_is_clear_of_walls(walls, clear_from):
-    assert properties(walls).clear_from == clear_from
+def test_when_the_box_is_clear_of_walls(walls, last_wall_removed_at):
+    assert properties(walls).last_wall_removed_at == last_wall_removed_at
     assert not properties(walls).empty
 
 

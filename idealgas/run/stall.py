@@ -30,8 +30,8 @@ OVERDUE = 8
 """So many times the most events that an epoch is made for, and the run looks whose they are."""
 
 
-class Watch:
-    """What of a run has not come: events, or collisions of two discs where only they can end it.
+class StallDetector:
+    """Detects runs that no event will end: no events, or no pair collisions where only those can end the run.
 
     A run that is resumed begins to count anew.
     """
@@ -74,15 +74,15 @@ class Watch:
         """Whether the start of this epoch is to have a sample."""
         return self._empty < QUIET_SAMPLES
 
-    def in_vain(self) -> str:
-        """What has not come, if the run cannot be expected to reach its stop; else empty."""
+    def stall_reason(self) -> str:
+        """Why the run cannot be expected to reach its stop; empty if it can."""
         if not self._endless:
             return ""
         hopeless = self._expected < HOPELESS * self._empty
         if self._empty >= EMPTY_EPOCHS and (self._expected >= EXPECTED or hopeless):
             return f"no event in {self._empty} epochs"
         if self._missed >= EXPECTED:
-            return f"no two discs have met where {EXPECTED} collisions were to be expected"
+            return f"no collision between discs although about {EXPECTED:,} were expected".replace(",", " ")
         return ""
 
     def busy(self) -> str:
