@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from idealgas.engine.audit import overlap_of
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import (
     NO_CONTACT,
@@ -13,7 +14,7 @@ from idealgas.engine.event_driven.prediction import (
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.engine.order import image_precedes, precedes
-from idealgas.jit import inline, noinline
+from idealgas.jit import inline, njit, noinline
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.wall import misses_segment, segment_contact
@@ -36,8 +37,8 @@ def wrapped_index(index, count, is_periodic):
 
 
 @noinline
-def gather_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
-    """Do the work of `gather_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
+def append_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
+    """Do the work of `append_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
     for step in range(3):
         c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
         r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
@@ -57,14 +58,14 @@ def is_inside(cells, column, row, along_y):
 
 
 @inline
-def gather_line(state, count, column, row, along_y, periodic):
+def append_line(state, count, column, row, along_y, periodic):
     """Append the first discs of three cells in a row or column, from (column, row) on, to `count` candidates.
 
     Returns the new number of candidates.
     """
     cells = state.cells
     if periodic is not None and not is_inside(cells, column, row, along_y):
-        return gather_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
+        return append_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
     for _ in range(3):
@@ -77,13 +78,13 @@ def gather_line(state, count, column, row, along_y, periodic):
 
 
 @inline
-def gather_block(state, disc, periodic):
+def neighbours(state, disc, periodic):
     """Make the first discs of a disc's own cell and of the eight around it the candidates; return their number."""
     column = np.int64(disc.column) - 1
     row = np.int64(disc.row) - 1
-    count = gather_line(state, 0, column, row, False, periodic)
-    count = gather_line(state, count, column, row + 1, False, periodic)
-    return gather_line(state, count, column, row + 2, False, periodic)
+    count = append_line(state, 0, column, row, False, periodic)
+    count = append_line(state, count, column, row + 1, False, periodic)
+    return append_line(state, count, column, row + 2, False, periodic)
 
 
 @inline
@@ -113,7 +114,7 @@ def store_contact(state, record, ids, i, j, k, time, periodic):
 
 
 @inline
-def keep_those_in_the_way(record, ids, state, count, i, effects):
+def filter_colliding(record, ids, state, count, i, effects):
     """Keep of the candidates, extended by the further discs of their cells, those that disc i will touch.
 
     Returns their number. Few are left, so that only few roots and quotients are computed; the loop has no branches.
@@ -137,12 +138,12 @@ def keep_those_in_the_way(record, ids, state, count, i, effects):
 
 
 @inline
-def test_candidates(record, ids, state, count, i, now, effects):
+def predict_disc_contact(record, ids, state, count, i, now, effects):
     """Store disc i's earliest contact among the candidates and the further discs of their cells.
 
-    Simultaneous contacts and contacts at the present time are rare; `resolve_ties` decides them.
+    Simultaneous contacts and contacts at the present time are rare; `predict_tied_contact` decides them.
     """
-    count = keep_those_in_the_way(record, ids, state, count, i, effects)
+    count = filter_colliding(record, ids, state, count, i, effects)
     disc = record[U(i)]
     best = state.prediction[U(i)].contact
     chosen = -1
@@ -155,7 +156,7 @@ def test_candidates(record, ids, state, count, i, now, effects):
         chosen = k if time < best else chosen
         best = min(time, best)
     if tied | (best <= now):
-        resolve_ties(record, ids, state, count, i, effects)
+        predict_tied_contact(record, ids, state, count, i, effects)
     elif chosen >= 0:
         store_contact(state, record, ids, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
 
@@ -174,10 +175,10 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
 
 
 @noinline
-def resolve_ties(record, ids, state, count, i, effects):
+def predict_tied_contact(record, ids, state, count, i, effects):
     """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
 
-    It does the work of `test_candidates`, and leaves out collisions that would change no digit of a velocity.
+    It does the work of `predict_disc_contact`, and leaves out collisions that would change no digit of a velocity.
     """
     prediction = state.prediction[U(i)]
     own = np.int64(ids[U(i)])
@@ -193,19 +194,19 @@ def resolve_ties(record, ids, state, count, i, effects):
 
 
 @inline
-def test_segments(record, ids, state, i, segments, effects):
+def predict_segment_contact(record, ids, state, i, segments, effects):
     """Store disc i's contact with a wall segment of its cell if that is its earliest."""
     if segments is not None:
         cell = U(cell_index(state.cells, record[U(i)]))
         first, last = state.walls.start[cell], state.walls.start[cell + U(1)]
         if first < last:
-            test_entries(
+            predict_entry_contacts(
                 record[U(i)], ids, state.prediction[U(i)], np.int64(ids[U(i)]), state.walls, first, last, effects
             )
 
 
 @noinline
-def test_entries(disc, ids, prediction, own, walls, first, last, effects):
+def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effects):
     """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
     for entry in range(first, last):
         k = walls.item[U(entry)]
@@ -222,7 +223,7 @@ def test_entries(disc, ids, prediction, own, walls, first, last, effects):
 
 
 @inline
-def gather_beyond(state, disc, crossing_code, periodic):
+def new_neighbours(state, disc, crossing_code, periodic):
     """Make the first discs of the three cells that came within reach of a disc the candidates; return their number.
 
     crossing_code: direction in which it crossed into its cell, see PREDICTION.
@@ -231,7 +232,7 @@ def gather_beyond(state, disc, crossing_code, periodic):
     along_y = crossing_code >= 2
     column = np.int64(disc.column) + (-1 if along_y else forward)
     row = np.int64(disc.row) + (forward if along_y else -1)
-    return gather_line(state, 0, column, row, not along_y, periodic)
+    return append_line(state, 0, column, row, not along_y, periodic)
 
 
 @inline
@@ -242,11 +243,35 @@ def predict_contact(record, ids, state, i, crossing_code, now, effects):
     stays valid, and may only be preceded by one in the cells that came within reach. SIDE_OF_BOX or more otherwise.
     """
     if crossing_code < SIDE_OF_BOX:
-        count = gather_beyond(state, record[U(i)], crossing_code, effects.periodic)
+        count = new_neighbours(state, record[U(i)], crossing_code, effects.periodic)
     else:
         prediction = state.prediction[U(i)]
         prediction.contact = NO_CONTACT
         prediction.partner = -1
-        count = gather_block(state, record[U(i)], effects.periodic)
-    test_candidates(record, ids, state, count, i, now, effects)
-    test_segments(record, ids, state, i, effects.segments, effects)
+        count = neighbours(state, record[U(i)], effects.periodic)
+    predict_disc_contact(record, ids, state, count, i, now, effects)
+    predict_segment_contact(record, ids, state, i, effects.segments, effects)
+
+
+@inline
+def deepest_around(record, state, i, periodic):
+    """Deepest overlap of disc i with discs of smaller index, divided by the sum of the radii; 0 without any."""
+    deepest = 0.0
+    disc = record[U(i)]
+    count = neighbours(state, disc, periodic)
+    for k in range(count):
+        j = state.candidates[U(k)]
+        while j >= 0:
+            if j < i:
+                deepest = max(deepest, overlap_of(disc, record[U(j)], periodic))
+            j = state.cells.link[U(j)].next
+    return deepest
+
+
+@njit
+def deepest_overlap(record, state, periodic):
+    """Deepest overlap of all pairs of discs, divided by the sum of their radii; all records are at one time."""
+    deepest = 0.0
+    for i in range(record.shape[0]):
+        deepest = max(deepest, deepest_around(record, state, i, periodic))
+    return deepest

@@ -4,6 +4,8 @@ The disc that predicted last owns a pair's contact; a contact whose partner has 
 predicted again. One thread may have all discs, or several one strip of the box each, see `turns`.
 """
 
+from enum import IntEnum
+
 import numpy as np
 
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
@@ -11,8 +13,8 @@ from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
-from idealgas.engine.event_driven.prefetch import fetch_ahead
-from idealgas.engine.event_driven.scheduler import clear, has_another, is_settled, settle, withdraw
+from idealgas.engine.event_driven.prefetch import prefetch_next
+from idealgas.engine.event_driven.scheduler import clear, has_other_event, is_resolved, remove, resolve_ties
 from idealgas.engine.event_writer import (
     batch_capacity,
     write_kick,
@@ -24,10 +26,10 @@ from idealgas.engine.event_writer import (
 from idealgas.engine.parallel.subdomain import OVER
 from idealgas.engine.parallel.synchronization import (
     count_at_one_time,
-    enter_in_schedule,
     in_own_schedule,
     leave,
     next_turn,
+    push_to_owner,
 )
 from idealgas.engine.records import add_to_counters, reload
 from idealgas.engine.resolve import (
@@ -42,21 +44,29 @@ from idealgas.jit import inline, njit
 
 U = np.uintp
 
-STALE, EVENT, START = SIDE_OF_BOX, SIDE_OF_BOX + 1, SIDE_OF_BOX + 2
-"""What has changed for a disc, if it has not crossed into a cell: its contact's partner; its record; all of it."""
+
+class Repredict(IntEnum):
+    """Why a disc's events are predicted again; smaller numbers are codes of cell crossings, see PREDICTION."""
+
+    STALE = SIDE_OF_BOX
+    """Its contact is stale: only the contact is predicted again."""
+    EVENT = SIDE_OF_BOX + 1
+    """Its record has changed in an event."""
+    START = SIDE_OF_BOX + 2
+    """An epoch begins."""
 
 
 @inline
 def predict(record, ids, state, i, change, now, effects, border):
     """Predict what has changed of disc i's next events, and enter the earliest of them in the schedule.
 
-    change: STALE, EVENT or START, or the code of the crossing by which the disc came into its cell.
+    change: a `Repredict`, or the code of the crossing by which the disc entered its cell.
     """
     predict_contact(record, ids, state, i, change, now, effects)
-    if change != STALE:
+    if change != Repredict.STALE:
         predict_crossing(record, ids, state, i, now, effects)
-    enter_in_schedule(record, ids, state, i, border)
-    if change > STALE:
+    push_to_owner(record, ids, state, i, border)
+    if change > Repredict.STALE:
         offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
 
 
@@ -91,16 +101,16 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         predict_piston(record, ids, state, effects.piston, effects.gravity)
         for k in range(record.shape[0]):
             if in_own_schedule(record, k, border) >= 0:
-                predict(record, ids, state, k, START, 0.0, effects, border)
+                predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, border)
     time = 0.0
-    change = np.int64(START)
+    change = np.int64(Repredict.START)
     i = other = np.int64(-1)
     while True:
         while i >= 0:  # one call for all changes: another would double the machine code
             predict(record, ids, state, i, change, time, effects, border)
             i, other = other, np.int64(-1)
-        if change > STALE:
-            if change == EVENT:
+        if change > Repredict.STALE:
+            if change == Repredict.EVENT:
                 events += 1
                 now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
             if (events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity):
@@ -112,8 +122,8 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         prediction = state.prediction[U(i)]
         at_contact = contact_is_next(prediction, ids, i)
         time = prediction.contact if at_contact else prediction.crossing
-        withdraw(state.tree, state.prediction, ids, i)
-        fetch_ahead(state.lookahead, record, state, i)
+        remove(state.tree, state.prediction, ids, i)
+        prefetch_next(state.pipeline, record, state, i)
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
             change = np.int64(prediction.crossing_code)
             cross_cell(record, ids, state, i, change, effects.periodic)
@@ -122,14 +132,14 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         tied = False
         if at_contact and prediction.partner >= 0 and not of_piston:
             if record[U(prediction.partner)].count != prediction.partner_count:
-                change = np.int64(STALE)
+                change = np.int64(Repredict.STALE)
                 continue
             other = np.int64(prediction.partner)
-            tied = has_another(state.tree, state.prediction, i, other, time) and state.tree.settled[0] != time
-            withdraw(state.tree, state.prediction, ids, other)
-        if tied or not is_settled(state.tree, time):
-            settle(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
-            change = np.int64(STALE)
+            tied = has_other_event(state.tree, state.prediction, i, other, time) and state.tree.tie_time[0] != time
+            remove(state.tree, state.prediction, ids, other)
+        if tied or not is_resolved(state.tree, time):
+            resolve_ties(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
+            change = np.int64(Repredict.STALE)
             i = other = np.int64(-1)
             continue
         if of_piston:
@@ -138,11 +148,11 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             if not at_contact:
                 resolve_stop(time, effects.piston)
             if hit:
-                withdraw(state.tree, state.prediction, ids, i)
+                remove(state.tree, state.prediction, ids, i)
                 resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
             predict_piston(record, ids, state, effects.piston, effects.gravity)
             if not hit:
-                change = np.int64(STALE)
+                change = np.int64(Repredict.STALE)
                 i = np.int64(-1)
                 continue
             rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
@@ -165,7 +175,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
-        change = np.int64(EVENT)
+        change = np.int64(Repredict.EVENT)
     leave(border, reached)
     add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
     return rows, reached

@@ -7,8 +7,8 @@ batches.
 import numpy as np
 
 from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cells
+from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
-from idealgas.engine.event_driven.overlap import deepest_overlap
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
 from idealgas.engine.parallel.decomposition import Crew, Team

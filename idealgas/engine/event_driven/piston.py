@@ -3,7 +3,7 @@
 import numpy as np
 
 from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX
-from idealgas.engine.event_driven.scheduler import reschedule
+from idealgas.engine.event_driven.scheduler import update
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import inline
 from idealgas.physics.piston import misses_piston_until, piston_contact, stop_contact
@@ -49,7 +49,7 @@ def predict_piston(record, ids, state, piston, gravity):
             keep_if_earlier(record, ids, prediction, j, p, gravity)
         prediction.crossing = stop_contact(p)
         prediction.crossing_code = SIDE_OF_BOX + p.side
-        reschedule(state.tree, state.prediction, ids, leaf)
+        update(state.tree, state.prediction, ids, leaf)
 
 
 @inline
@@ -58,4 +58,4 @@ def offer_to_piston(record, ids, state, i, piston, gravity):
     if piston is not None:
         leaf = ids.shape[0]
         if keep_if_earlier(record, ids, state.prediction[U(leaf)], i, piston[0], gravity):
-            reschedule(state.tree, state.prediction, ids, leaf)
+            update(state.tree, state.prediction, ids, leaf)

@@ -21,7 +21,7 @@ NEAR = 32_768
 U = np.uintp
 
 
-def make_lookahead(n: int, levels: int) -> np.ndarray | None:
+def make_pipeline(n: int, levels: int) -> np.ndarray | None:
     """Indices of two discs for which memory is being fetched, and level of the parts; None for a gas of few discs.
 
     levels: of the schedule, whose last is the root.
@@ -30,9 +30,9 @@ def make_lookahead(n: int, levels: int) -> np.ndarray | None:
         return None
     below_root = levels - 2
     enough = n <= NEAR and n > 2 * 8**below_root
-    lookahead: np.ndarray = aligned(3, np.dtype("i8"))
-    lookahead[2] = below_root if enough else max(below_root - 1, 0)
-    return lookahead
+    pipeline: np.ndarray = aligned(3, np.dtype("i8"))
+    pipeline[2] = below_root if enough else max(below_root - 1, 0)
+    return pipeline
 
 
 @inline
@@ -104,12 +104,12 @@ def fetch_candidates(cells, record, disc, prediction):
 
 
 @inline
-def fetch_ahead(lookahead, record, state, i):
+def prefetch_next(pipeline, record, state, i):
     """Fetch memory for the disc that comes first in disc i's part now that this was withdrawn, and for those before."""
-    if lookahead is not None:
-        third, second = lookahead[0], lookahead[1]
-        first = min(first_of_part(state.tree, lookahead[2], i), record.shape[0] - 1)  # a piston is no disc
-        lookahead[0], lookahead[1] = second, first
+    if pipeline is not None:
+        third, second = pipeline[0], pipeline[1]
+        first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # a piston is no disc
+        pipeline[0], pipeline[1] = second, first
         fetch_disc(state.tree, record, state, first)
         fetch_cells(state.cells, record[U(second)])
         fetch_disc(state.tree, record, state, max(np.int64(state.prediction[U(second)].partner), np.int64(0)))

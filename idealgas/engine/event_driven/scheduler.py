@@ -1,41 +1,45 @@
-"""The schedule: one entry a disc in an implicit 8-ary tournament tree, whose root is the next event.
+"""The scheduler: an implicit 8-ary tournament tree with one leaf per disc, whose root is the next event.
 
-The keys of a level are contiguous in memory, padded with times after NEVER; the index of the disc that won is stored
-beside each key. An event is withdrawn before its discs' next ones are predicted, which the processor does meanwhile; to
-enter these takes a comparison or two, as most are not the earliest of their group. `simultaneous` settles ties.
+The keys of a level are contiguous in memory, padded with times after NEVER; the index of the winning disc is stored
+next to each key. An event is removed before the next ones of its discs are predicted, so that the processor does both
+at once; to push these takes a comparison or two, as most are not the earliest of their group.
+
+Simultaneous events are rare, except for the contact that both discs of a pair predict. The tree therefore finds any of
+the earliest events, and its ties are resolved by the order of ids only if the next event has the same time.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.engine.event_driven.ties import comes_first, settle_path
+from idealgas.engine.event_driven.prediction import event_ids
+from idealgas.engine.order import precedes
 from idealgas.jit import aligned, inline, njit, noinline
 from idealgas.physics.motion import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
-UNSETTLED = -1.0  # no time
+NO_TIE = -1.0  # no time
 
 U = np.uintp
 
 
 class Tree(NamedTuple):
-    """Tournament tree of the discs' next events; its leaves are the discs, in order of index, and the piston.
+    """Tournament tree of the discs' next events; its leaves are the discs in order of index, then the piston.
 
     Attributes:
         time: (total,) f8, local time of the earliest event below each node.
         key: (total,) i8, the same memory; times are not negative, so their bits have the same order.
         winner: (total,) i4, index of the disc with that event.
         start: (levels,) i8, first node of each level.
-        settled: (1,) f8, latest time of which there were several events: among these, the winners are those that come
-            first. Where events have another time in common, any of them may be a winner.
+        tie_time: (1,) f8, latest time at which ties were resolved: the winners are then the events that come first.
+            At other times any of several simultaneous events may be the winner.
     """
 
     time: np.ndarray
     key: np.ndarray
     winner: np.ndarray
     start: np.ndarray
-    settled: np.ndarray
+    tie_time: np.ndarray
 
 
 def make_tree(n: int) -> Tree:
@@ -46,7 +50,7 @@ def make_tree(n: int) -> Tree:
     while nodes > 1 or len(start) == 1:
         nodes = -(-nodes // 8)
         start.append(total)
-        total += 4 if 1 < nodes <= 4 else -(-nodes // 8) * 8  # below the root four may be enough
+        total += 4 if 1 < nodes <= 4 else -(-nodes // 8) * 8  # four are enough below the root of a small tree
     time = aligned(total, np.dtype("f8"))
     winner = aligned(total, np.dtype("i4"))
     winner[:n] = np.arange(n)
@@ -55,15 +59,15 @@ def make_tree(n: int) -> Tree:
 
 @inline
 def clear(tree):
-    """Remove all events from the schedule; all keys then differ, so that none ties with the padding."""
+    """Remove all events; all keys then differ, so that none ties with the padding."""
     for node in range(tree.key.shape[0]):
         tree.key[node] = NEVER_KEY + node
-    tree.settled[0] = UNSETTLED
+    tree.tie_time[0] = NO_TIE
 
 
 @inline
 def first_of_four(key, first):
-    """Earliest key of four nodes in a row, and a node that has it."""
+    """Earliest key of four consecutive nodes, and a node that has it."""
     k0 = key[U(first)]
     k1 = key[U(first + 1)]
     k2 = key[U(first + 2)]
@@ -77,7 +81,7 @@ def first_of_four(key, first):
 
 @inline
 def first_of_group(key, group, width):
-    """Earliest key of a group of eight nodes, and a node that has it; width: nodes of its level, which may be four."""
+    """Earliest key of a group of eight nodes, or of four on a level of width 4, and a node that has it."""
     k0, n0 = first_of_four(key, group)
     if width == 4:
         return k0, n0
@@ -85,10 +89,45 @@ def first_of_group(key, group, width):
     return min(k0, k4), (n4 if k4 < k0 else n0)
 
 
+@noinline
+def comes_first(predictions, ids, i, j):
+    """Whether disc i's next event comes before that of disc j at the same time."""
+    a, b = event_ids(predictions[U(i)], ids, i)
+    c, d = event_ids(predictions[U(j)], ids, j)
+    return precedes(a, b, c, d)
+
+
 @inline
-def schedule(tree, predictions, ids, i):
-    """Enter the next event of disc i, of which the tree has none, and climb as far as it is the earliest."""
-    _, key, winner, start, settled = tree
+def resolve_group(tree, predictions, ids, group, parent):
+    """Make the winner of a group the first, in the order of ids, of those with the earliest time."""
+    first = np.int64(-1)
+    for node in range(group, min(group + 8, parent)):
+        if tree.time[U(node)] == tree.time[U(parent)]:
+            i = np.int64(tree.winner[U(node)])
+            if first < 0 or comes_first(predictions, ids, i, first):
+                first = i
+    tree.winner[U(parent)] = first
+
+
+@noinline
+def resolve_path(tree, predictions, ids, i, time):
+    """Resolve ties in the groups of disc i on all levels whose earliest event is at a time."""
+    group = np.int64(i)
+    base = 0
+    for level in range(1, tree.start.shape[0]):
+        offset = (group - base) >> 3
+        group = base + (offset << 3)
+        base = tree.start[U(level)]
+        parent = base + offset
+        if tree.time[U(parent)] == time:
+            resolve_group(tree, predictions, ids, group, parent)
+        group = parent
+
+
+@inline
+def push(tree, predictions, ids, i):
+    """Insert the next event of disc i, which has none in the tree, and climb while it is the earliest."""
+    _, key, winner, start, tie_time = tree
     prediction = predictions[U(i)]
     time = min(prediction.contact, prediction.crossing)
     tree.time[U(i)] = time
@@ -100,7 +139,7 @@ def schedule(tree, predictions, ids, i):
         base = start[U(level)]
         node = base + offset
         if own >= key[U(node)]:
-            is_later = own > key[U(node)] or time != settled[0]
+            is_later = own > key[U(node)] or time != tie_time[0]
             if is_later or not comes_first(predictions, ids, np.int64(i), np.int64(winner[U(node)])):
                 return
         key[U(node)] = own
@@ -108,9 +147,9 @@ def schedule(tree, predictions, ids, i):
 
 
 @inline
-def withdraw(tree, predictions, ids, i):
-    """Remove disc i's event from the tree, and climb as far as it was the earliest."""
-    times, key, winner, start, settled = tree
+def remove(tree, predictions, ids, i):
+    """Remove disc i's event from the tree, and climb while it was the earliest."""
+    times, key, winner, start, tie_time = tree
     removed = times[U(i)]
     key[U(i)] = NEVER_KEY + i
     group = np.int64(i)
@@ -127,15 +166,15 @@ def withdraw(tree, predictions, ids, i):
         key[U(parent)] = earliest
         winner[U(parent)] = winner[U(best)]
         group = parent
-    if removed == settled[0]:
-        settle_path(tree, predictions, ids, i, removed)
+    if removed == tie_time[0]:
+        resolve_path(tree, predictions, ids, i, removed)
 
 
 @inline
-def reschedule(tree, predictions, ids, i):
-    """Enter the next event of disc i in place of the one in the tree."""
-    withdraw(tree, predictions, ids, i)
-    schedule(tree, predictions, ids, i)
+def update(tree, predictions, ids, i):
+    """Replace the event of disc i in the tree by its next event."""
+    remove(tree, predictions, ids, i)
+    push(tree, predictions, ids, i)
 
 
 @inline
@@ -152,49 +191,49 @@ def next_time(tree):
 
 @inline
 def next_disc(tree):
-    """Index of the disc with the next event, or with one of the next events that are simultaneous."""
+    """Index of the disc with the next event, or with one of several simultaneous next events."""
     return np.int64(tree.winner[U(root_of(tree))])
 
 
 @inline
-def has_another(tree, predictions, i, j, time):
-    """Whether disc j has another event at the time at which disc i is to meet it; often j foretells the same one."""
+def has_other_event(tree, predictions, i, j, time):
+    """Whether disc j has, at the time of its collision with disc i, an event other than this collision."""
     prediction = predictions[U(j)]
     same = (prediction.partner == i) & (prediction.contact == time) & (prediction.crossing > time)
     return (tree.time[U(j)] == time) & (not same)
 
 
 @inline
-def is_settled(tree, time):
-    """Whether an event at a time, which was withdrawn, is the first of those that are simultaneous.
+def is_resolved(tree, time):
+    """Whether a removed event at a time was the first of the simultaneous ones.
 
-    It is if no other one is left in the tree, or if the tree is settled for the time.
+    It was if no other one is left in the tree, or if ties at this time are resolved.
     """
-    return (next_time(tree) != time) | (tree.settled[0] == time)
+    return (next_time(tree) != time) | (tree.tie_time[0] == time)
 
 
 @noinline
-def settle(tree, predictions, ids, i, j):
-    """Put back the next events of disc i and, unless it is -1, of disc j, and settle the tree for their time.
+def resolve_ties(tree, predictions, ids, i, j):
+    """Put back the next events of disc i and, unless it is -1, of disc j, and resolve all ties at their time.
 
-    There are hardly ever such events, so it may look through an eighth of the tree for them.
+    Ties are rare, so a search through an eighth of the tree is fast enough.
     """
-    schedule(tree, predictions, ids, i)
+    push(tree, predictions, ids, i)
     if j >= 0:
-        schedule(tree, predictions, ids, j)
+        push(tree, predictions, ids, j)
     time = next_time(tree)
-    tree.settled[0] = time
+    tree.tie_time[0] = time
     parents = tree.start[1]
     for offset in range(parents >> 3):
         if tree.time[U(parents + offset)] == time:
             for leaf in range(offset << 3, (offset << 3) + 8):
                 if tree.time[U(leaf)] == time:
-                    settle_path(tree, predictions, ids, leaf, time)
+                    resolve_path(tree, predictions, ids, leaf, time)
 
 
 @njit
-def plant(tree, predictions, record, low, high):
-    """Make the tree that of the discs in rows `low` to before `high` of the cells, and of no other."""
+def build(tree, predictions, record, low, high):
+    """Build the tree of the discs in the rows of cells from `low` to before `high`, and of no others."""
     clear(tree)
     for i in range(record.shape[0]):
         if low <= record[U(i)].row < high:

@@ -6,7 +6,7 @@ import numpy as np
 
 from idealgas.engine.event_driven.cells import Cells
 from idealgas.engine.event_driven.prediction import PREDICTION
-from idealgas.engine.event_driven.prefetch import make_lookahead
+from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
 from idealgas.jit import aligned, inline
@@ -27,7 +27,7 @@ class EventDrivenState(NamedTuple):
         candidates: i4 scratch memory for indices of discs that may be in contact.
         images: (…) IMAGE scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
-        lookahead: (3,) i8, see `make_lookahead`; None for a gas that the caches hold.
+        pipeline: (3,) i8, see `make_pipeline`; None for a gas that the caches hold.
         unpredicted: (1,) bool, whether an epoch begins of which nothing is predicted yet.
     """
 
@@ -37,7 +37,7 @@ class EventDrivenState(NamedTuple):
     candidates: np.ndarray
     images: np.ndarray | None
     walls: WallCells | None
-    lookahead: np.ndarray | None
+    pipeline: np.ndarray | None
     unpredicted: np.ndarray
 
 
@@ -53,7 +53,7 @@ def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
         aligned(room if effects.periodic else n + 16, np.dtype("i4")),
         aligned(room, IMAGE) if effects.periodic else None,
         None,
-        make_lookahead(n, len(tree.start)),
+        make_pipeline(n, len(tree.start)),
         np.ones(1, np.bool_),
     )
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from idealgas.engine.event_driven.kernel import advance_events
-from idealgas.engine.event_driven.prefetch import make_lookahead
-from idealgas.engine.event_driven.scheduler import make_tree, plant
+from idealgas.engine.event_driven.prefetch import make_pipeline
+from idealgas.engine.event_driven.scheduler import build, make_tree
 from idealgas.engine.event_driven.state import EventDrivenState
 from idealgas.engine.parallel.autotuner import Race
 from idealgas.engine.parallel.merge import Pending, TiedRowsError, order_of
@@ -116,7 +116,7 @@ class Team:
             crew.tuning.lead * cells.height / fastest,
             crew.tuning.delay,
         )
-        self._planted = True
+        self._built = True
         self._pending: Pending | None = None
         self._arrives = False
         self._done = 0.0  # local time up to which all has happened, after the last event too
@@ -179,9 +179,9 @@ class Team:
     ) -> tuple[int, bool]:
         """Process events on this thread only."""
         record, ids, _ = self._discs
-        if not self._planted:
-            _plant(self._state, record, 0, self._state.cells.rows)
-            self._planted = True
+        if not self._built:
+            _build(self._state, record, 0, self._state.cells.rows)
+            self._built = True
         before = counters.copy()
         rows, reached = advance_events(
             record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None
@@ -266,7 +266,7 @@ class Team:
             except Exception:  # raised by a kernel: one thread will come to it, and raise it again
                 give_up()
 
-        self._planted = False
+        self._built = False
         self._crew.run(work, len(self._borders), give_up)
         for border in self._borders:
             for name in ("posts", "set_back", "while_posting"):
@@ -304,7 +304,7 @@ class _Strip:
         self._state = state._replace(
             tree=make_tree(n),
             candidates=aligned(len(state.candidates), state.candidates.dtype),
-            lookahead=make_lookahead(n, len(state.tree.start)),
+            pipeline=make_pipeline(n, len(state.tree.start)),
             images=None if state.images is None else aligned(len(state.images), state.images.dtype),
             unpredicted=np.zeros(1, np.bool_),
         )
@@ -322,7 +322,7 @@ class _Strip:
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self._effects)
         self._state.unpredicted[0] = unpredicted
-        _plant(self._state, record, border.low, border.high)
+        _build(self._state, record, border.low, border.high)
         self.filled, _ = advance_events(
             record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
         )
@@ -334,9 +334,9 @@ class _Strip:
         add_sums_of(effects, self._effects)
 
 
-def _plant(state: EventDrivenState, record: Any, low: int, high: int) -> None:
-    """Make the schedule that of the discs in some rows, see `plant`; empty before anything is predicted."""
-    plant(state.tree, state.prediction, record, low, low if state.unpredicted[0] else high)
+def _build(state: EventDrivenState, record: Any, low: int, high: int) -> None:
+    """Make the schedule that of the discs in some rows, see `build`; empty before anything is predicted."""
+    build(state.tree, state.prediction, record, low, low if state.unpredicted[0] else high)
 
 
 def _longer(column: np.ndarray | None, rows: int) -> np.ndarray | None:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.engine.event_driven.scheduler import UNSETTLED, reschedule, withdraw
+from idealgas.engine.event_driven.scheduler import NO_TIE, remove, update
 from idealgas.engine.parallel.atomics import LINE, add, exchange, load, store, wait
 from idealgas.jit import inline, noinline
 
@@ -156,8 +156,8 @@ def absorb(ids, state, until, b):
         if border < 0 or load(b.words, word) < 0:
             continue
         i = load(b.words, word)
-        state.tree.settled[0] = UNSETTLED  # time may go back
-        reschedule(state.tree, state.prediction, ids, i)
+        state.tree.tie_time[0] = NO_TIE  # time may go back
+        update(state.tree, state.prediction, ids, i)
         time = state.tree.time[U(i)]
         own.late_inside = own.inside
         own.late_at_border = own.at_border
@@ -176,7 +176,7 @@ def absorb(ids, state, until, b):
 def hand_over(ids, state, i, b):
     """Post disc i to the neighbour beyond the border that is held, and wait until it is in that schedule."""
     own = b.own[0]
-    withdraw(state.tree, state.prediction, ids, i)
+    remove(state.tree, state.prediction, ids, i)
     own.posts += 1
     word = mail_word(b, b.below, 0) if own.held == LOW else mail_word(b, b.above, 1)
     if own.held != LOW and own.held != HIGH:

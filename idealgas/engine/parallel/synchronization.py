@@ -9,7 +9,7 @@ one thread. The argument in full: engine/README.md.
 import numpy as np
 
 from idealgas.engine.event_driven.prediction import contact_is_next
-from idealgas.engine.event_driven.scheduler import next_disc, next_time, schedule
+from idealgas.engine.event_driven.scheduler import next_disc, next_time, push
 from idealgas.engine.parallel.atomics import add, load, pause, store, wait
 from idealgas.engine.parallel.subdomain import (
     ABANDONED,
@@ -56,12 +56,12 @@ def next_turn(record, ids, state, until, border):
 
 
 @inline
-def enter_in_schedule(record, ids, state, i, border):
+def push_to_owner(record, ids, state, i, border):
     """Enter disc i's next event in the schedule of the thread that owns the disc."""
     if border is not None and not border.low <= record[U(i)].row < border.high:
         hand_over(ids, state, i, border)
     else:
-        schedule(state.tree, state.prediction, ids, i)
+        push(state.tree, state.prediction, ids, i)
 
 
 @inline

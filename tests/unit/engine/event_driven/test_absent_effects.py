@@ -13,7 +13,7 @@ from idealgas.scene import EFFECTS
 pytestmark = pytest.mark.slow
 
 MARKERS = {
-    "gravity": {"crossings.accelerated_crossing", "fall.time_to_plane", "wall.accelerated_body_delay"},
+    "gravity": {"crossings.accelerated_crossing", "ballistic.time_to_plane", "wall.accelerated_body_delay"},
     "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},

@@ -7,7 +7,7 @@ from thread_samples import compare, lattice, tall_scene
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
-from idealgas.engine.event_driven.prefetch import FROM, make_lookahead
+from idealgas.engine.event_driven.prefetch import FROM, make_pipeline
 from idealgas.engine.event_driven.scheduler import make_tree
 from idealgas.engine.simulation import Stop
 
@@ -22,15 +22,15 @@ def always(monkeypatch):
 
 def test_only_large_gases_look_ahead(monkeypatch):
     monkeypatch.setattr("idealgas.engine.event_driven.prefetch.FROM", FROM)
-    assert make_lookahead(FROM - 1, 6) is None
-    assert make_lookahead(FROM, 6) is not None
+    assert make_pipeline(FROM - 1, 6) is None
+    assert make_pipeline(FROM, 6) is not None
 
 
 @pytest.mark.parametrize(
     ("n", "level"), [(4, 0), (12, 0), (7000, 3), (10_000, 4), (32_768, 4), (32_769, 4), (10**6, 5)]
 )
 def test_parts_are_eight_or_more_unless_memory_is_near(n, level):
-    assert make_lookahead(n, len(make_tree(n).start))[2] == level
+    assert make_pipeline(n, len(make_tree(n).start))[2] == level
     parts = -(-n // 8**level)
     assert parts <= 64
     assert parts >= 8 or n <= 32_768

@@ -7,16 +7,16 @@ from hypothesis import strategies as st
 
 from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX
 from idealgas.engine.event_driven.scheduler import (
-    UNSETTLED,
+    NO_TIE,
     clear,
-    has_another,
-    is_settled,
+    has_other_event,
+    is_resolved,
     make_tree,
     next_disc,
-    reschedule,
-    schedule,
-    settle,
-    withdraw,
+    push,
+    remove,
+    resolve_ties,
+    update,
 )
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import aligned, njit
@@ -28,16 +28,16 @@ pytestmark = pytest.mark.interpreted
 def enter(tree, predictions, ids, i):
     """The next disc after disc i's event was entered in place of another, found as the kernel and `absorb` do it."""
     before = tree.time[next_disc(tree)]
-    reschedule(tree, predictions, ids, i)
+    update(tree, predictions, ids, i)
     first = next_disc(tree)
     time = tree.time[first]
     if time < before:
-        tree.settled[0] = UNSETTLED
-    withdraw(tree, predictions, ids, first)
-    if is_settled(tree, time):
-        schedule(tree, predictions, ids, first)
+        tree.tie_time[0] = NO_TIE
+    remove(tree, predictions, ids, first)
+    if is_resolved(tree, time):
+        push(tree, predictions, ids, first)
     else:
-        settle(tree, predictions, ids, first, -1)
+        resolve_ties(tree, predictions, ids, first, -1)
     return next_disc(tree)
 
 
@@ -101,7 +101,7 @@ def test_the_root_is_the_next_event(case):
 
 @njit
 def ask(tree, predictions, i, j, time):
-    return has_another(tree, predictions, i, j, time)
+    return has_other_event(tree, predictions, i, j, time)
 
 
 @pytest.mark.parametrize(
