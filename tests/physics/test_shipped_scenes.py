@@ -123,7 +123,7 @@ def test_atmosphere(run):
     """The barometric law, and the same temperature at all heights; heights by Kolmogorov and Smirnov, p > 0.001."""
     log = run("atmosphere", "run.until=800")
     found = profile(log, bins=12, start=50)
-    assert found.axis == 1
+    assert found.axis == "y"
     air = found.species[0]
     for density, warmth in zip(air.density[:6], air.temperature[:6], strict=True):
         agrees(density, 0.06)

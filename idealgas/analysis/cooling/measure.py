@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -80,17 +80,6 @@ class Cooling(Result):
     first_scatter: Estimate
     last_scatter: Estimate
     last_flow: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        own = {name: value for name, value in vars(self).items() if name not in ("premises", "origin")}
-        return super().as_dict() | {name: _plain(value) for name, value in own.items()}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return value.as_dict() if isinstance(value, Estimate) else value
 
 
 def cooling(

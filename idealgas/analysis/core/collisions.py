@@ -1,7 +1,7 @@
 """Collision rates and mean free paths of each species of discs, measured and by kinetic theory."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,10 +25,6 @@ class CollisionRate:
     other: str
     rate: Estimate
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {"species": self.species, "other": self.other, "rate": self.rate.as_dict()}
-
 
 @dataclass(frozen=True)
 class FreePath:
@@ -42,11 +38,6 @@ class FreePath:
     path: Estimate
     time: Estimate
     speed: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        values = {"path": self.path.as_dict(), "time": self.time.as_dict(), "speed": self.speed.as_dict()}
-        return {"species": self.species, **values}
 
 
 class ExpectedRates(NamedTuple):

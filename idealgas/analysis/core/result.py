@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from idealgas.analysis.core.fields import OMITTED, as_dict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,12 +42,12 @@ class Result:
     """
 
     premises: tuple[str, ...] = ()
-    origin: Origin | None = None
-    title: str = ""
+    origin: Annotated[Origin | None, OMITTED] = None
+    title: Annotated[str, OMITTED] = ""
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {"premises": list(self.premises)}
+        return as_dict(self)
 
     def tables(self) -> "list[Table]":
         """Tables of the result, those that the command of the analysis prints."""

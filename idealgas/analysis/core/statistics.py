@@ -6,13 +6,14 @@ decorrelated samples are, come from autoregressive models (`autoregression`).
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 from scipy import special
 
 from idealgas.analysis.core.autoregression import changes, error_of_mean, inefficiency
+from idealgas.analysis.core.fields import Key, as_dict, reported
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 
@@ -47,6 +48,7 @@ class Estimate:
     theory_error: float = 0.0
 
     @property
+    @reported
     def deviation(self) -> float | None:
         """Deviation value - theory in units of √(standard_error² + theory_error²).
 
@@ -81,8 +83,7 @@ class Estimate:
 
     def as_dict(self) -> dict[str, float | None]:
         """Fields and deviation by name, ready for JSON; None for numbers that are not finite."""
-        fields = asdict(self) | {"deviation": self.deviation}
-        return {name: value if value is not None and math.isfinite(value) else None for name, value in fields.items()}
+        return as_dict(self)
 
 
 @dataclass(frozen=True)
@@ -95,11 +96,11 @@ class Verdict:
 
     agrees: bool | None
     judged: tuple[str, ...] = ()
-    why_not: str = ""
+    why_not: Annotated[str | None, Key("no_theory")] = None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {"agrees": self.agrees, "judged": self.judged, "no_theory": self.why_not or None}
+        return as_dict(self)
 
     def __str__(self) -> str:
         """One sentence for people."""
@@ -109,7 +110,7 @@ class Verdict:
         return f"Measurement and theory {verdict} within {TOLERANCE:g} standard errors in {'; '.join(self.judged)}."
 
 
-def judge(found: Iterable[tuple[str, Estimate]], why_not: str = "") -> Verdict:
+def judge(found: Iterable[tuple[str, Estimate]], why_not: str | None = None) -> Verdict:
     """Check that every estimate with a theory agrees with it within TOLERANCE.
 
     Args:

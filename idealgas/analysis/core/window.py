@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import known_ensemble
 from idealgas.analysis.core.equipartition import why_not_shared
+from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.steadiness import FEWEST, Course, forgetting, steady_from
 from idealgas.analysis.core.stream import Tally, stream
@@ -30,16 +32,18 @@ class Window:
     by the detection of equilibrium.
     """
 
-    edges: np.ndarray
-    first: int
-    detected: bool
+    edges: Annotated[np.ndarray, OMITTED]
+    first: Annotated[int, OMITTED]
+    detected: Annotated[bool, Key("equilibration_detected")]
 
     @property
+    @reported
     def start(self) -> float:
         """Start of the window, time."""
         return float(self.edges[self.first])
 
     @property
+    @reported
     def end(self) -> float:
         """End of the window, time."""
         return float(self.edges[-1])
@@ -58,9 +62,9 @@ class Window:
         """Sums (B, …) of a tally for the blocks of the window, divided by the width of a block: rates per time."""
         return sums[self.first :] / self.width
 
-    def as_dict(self) -> dict[str, float | bool]:
+    def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
-        return {"start": self.start, "end": self.end, "equilibration_detected": self.detected}
+        return as_dict(self)
 
 
 def measure(

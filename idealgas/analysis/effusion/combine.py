@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
+from idealgas.analysis.core.fields import INLINE, OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.effusion.measure import Effusion
@@ -17,12 +18,8 @@ class Effusions(Result):
     groups: runs of each group, by its name. together: mean flux over density of each group, length/time.
     """
 
-    groups: dict[str, tuple[Effusion, ...]]
-    together: dict[str, Estimate]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {name: estimate.as_dict() for name, estimate in self.together.items()}
+    groups: Annotated[dict[str, tuple[Effusion, ...]], OMITTED]
+    together: Annotated[dict[str, Estimate], INLINE]
 
 
 def combine_effusion(results: Sequence[Effusion]) -> Effusions:

@@ -3,13 +3,14 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.window import span
@@ -51,7 +52,7 @@ class Effusion(Result):
     None for a slit wider than a mean free path, and for a chamber that is denser than DENSEST.
     """
 
-    name: str
+    name: Annotated[str, OMITTED]
     density: float
     temperature: float
     time: np.ndarray
@@ -66,17 +67,6 @@ class Effusion(Result):
         expected = None if found["expected"] is None else np.array(found["expected"])
         speed = Estimate.from_dict(found["speed"])
         return cls(name, found["density"], found["temperature"], time, beyond, expected, speed)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "density": self.density,
-            "temperature": self.temperature,
-            "speed": self.speed.as_dict(),
-            "time": self.time.tolist(),
-            "beyond": self.beyond.tolist(),
-            "expected": None if self.expected is None else self.expected.tolist(),
-        }
 
 
 def effusion(

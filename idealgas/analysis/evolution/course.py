@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.stats import chi2
 
+from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.wall_pressure import WallGauge
@@ -48,8 +49,8 @@ class PressureCourse:
     edges: np.ndarray
     area: np.ndarray
     pressure: dict[str, np.ndarray]
-    error: dict[str, np.ndarray]
-    shown: tuple[str, ...]
+    error: Annotated[dict[str, np.ndarray], Key("standard_error")]
+    shown: Annotated[tuple[str, ...], OMITTED]
     lines: StateLines | None
     track: tuple[np.ndarray, np.ndarray] | None
 
@@ -57,17 +58,6 @@ class PressureCourse:
     def middles(self) -> np.ndarray:
         """Times (B,) of the middles of the bins."""
         return (self.edges[1:] + self.edges[:-1]) / 2
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON; None as the error of a wall that was not hit."""
-        return {
-            "edges": self.edges.tolist(),
-            "area": self.area.tolist(),
-            "pressure": {name: values.tolist() for name, values in self.pressure.items()},
-            "standard_error": {name: list(map(_finite, values.tolist())) for name, values in self.error.items()},
-            "lines": self.lines.as_dict() if self.lines else None,
-            "track": [values.tolist() for values in self.track] if self.track else None,
-        }
 
 
 def _finite(value: float) -> float | None:

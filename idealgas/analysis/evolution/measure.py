@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import drift, energy_of_drift
+from idealgas.analysis.core.fields import OPTIONAL, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.steadiness import steady_from
@@ -40,13 +41,13 @@ class Evolution(Result):
 
     time: np.ndarray
     temperature: np.ndarray
-    spin: np.ndarray | None
+    spin: Annotated[np.ndarray | None, OPTIONAL]
     beyond: dict[str, np.ndarray]
     law: Law | None
     samples: np.ndarray
     parts: dict[str, np.ndarray]
     given: dict[str, np.ndarray]
-    piston: np.ndarray | None
+    piston: Annotated[np.ndarray | None, OPTIONAL]
     balance: np.ndarray
     dissipated: dict[str, np.ndarray]
     pressure: PressureCourse | None = None
@@ -59,20 +60,9 @@ class Evolution(Result):
             return self.pressure.track
         return None if self.piston is None else (self.samples, self.piston)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        lists = {name: values.tolist() for name, values in vars(self).items() if isinstance(values, np.ndarray)}
-        tables = {name: {key: v.tolist() for key, v in getattr(self, name).items()} for name in TABLES}
-        law = None
-        if self.law is not None:
-            at_rest = {"spin": self.law.spin, "piston": self.law.piston}
-            law = {"text": self.law.text, "temperature": self.law.temperature.tolist(), **at_rest}
-        pressure = self.pressure.as_dict() if self.pressure else None
-        rest = self.rest.as_dict() if self.rest else None
-        others = {"law": law, "end": self._end(), "pressure": pressure, "rest": rest}
-        return super().as_dict() | lists | tables | others
-
-    def _end(self) -> dict[str, float]:
+    @property
+    @reported
+    def end(self) -> dict[str, float]:
         """Last value of each series, by name."""
         series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
@@ -82,8 +72,6 @@ HEAT_BATH = "the heat bath"
 
 ROUNDING = 1e-12
 """Energy that collisions lose, relative to the largest there is, that is rounding."""
-
-TABLES = ("beyond", "parts", "given", "dissipated")
 
 
 def evolution(

@@ -1,12 +1,13 @@
 """Temperature of a gas against time by theory."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_momentum, known_ensemble
+from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.log import Log
 
@@ -39,9 +40,9 @@ class Law:
     temperature: np.ndarray
     spin: float | None = None
     piston: float | None = None
-    pressure: float | None = None
-    premises: tuple[str, ...] = ()
-    piston_error: float = 0.0
+    pressure: Annotated[float | None, OMITTED] = None
+    premises: Annotated[tuple[str, ...], OMITTED] = ()
+    piston_error: Annotated[float, OMITTED] = 0.0
 
 
 @dataclass(frozen=True)
@@ -55,11 +56,6 @@ class StateLines:
     area: np.ndarray
     isotherm: np.ndarray
     adiabat: np.ndarray | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        adiabat = None if self.adiabat is None else self.adiabat.tolist()
-        return {"area": self.area.tolist(), "isotherm": self.isotherm.tolist(), "adiabat": adiabat}
 
 
 def expected_course(log: Log, time: np.ndarray) -> Law | None:

@@ -4,10 +4,11 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
+from idealgas.analysis.core.fields import OPTIONAL, Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, mean_theory
 from idealgas.analysis.heat_capacity.measure import BATH, CLOSED, PISTON, ROUGH, Measured
@@ -26,19 +27,14 @@ ROUTES = {
 class Route:
     """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one way of measuring.
 
-    name: of the route. kind: of gas. gas: its number of discs, box and effects; empty if the logs hold one gas of this
+    name: of the route. kind: of gas. gas: its number of discs, box and effects; None if the logs hold one gas of this
     kind.
     """
 
-    name: str
+    name: Annotated[str, Key("route")]
     kind: str
     value: Estimate
-    gas: str = ""
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        gas = {"gas": self.gas} if self.gas else {}
-        return {"route": self.name, "kind": self.kind, **gas, "value": self.value.as_dict()}
+    gas: Annotated[str | None, OPTIONAL] = None
 
 
 @dataclass(frozen=True)
@@ -52,14 +48,6 @@ class HeatCapacity(Result):
     routes: tuple[Route, ...]
     refused: dict[str, str]
     logs: tuple[Measured, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "routes": [route.as_dict() for route in self.routes],
-            "refused": self.refused,
-            "logs": [measured.as_dict() for measured in self.logs],
-        }
 
 
 def combine_heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
@@ -101,10 +89,10 @@ def _apart(groups: Groups) -> Iterator[str]:
 
 def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:
     if (slope := _slope(members)) is not None:
-        yield Route("dE/dT", kind, slope, gas)
+        yield Route("dE/dT", kind, slope, gas or None)
     for name in dict.fromkeys(name for m in members for name in m.routes):
         values = [m.routes[name] for m in members if name in m.routes]
-        yield Route(name, kind, mean_of_replicates(values), gas)
+        yield Route(name, kind, mean_of_replicates(values), gas or None)
 
 
 def _slope(members: Sequence[Measured]) -> Estimate | None:
@@ -135,7 +123,7 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
 def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:
     """Ratio γ = C_P/C_A: C_A is measured in a log without the piston if there is one, else C_P - C_A is from theory."""
     for route in routes:
-        excess = next((m.excess for m in groups[route.kind, route.gas] if m.excess), None)
+        excess = next((m.excess for m in groups[route.kind, route.gas or ""] if m.excess), None)
         c_p = route.value
         if excess is None or c_p.theory is None:
             continue

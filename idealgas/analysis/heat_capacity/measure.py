@@ -8,12 +8,13 @@ the energy.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.equilibrium import degrees_of_freedom, energy_of_drift
+from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.heat_capacity.energy_series import EnergySeries, energy_series
@@ -54,7 +55,7 @@ class Measured(Result):
     path: str
     kind: str
     number: int
-    energy: Estimate
+    energy: Annotated[Estimate, Key("energy_per_disc")]
     temperature: Estimate
     thermometer: str
     routes: dict[str, Estimate]
@@ -77,21 +78,6 @@ class Measured(Result):
             found["excess"],
             found.get("theory_error", 0.0),  # results of before have none
         )
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "path": self.path,
-            "kind": self.kind,
-            "number": self.number,
-            "energy_per_disc": self.energy.as_dict(),
-            "temperature": self.temperature.as_dict(),
-            "thermometer": self.thermometer,
-            "routes": {name: route.as_dict() for name, route in self.routes.items()},
-            "theory": self.theory,
-            "excess": self.excess,
-            "theory_error": self.theory_error,
-        }
 
 
 def heat_capacity(

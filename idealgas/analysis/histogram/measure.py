@@ -7,7 +7,7 @@ every n-th interval.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from scipy import stats
@@ -15,6 +15,7 @@ from scipy import stats
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.result import Result
@@ -46,8 +47,8 @@ class Test:
     unit). p_value: probability of at least this distance by chance.
     """
 
-    law_name: str
-    law: distributions.Law
+    law_name: Annotated[str, Key("law")]
+    law: Annotated[distributions.Law, OMITTED]
     distance: float
     p_value: float
 
@@ -71,44 +72,26 @@ class Distribution:
     correlation_time: float | None
     tests: tuple[Test, ...]
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
+    @property
+    @reported
+    def laws(self) -> dict[str, np.ndarray]:
+        """Probability density (bins,) by each law in the middle of the bins, 1/unit."""
         middle = (self.edges[1:] + self.edges[:-1]) / 2
-        return {
-            "name": self.name,
-            "mean": self.mean.as_dict(),
-            "samples": self.samples,
-            "correlation_time": self.correlation_time,
-            "tests": [{"law": t.law_name, "distance": t.distance, "p_value": t.p_value} for t in self.tests],
-            "edges": self.edges.tolist(),
-            "density": self.density.tolist(),
-            "error": self.error.tolist(),
-            "laws": {test.law_name: test.law.pdf(middle).tolist() for test in self.tests},
-        }
+        return {test.law_name: test.law.pdf(middle) for test in self.tests}
 
 
 @dataclass(frozen=True)
 class Histogram(Result):
     """Distributions of one quantity (with its unit) in a window of time, one for each species.
 
-    no_law: why no law holds, as part of a sentence; empty if one does.
+    no_law: why no law holds, as part of a sentence; None if one does.
     """
 
     quantity: str
     unit: str
     window: Window
     distributions: tuple[Distribution, ...]
-    no_law: str = ""
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "quantity": self.quantity,
-            "unit": self.unit,
-            "window": self.window.as_dict(),
-            "no_law": self.no_law or None,
-            "distributions": [distribution.as_dict() for distribution in self.distributions],
-        }
+    no_law: str | None = None
 
 
 Progress = Callable[[int, int], None] | None
@@ -142,7 +125,7 @@ def histogram(
         for each in found
         if each.tests and each.samples < FEWEST_SAMPLES
     ]
-    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law, premises=tuple(few))
+    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law or None, premises=tuple(few))
 
 
 Found = tuple[Window, list[Distribution], str]

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -56,19 +55,6 @@ class Order(Result):
     correlation_error: np.ndarray
     structure: Structure | None
     compressibility: float | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        estimates = {name: getattr(self, name).as_dict() for name in ("local", "whole", "square", "hexagons")}
-        series = ("time", "course", "distance", "correlation", "correlation_error")
-        return super().as_dict() | {
-            "window": self.window.as_dict(),
-            "frames": self.frames,
-            **estimates,
-            **{name: getattr(self, name).tolist() for name in series},
-            "structure": None if self.structure is None else self.structure.as_dict(),
-            "compressibility": self.compressibility,
-        }
 
 
 def order(

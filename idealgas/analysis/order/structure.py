@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import Estimate, mean
 
 REACH = 15.0
@@ -26,19 +27,14 @@ class Structure:
     not choose what is measured: the square of the positional order, 1 in a lattice at rest.
     """
 
-    kx: np.ndarray
-    ky: np.ndarray
-    on_lattice: np.ndarray
+    kx: Annotated[np.ndarray, OMITTED]
+    ky: Annotated[np.ndarray, OMITTED]
+    on_lattice: Annotated[np.ndarray, OMITTED]
     k: np.ndarray
     value: np.ndarray
     error: np.ndarray
     peak: np.ndarray
-    positional: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        series = {name: getattr(self, name).tolist() for name in ("k", "value", "error", "peak")}
-        return series | {"positional_order_squared": self.positional.as_dict()}
+    positional: Annotated[Estimate, Key("positional_order_squared")]
 
 
 class WaveVectors:

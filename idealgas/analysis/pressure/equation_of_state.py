@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
@@ -43,33 +44,19 @@ class State:
     compressibility: mean of Z over the runs; its theory is that of the same number of discs in the same box. infinite:
     up to φ = 0.62 Z extrapolated to an infinite gas, by the ratio of the theories, beside the resummed virial series;
     above, and where the ratio is not known, Z as it is, beside published simulations or, of a crystal, free-volume
-    theory, or nothing. source: which theory this is; empty without one. virial: virial series to B10. henderson:
+    theory, or nothing. source: which theory this is; None without one. virial: virial series to B10. henderson:
     Henderson (1975); both None above φ = 0.62.
     """
 
     packing_fraction: float
     number: int
-    kind: str
+    kind: Annotated[str, Key("gas")]
     runs: int
     compressibility: Estimate
     infinite: Estimate
-    source: str
-    virial: float | None
+    source: Annotated[str | None, Key("theory")]
+    virial: Annotated[float | None, Key("virial_series_to_B10")]
     henderson: float | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "packing_fraction": self.packing_fraction,
-            "number": self.number,
-            "gas": self.kind,
-            "runs": self.runs,
-            "compressibility": self.compressibility.as_dict(),
-            "infinite": self.infinite.as_dict(),
-            "theory": self.source or None,
-            "virial_series_to_B10": self.virial,
-            "henderson": self.henderson,
-        }
 
 
 @dataclass(frozen=True)
@@ -80,8 +67,8 @@ class EquationOfState(Result):
     """
 
     states: tuple[State, ...]
-    b2: Estimate | None
-    b3: Estimate | None
+    b2: Annotated[Estimate | None, Key("B2")]
+    b3: Annotated[Estimate | None, Key("B3")]
 
     def check(self) -> Verdict:
         """Check that Z agrees with theory in every state that has one.
@@ -99,14 +86,6 @@ class EquationOfState(Result):
         """Kinds of gas of the states, in words."""
         return tuple(dict.fromkeys(state.kind for state in self.states))
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "states": [state.as_dict() for state in self.states],
-            "B2": self.b2.as_dict() if self.b2 else None,
-            "B3": self.b3.as_dict() if self.b3 else None,
-        }
-
 
 def sample_of(measured: Pressure) -> Sample:
     """Compressibility factor of a run from the virial of its pair collisions.
@@ -115,7 +94,7 @@ def sample_of(measured: Pressure) -> Sample:
         UserError: if the gas has no equation of state.
     """
     if not measured.routes:
-        raise UserError(measured.no_theory)
+        raise UserError(measured.no_theory or "")
     pairs = next(route.compressibility for route in measured.routes if route.name == PAIRS)
     return Sample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
 
@@ -147,7 +126,7 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
 def _state(kind: str, runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
     found, fluid = mean_of_replicates([run.compressibility for run in runs]), phi <= hard_discs.HIGHEST
-    infinite, source = found, "published simulations" if found.theory is not None else ""
+    infinite, source = found, "published simulations" if found.theory is not None else None
     if fluid and found.theory is not None:
         infinite, source = found.times(float(hard_discs.compressibility(phi)) / found.theory), RESUMMED
     elif SOLID <= phi < hard_discs.CLOSE_PACKING and found.theory is None:

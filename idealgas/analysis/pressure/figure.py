@@ -51,7 +51,7 @@ def _of_log(result: Pressure) -> Figure:
     ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     name_rows(ax, [route.name for route in routes])
     low, high = ax.get_xlim()
-    for (name, theory), style in zip(result.theories.items(), cycle(LINES), strict=False):
+    for (name, theory), style in zip(result.known_theories.items(), cycle(LINES), strict=False):
         if low < theory.value < high and theory.value not in (z for z, _ in known):
             ax.axvline(theory.value, color=GREY, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
     ax.set_xlabel("Z = PA/NT (no unit)")

@@ -9,7 +9,7 @@ discs one radius inside the box.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from idealgas.analysis.core.collisions import (
 )
 from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.equilibrium import known_ensemble
+from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.moving_wall import moving_wall
@@ -51,14 +52,9 @@ WALLS, PAIRS = "walls, virial", "pairs, virial"
 class Route:
     """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring."""
 
-    name: str
+    name: Annotated[str, Key("route")]
     pressure: Estimate
     compressibility: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        values = {"pressure": self.pressure.as_dict(), "compressibility": self.compressibility.as_dict()}
-        return {"route": self.name, **values}
 
 
 @dataclass(frozen=True)
@@ -66,11 +62,12 @@ class Pressure(Result):
     """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
 
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
-    packing_fraction: no unit. routes: pressure and Z by each way of measuring. theories: Z by the name of each theory
-    that applies. collision_rates: of each pair of species. free_paths: of each species; empty without events.
-    no_theory: why there is no theory of this gas in its box, as part of a sentence; empty if there is. mechanical:
-    pressure of every wall of a gas without an equation of state; None for others. For such a gas area is what it has on
-    average, temperature the mean of m v²/2 over discs and time, and there are no routes, theories, rates and paths.
+    packing_fraction: no unit. routes: pressure and Z by each way of measuring. known_theories: Z by the name of
+    each theory that applies. collision_rates: of each pair of species. free_paths: of each species; empty without
+    events. no_theory: why there is no theory of this gas in its box, as part of a sentence; None if there is.
+    mechanical: pressure of every wall of a gas without an equation of state; None for others. For such a gas area
+    is what it has on average, temperature the mean of m v²/2 over discs and time, and there are no routes,
+    theories, rates and paths.
     """
 
     window: Window
@@ -79,11 +76,23 @@ class Pressure(Result):
     temperature: float
     packing_fraction: float
     routes: tuple[Route, ...]
-    theories: dict[str, Theory]
+    known_theories: Annotated[dict[str, Theory], OMITTED]
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
-    no_theory: str = ""
-    mechanical: Mechanical | None = None
+    no_theory: str | None = None
+    mechanical: Annotated[Mechanical | None, INLINE] = None
+
+    @property
+    @reported
+    def theories(self) -> dict[str, float]:
+        """Z by the name of each theory that applies."""
+        return {name: theory.value for name, theory in self.known_theories.items()}
+
+    @property
+    @reported
+    def theory_errors(self) -> dict[str, float]:
+        """Standard deviation of the error of Z by the name of each theory."""
+        return {name: theory.error for name, theory in self.known_theories.items()}
 
     def check(self) -> Verdict:
         """Check that Z by the virial of the walls and of the pairs agrees with theory.
@@ -93,23 +102,6 @@ class Pressure(Result):
         """
         judged = ((route.name, route.compressibility) for route in self.routes if route.name in (WALLS, PAIRS))
         return judge(judged, self.no_theory)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "window": self.window.as_dict(),
-            "number": self.number,
-            "area": self.area,
-            "temperature": self.temperature,
-            "packing_fraction": self.packing_fraction,
-            "routes": [route.as_dict() for route in self.routes],
-            "theories": {name: theory.value for name, theory in self.theories.items()},
-            "theory_errors": {name: theory.error for name, theory in self.theories.items()},
-            "no_theory": self.no_theory or None,
-            "collision_rates": [rate.as_dict() for rate in self.collision_rates],
-            "free_paths": [path.as_dict() for path in self.free_paths],
-            **(self.mechanical.as_dict() if self.mechanical else {}),
-        }
 
 
 def pressure(
@@ -161,10 +153,10 @@ def pressure(
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
         routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts),
-        theories=hard_disc_theories(discs, gas, theory),
+        known_theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
-        no_theory=theory.why_not,
+        no_theory=theory.why_not or None,
         premises=_slow(gas, window, impacts),
     )
 
@@ -202,7 +194,7 @@ def _without_theory(
         temperature=float(energies.mean()) / (2 * len(gas)),
         packing_fraction=gas.packing_fraction * gas.area / found.area,
         routes=(),
-        theories={},
+        known_theories={},
         collision_rates=(),
         free_paths=(),
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",

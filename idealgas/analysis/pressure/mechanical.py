@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, mean_of_flux, mean_of_replicates, ratio
 from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
@@ -29,14 +30,9 @@ class WallPressure:
     force along the face per length, its direction the outward normal turned by 90°; None for a smooth face.
     """
 
-    name: str
+    name: Annotated[str, Key("wall")]
     pressure: Estimate
     stress: Estimate | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        stress = None if self.stress is None else self.stress.as_dict()
-        return {"wall": self.name, "pressure": self.pressure.as_dict(), "stress": stress}
 
 
 @dataclass(frozen=True)
@@ -46,7 +42,7 @@ class WallForce:
     name: of the wall. x, y: along each axis; the theory of the force on all walls is the weight of the discs.
     """
 
-    name: str
+    name: Annotated[str, Key("wall")]
     x: Estimate
     y: Estimate
 
@@ -57,32 +53,20 @@ class WallForce:
         size = {axis: abs(one.value) + one.standard_error for axis, one in both.items()}
         return {axis: one for axis, one in both.items() if size[axis] > SMOOTH * max(size.values()) or one.theory}
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {"wall": self.name, "x": self.x.as_dict(), "y": self.y.as_dict()}
-
 
 @dataclass(frozen=True)
 class Mechanical:
     """Mechanical pressure of every face and force on every wall of a gas.
 
     area: mean area that the gas has, length². walls: pressure on every face. forces: on every wall, then on all
-    together. unsteady: why the gas never comes to a stationary state, as part of a sentence; empty if it may. Then
+    together. unsteady: why the gas never comes to a stationary state, as part of a sentence; None if it may. Then
     the numbers are means over a changing state.
     """
 
-    area: float
+    area: Annotated[float, OMITTED]
     walls: tuple[WallPressure, ...]
     forces: tuple[WallForce, ...]
-    unsteady: str
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "walls": [wall.as_dict() for wall in self.walls],
-            "forces": [force.as_dict() for force in self.forces],
-            "unsteady": self.unsteady or None,
-        }
+    unsteady: str | None
 
 
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
@@ -94,7 +78,7 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
         area=float(gauge.area(window.edges)[some].mean()),
         walls=tuple(_pressure(face, some, balances, holding) for face, holding in faces),
         forces=_forces(log, gauge, window, balances),
-        unsteady=why,
+        unsteady=why or None,
     )
 
 

@@ -39,7 +39,7 @@ def _of_log(result: Pressure) -> list[Table]:
     exact = (1.0, result.routes[-1].compressibility.theory)  # of the ideal gas, and of this number of discs in this box
     theories = [
         (name if one.value in exact else f"{name}, N → ∞", Number(one.value, ".6f"), Number(one.error, ".1g"))
-        for name, one in result.theories.items()
+        for name, one in result.known_theories.items()
     ]
     missing = (f"No theory here: {result.no_theory}.",) if result.no_theory else ()
     return [
@@ -79,7 +79,7 @@ def _of_states(result: EquationOfState) -> list[Table]:
             Number(state.infinite.standard_error, ".1g"),
             Number(state.infinite.deviation, "+.2f"),
             *(Number(value, ".5f") for value in (state.infinite.theory, state.virial, state.henderson)),
-            state.source,
+            state.source or "",
         )
         for state in result.states
     ]

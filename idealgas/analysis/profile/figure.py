@@ -24,10 +24,10 @@ def profile_figure(result: Profile) -> Figure:
         if max(highest) > 20 * min(highest) > 0:
             density.set_yscale("log")
     for ax in (density, temperature):
-        ax.set_xlabel(f"{'xy'[result.axis]} (length)")
+        ax.set_xlabel(f"{result.axis} (length)")
         ax.legend()
     low, high, number = result.edges[0], result.edges[-1], len(result.middles)
-    density.strips = Strips(result.axis, float(low), float(high), number, result.strip)
+    density.strips = Strips("xy".index(result.axis), float(low), float(high), number, result.strip)
     density.set_ylabel("n (1/length²)")
     temperature.set_ylabel("temperature (energy, k_B = 1)")
     return figure

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.window import Window, measure
@@ -43,30 +44,23 @@ class SpeciesProfile:
     species: str
     density: tuple[Estimate, ...]
     temperature: tuple[Estimate, ...]
-    spin: tuple[Estimate, ...] | None
+    spin: Annotated[tuple[Estimate, ...] | None, OPTIONAL]
     gradient: Estimate | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        columns = {"density": self.density, "temperature": self.temperature, "spin": self.spin}
-        values = {name: [e.as_dict() for e in column] for name, column in columns.items() if column is not None}
-        gradient = None if self.gradient is None else self.gradient.as_dict()
-        return {"species": self.species, **values, "gradient": gradient}
 
 
 @dataclass(frozen=True)
 class Profile(Result):
     """Profiles of all species in K strips along one axis.
 
-    window: the time that was used. axis: 0 for x, 1 for y. edges: (K + 1,), edges of the strips, length. strip: area of
+    window: the time that was used. axis: "x" or "y". edges: (K + 1,), edges of the strips, length. strip: area of
     one strip, length². frames: number of averaged frames. law: name of the theory; None without one. species: profiles
     of each species. heat: energy per time that each wall gives to the discs, by the name of the wall.
     """
 
     window: Window
-    axis: int
+    axis: str
     edges: np.ndarray
-    strip: float
+    strip: Annotated[float, OMITTED]
     frames: int
     law: str | None
     species: tuple[SpeciesProfile, ...]
@@ -76,18 +70,6 @@ class Profile(Result):
     def middles(self) -> np.ndarray:
         """Coordinates (K,) of the centres of the strips, length."""
         return (self.edges[1:] + self.edges[:-1]) / 2
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "window": self.window.as_dict(),
-            "axis": "xy"[self.axis],
-            "edges": self.edges.tolist(),
-            "frames": self.frames,
-            "law": self.law,
-            "species": [entry.as_dict() for entry in self.species],
-            "heat": {name: value.as_dict() for name, value in self.heat.items()},
-        }
 
 
 def profile(
@@ -124,7 +106,7 @@ def profile(
         *_not_dilute(log, axis, float(edges[1] - edges[0]), species, expected),
         *_few(log, axis, expected),
     )
-    return Profile(window, axis, edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
+    return Profile(window, "xy"[axis], edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:

@@ -8,7 +8,7 @@ from idealgas.analysis.profile.measure import Profile
 
 def profile_tables(result: Profile) -> list[Table]:
     """Tables of density and temperature of each species in every strip, and of the heat given by walls."""
-    axis = "xy"[result.axis]
+    axis = result.axis
     strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in zip(result.edges, result.edges[1:], strict=False)]
     tables = []
     for entry in result.species:

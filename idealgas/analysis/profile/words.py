@@ -19,7 +19,7 @@ def profile_words(result: Profile) -> list[str]:
         for name, column in (("density", entry.density), ("temperature", entry.temperature)):
             known = [(x, e) for x, e in zip(result.middles, column, strict=True) if np.isfinite(e.standard_error)]
             if len(known) > 1 and _differ(known[0][1], known[-1][1]):
-                ends = (f"{in_words(e)} at {'xy'[result.axis]} = {x:.4g}" for x, e in (known[0], known[-1]))
+                ends = (f"{in_words(e)} at {result.axis} = {x:.4g}" for x, e in (known[0], known[-1]))
                 said.append(f"The {name} of {entry.species} goes from {' to '.join(ends)}.")
     return said
 

@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.log import Log
@@ -35,27 +36,20 @@ class Acceptance:
     the v_ref from then on (length/time); the first is that of the start.
     """
 
-    number: int
+    number: Annotated[int, Key("trials")]
     collisions: int
     collisions_per_disc: float
     acceptance: Estimate
-    at_start: float
-    expected: dict[str, float]
-    published: int | None
-    raises: tuple[tuple[int, float], ...]
+    at_start: Annotated[float, Key("acceptance_at_start")]
+    expected: Annotated[dict[str, float], Key("acceptance_in_equilibrium")]
+    published: Annotated[int | None, Key("published_collisions")]
+    raises: Annotated[tuple[tuple[int, float], ...], OMITTED]
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "trials": self.number,
-            "collisions": self.collisions,
-            "collisions_per_disc": self.collisions_per_disc,
-            "acceptance": self.acceptance.as_dict(),
-            "acceptance_at_start": self.at_start,
-            "acceptance_in_equilibrium": self.expected,
-            "published_collisions": self.published,
-            "v_ref": [{"after_trials": trials, "v_ref": v_ref} for trials, v_ref in self.raises],
-        }
+    @property
+    @reported
+    def v_ref(self) -> list[dict[str, float]]:
+        """Each v_ref, length/time, with the number of trials before it."""
+        return [{"after_trials": trials, "v_ref": v_ref} for trials, v_ref in self.raises]
 
 
 def acceptance(log: Log) -> Acceptance | None:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.relaxation.measure import Relaxation
@@ -13,10 +12,6 @@ class Relaxations(Result):
     """Relaxation of the gas of each log."""
 
     logs: tuple[Relaxation, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {"logs": [found.as_dict() for found in self.logs]}
 
 
 def combine_relaxation(results: Sequence[Relaxation]) -> Relaxations:

@@ -8,12 +8,13 @@ conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value, which is the 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from scipy import optimize
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.window import span
@@ -74,40 +75,31 @@ class Relaxation(Result):
     path: str
     number: int
     time: np.ndarray
-    collisions: np.ndarray
+    collisions: Annotated[np.ndarray, Key("collisions_per_disc")]
     kurtosis: np.ndarray
     distance: np.ndarray
     entropy: np.ndarray
     equilibrium_kurtosis: float
     critical_distance: float
-    in_time: Estimate | None
-    in_collisions: Estimate | None
-    first_indistinguishable: int | None
+    in_time: Annotated[Estimate | None, Key("relaxation_time")]
+    in_collisions: Annotated[Estimate | None, Key("relaxation_collisions_per_disc")]
+    first_indistinguishable: Annotated[int | None, OMITTED]
     acceptance: Acceptance | None
-    speeds: SpeedDistributions | None
+    speeds: Annotated[SpeedDistributions | None, Key("speed_distributions")]
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        k = self.first_indistinguishable
-        return super().as_dict() | {
-            "path": self.path,
-            "number": self.number,
-            "relaxation_time": self.in_time and self.in_time.as_dict(),
-            "relaxation_collisions_per_disc": self.in_collisions and self.in_collisions.as_dict(),
-            "settled_time": self.in_time and SETTLED * self.in_time.value,
-            "indistinguishable_after": None
-            if k is None
-            else {"time": float(self.time[k]), "collisions_per_disc": float(self.collisions[k])},
-            "equilibrium_kurtosis": self.equilibrium_kurtosis,
-            "critical_distance": self.critical_distance,
-            "time": self.time.tolist(),
-            "collisions_per_disc": self.collisions.tolist(),
-            "kurtosis": self.kurtosis.tolist(),
-            "distance": self.distance.tolist(),
-            "entropy": self.entropy.tolist(),
-            "acceptance": self.acceptance and self.acceptance.as_dict(),
-            "speed_distributions": self.speeds and self.speeds.as_dict(),
-        }
+    @property
+    @reported
+    def settled_time(self) -> float | None:
+        """Time after which a gas counts as settled; None without a relaxation time."""
+        return SETTLED * self.in_time.value if self.in_time else None
+
+    @property
+    @reported
+    def indistinguishable_after(self) -> dict[str, float] | None:
+        """Time and collisions per disc at `first_indistinguishable`; None if there is none."""
+        if (k := self.first_indistinguishable) is None:
+            return None
+        return {"time": float(self.time[k]), "collisions_per_disc": float(self.collisions[k])}
 
 
 def relaxation(

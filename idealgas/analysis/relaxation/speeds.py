@@ -3,11 +3,12 @@
 import math
 from dataclasses import dataclass
 from itertools import count, takewhile
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.core.window import span
 from idealgas.analysis.relaxation.acceptance import last_trial
@@ -40,25 +41,12 @@ class SpeedDistributions:
 
     time: np.ndarray
     trials: np.ndarray | None
-    collisions: np.ndarray
+    collisions: Annotated[np.ndarray, Key("collisions_per_disc")]
     distance: np.ndarray
-    rms: float
-    edges: np.ndarray
+    rms: Annotated[float, Key("rms_speed")]
+    edges: Annotated[np.ndarray, Key("speed_from")]
     counts: np.ndarray
-    expected: np.ndarray
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "time": self.time.tolist(),
-            "trials": None if self.trials is None else self.trials.tolist(),
-            "collisions_per_disc": self.collisions.tolist(),
-            "distance": self.distance.tolist(),
-            "rms_speed": self.rms,
-            "speed_from": self.edges.tolist(),
-            "counts": self.counts.tolist(),
-            "maxwell_boltzmann": self.expected.tolist(),
-        }
+    expected: Annotated[np.ndarray, Key("maxwell_boltzmann")]
 
 
 def speed_distributions(

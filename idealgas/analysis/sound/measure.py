@@ -3,18 +3,19 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.trajectories import sample_trajectories
 from idealgas.analysis.core.window import Window, measure
-from idealgas.analysis.sound.law import Decay, Fluid, fit
+from idealgas.analysis.sound.law import Decay, fit
 from idealgas.analysis.sound.theory import Expected, expected_sound
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
@@ -58,18 +59,12 @@ class Wave:
     lag: np.ndarray
     correlation: np.ndarray
     error: np.ndarray
-    fitted: Decay
-    theory: Decay | None
+    fitted: Annotated[Decay, OMITTED]
+    theory: Annotated[Decay | None, OMITTED]
     speed: Estimate
     damping: Estimate
     spreading: Estimate
     exponent: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        series = {name: getattr(self, name).tolist() for name in ("lag", "correlation", "error")}
-        found = {name: getattr(self, name).as_dict() for name in Fluid._fields}
-        return {"axes": self.axes, "wavelength": self.wavelength, **found, **series}
 
 
 @dataclass(frozen=True)
@@ -82,11 +77,6 @@ class Sound(Result):
     window: Window
     frames: int
     waves: tuple[Wave, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        waves = [wave.as_dict() for wave in self.waves]
-        return super().as_dict() | {"window": self.window.as_dict(), "frames": self.frames, "waves": waves}
 
 
 def sound(

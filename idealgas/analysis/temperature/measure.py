@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibrium import known_ensemble
+from idealgas.analysis.core.fields import OMITTED, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.settling import why_never_stationary, why_no_equilibrium
@@ -31,17 +32,13 @@ class SpeciesTemperature:
     x: Estimate
     y: Estimate
     both: Estimate
-    directions: np.ndarray
+    directions: Annotated[np.ndarray, OMITTED]
 
     @property
+    @reported
     def history(self) -> np.ndarray:
         """Mean m v²/2 (B,) in every block that was read, energy."""
         return self.directions.mean(axis=1)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        values = {"x": self.x.as_dict(), "y": self.y.as_dict(), "both": self.both.as_dict()}
-        return {"species": self.species, "number": self.number, **values, "history": self.history.tolist()}
 
 
 @dataclass(frozen=True)
@@ -57,18 +54,15 @@ class Temperature(Result):
     species: tuple[SpeciesTemperature, ...]
 
     @property
+    @reported
+    def block_edges(self) -> np.ndarray:
+        """Times (B + 1,) between the blocks that were read."""
+        return self.window.edges
+
+    @property
     def apart(self) -> tuple[SpeciesTemperature, ...]:
         """Temperatures that are not the same: with one species only those of all discs."""
         return self.species[:1] if len(self.species) == 2 else self.species
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {
-            "window": self.window.as_dict(),
-            "expected": self.expected,
-            "block_edges": self.window.edges.tolist(),
-            "species": [entry.as_dict() for entry in self.species],
-        }
 
 
 def temperature(

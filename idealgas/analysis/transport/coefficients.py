@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import Ensemble, drift
+from idealgas.analysis.core.fields import INLINE, Key
 from idealgas.analysis.core.samples import in_blocks
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import stream
@@ -56,19 +57,9 @@ class Coefficient:
     times: np.ndarray
     running: np.ndarray
     running_error: np.ndarray
-    value: Estimate
+    value: Annotated[Estimate, Key("coefficient")]
     routes: dict[str, Estimate]
     difference: Estimate | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "unit": self.unit,
-            "coefficient": self.value.as_dict(),
-            "routes": {name: route.as_dict() for name, route in self.routes.items()},
-            "difference": self.difference.as_dict() if self.difference else None,
-            **{name: getattr(self, name).tolist() for name in ("times", "running", "running_error")},
-        }
 
 
 @dataclass(frozen=True)
@@ -82,16 +73,8 @@ class Collective:
     """
 
     plateau: tuple[float, float]
-    coefficients: dict[str, Coefficient]
-    pressure: dict[str, Estimate]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "plateau": list(self.plateau),
-            **{name: found.as_dict() for name, found in self.coefficients.items()},
-            "pressure_tensor": {name: found.as_dict() for name, found in self.pressure.items()},
-        }
+    coefficients: Annotated[dict[str, Coefficient], INLINE]
+    pressure: Annotated[dict[str, Estimate], Key("pressure_tensor")]
 
 
 def flow_in_events(

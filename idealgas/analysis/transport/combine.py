@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
+from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.transport.coefficients import SYMBOLS
@@ -35,19 +36,9 @@ class State:
 
     packing_fraction: float
     number: int
-    kind: str
+    kind: Annotated[str, Key("gas")]
     runs: int
-    coefficients: dict[str, Estimate]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {
-            "packing_fraction": self.packing_fraction,
-            "number": self.number,
-            "gas": self.kind,
-            "runs": self.runs,
-            "over_enskog": {symbol: one.as_dict() for symbol, one in self.coefficients.items()},
-        }
+    coefficients: Annotated[dict[str, Estimate], Key("over_enskog")]
 
 
 @dataclass(frozen=True)
@@ -55,10 +46,6 @@ class States(Result):
     """Transport coefficients over Enskog's, state by state in order of φ."""
 
     states: tuple[State, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return super().as_dict() | {"states": [state.as_dict() for state in self.states]}
 
 
 def combine_transport(results: Sequence[Transport | Sample]) -> Transport | States:

@@ -7,7 +7,6 @@ correlation and displacement use the exact positions and velocities of discs at 
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -71,18 +70,6 @@ class Diffusion:
     coefficient: Estimate
     velocity_correlation_time: Estimate
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        pairs = ("correlation", "displacement", "running")
-        series = ("lag", *(name + ending for name in pairs for ending in ("", "_error")))
-        return {
-            "species": self.species,
-            "coefficient": self.coefficient.as_dict(),
-            "velocity_correlation_time": self.velocity_correlation_time.as_dict(),
-            **{name: getattr(self, name).tolist() for name in series},
-            "tail": None if self.tail is None else [None, *self.tail[1:].tolist()],
-        }
-
 
 @dataclass(frozen=True)
 class Contact:
@@ -91,10 +78,6 @@ class Contact:
     species: str
     other: str
     value: Estimate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return {"species": self.species, "other": self.other, "value": self.value.as_dict()}
 
 
 @dataclass(frozen=True)
@@ -118,16 +101,6 @@ class Transport(Result):
     diffusion: tuple[Diffusion, ...]
     collective: Collective | None
     pair_distributions: tuple[PairDistribution, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        values = {
-            name: [entry.as_dict() for entry in getattr(self, name)]
-            for name in ("collision_rates", "free_paths", "contacts", "diffusion", "pair_distributions")
-        }
-        plain = {name: getattr(self, name) for name in ("packing_fraction", "number", "free_times", "walled")}
-        whole = self.collective and self.collective.as_dict()
-        return super().as_dict() | {"window": self.window.as_dict(), **plain, **values, "collective": whole}
 
 
 def transport(

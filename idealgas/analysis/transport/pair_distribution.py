@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -28,11 +27,6 @@ class PairDistribution:
     edges: np.ndarray
     value: np.ndarray
     error: np.ndarray
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        values = {name: getattr(self, name).tolist() for name in ("edges", "value", "error")}
-        return {"species": self.species, "other": self.other, **values}
 
 
 def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:

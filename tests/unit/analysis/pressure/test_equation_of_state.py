@@ -62,7 +62,7 @@ def test_every_phase_has_the_theory_that_is_known():
     published = Sample(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
     unknown, crystal = (Sample(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
     found = equation_of_state([*samples([0.1, 0.2], 1e-3), published, unknown, crystal])
-    sources = ["virial series, resummed"] * 2 + ["published simulations", "", "free volume, of a crystal"]
+    sources = ["virial series, resummed"] * 2 + ["published simulations", None, "free volume, of a crystal"]
     assert [state.source for state in found.states] == sources
     dense = found.states[-1]
     assert dense.infinite.theory == pytest.approx(1 / (1 - math.sqrt(0.8 * math.sqrt(12) / math.pi)))

@@ -1,0 +1,81 @@
+"""Plain values of dataclasses, ready for JSON, made from their fields.
+
+A field is named as in its dataclass, unless its type says otherwise: `Annotated[float, Key("other_name")]`, or with a
+`Mark` instead of a key. Properties marked by `reported` are plain values too.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import Field, dataclass, fields, is_dataclass
+from enum import Enum
+from typing import Any, TypeVar
+
+import numpy as np
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Key:
+    """Name of a field among the plain values."""
+
+    name: str
+
+
+class Mark(Enum):
+    """How a field appears among the plain values."""
+
+    OMITTED = "never"
+    OPTIONAL = "unless it is None"
+    INLINE = "by its own values, not as a group of them"
+
+
+OMITTED, OPTIONAL, INLINE = Mark
+
+
+def reported(function: Function) -> Function:
+    """Mark a property, below `@property`, as one of the plain values of its dataclass."""
+    function.__dict__["reported"] = True
+    return function
+
+
+def as_dict(found: Any) -> dict[str, Any]:
+    """Fields and reported properties of a dataclass by name, as plain values."""
+    values: dict[str, Any] = {}
+    for one in fields(found):
+        values |= _of_field(one, getattr(found, one.name))
+    return values | {name: plain_value(getattr(found, name)) for name in _reported(type(found))}
+
+
+def _of_field(one: "Field[Any]", value: Any) -> dict[str, Any]:
+    marks = getattr(one.type, "__metadata__", ())
+    if OMITTED in marks or (value is None and (OPTIONAL in marks or INLINE in marks)):
+        return {}
+    plain = plain_value(value)
+    return plain if INLINE in marks else {next((m.name for m in marks if isinstance(m, Key)), one.name): plain}
+
+
+def _reported(kind: type) -> Iterator[str]:
+    for part in reversed(kind.__mro__):
+        for name, member in vars(part).items():
+            if isinstance(member, property) and getattr(member.fget, "reported", False):
+                yield name
+
+
+def plain_value(value: Any) -> Any:
+    """A value in terms of dict, list, str, int, float, bool and None; None for numbers that are not finite."""
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, np.ndarray | np.generic):
+        return plain_value(value.tolist())
+    if isinstance(value, Mapping):
+        return {name: plain_value(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain_value(one) for one in value]
+    if hasattr(value, "as_dict"):
+        return value.as_dict()
+    if is_dataclass(value):
+        return as_dict(value)
+    raise TypeError(f"no plain value of {value!r}")
