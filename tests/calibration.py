@@ -6,10 +6,12 @@ truth is exact theory where there is one, else the mean over all seeds.
 
     python tests/calibration.py --seeds 2000 --folder FOLDER
 
-goes on with what it has stored in the folder, and prints the table of the README of the analyses.
+continues from what it has stored in the folder, and prints the table of `calibration.csv`.
 """
 
 import argparse
+import csv
+import io
 import math
 import tempfile
 import time
@@ -130,17 +132,18 @@ def kept(collected: dict[tuple[str, str], Found]) -> np.ndarray:
 
 
 def table(rows: list[Row]) -> str:
-    """Table for the README: for each estimate the rms deviation and the coverage in runs of every length."""
+    """Table in CSV: for each estimate the rms deviation and the coverage, in short and in long runs."""
     found: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         found.setdefault((row.case, row.name), []).append(row)
-    lines = ["| gas | estimate | runs | rms deviation/error | 95 % intervals that hold, % |", "|---|---|---|---|---|"]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(("gas", "estimate", "runs", "rms_short", "coverage_short", "rms_long", "coverage_long"))
     for (case, name), entries in found.items():
-        number = min(entry.runs for entry in entries)
-        rms = ", ".join(f"{entry.rms:.2f}" for entry in entries)
-        coverage = ", ".join(f"{100 * entry.coverage:.1f}" for entry in entries)
-        lines.append(f"| {case} | {name} | {number} | {rms} | {coverage} |")
-    return "\n".join(lines)
+        figures = [figure for entry in entries for figure in (f"{entry.rms:.2f}", f"{entry.coverage:.3f}")]
+        figures += [""] * (4 - len(figures))
+        writer.writerow((case, name, min(entry.runs for entry in entries), *figures))
+    return text.getvalue()
 
 
 def main() -> None:
@@ -153,7 +156,7 @@ def main() -> None:
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
     collected = collect(given.folder, given.seeds, given.seconds, given.only)
-    print(table(rows_of(collected)))
+    print(table(rows_of(collected)), end="")
     if not (shares := kept(collected)).size:
         return
     print(f"share of {len(shares)} steady logs that is used: median {np.median(shares):.3f},", end=" ")

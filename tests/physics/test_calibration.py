@@ -1,6 +1,6 @@
 """Error bars are as large as deviations from the truth: `calibration` has the method and the gases.
 
-The table of the README of the analyses is from 2000 seeds:
+`tests/calibration.csv` is from 2000 seeds:
 
     python tests/calibration.py --seeds 2000 --folder FOLDER
 """
