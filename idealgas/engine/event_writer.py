@@ -3,8 +3,7 @@
 import numpy as np
 
 from idealgas.events import BATH, Kind
-from idealgas.jit import inline
-from idealgas.prefetch import fetch_next_line
+from idealgas.jit import inline, prefetch_next_line
 from idealgas.sides import FIRST_SEGMENT
 
 DISC, WALL, WALL_END, PISTON, KICK = (int(kind) for kind in Kind)
@@ -61,7 +60,7 @@ def write_row(batch, row, time, own, partner, kind, disc, effects):
 def fetch_column(column, row):
     """Prefetch the memory of a column's next rows, if the batch has the column."""
     if column is not None:
-        fetch_next_line(column, row)
+        prefetch_next_line(column, row)
 
 
 @inline

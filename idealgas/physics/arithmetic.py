@@ -10,7 +10,7 @@ import operator
 from typing import Any
 
 import numpy as np
-from numba.core import cgutils, types
+from numba import types
 from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
 
 from idealgas.jit import inline, overload
@@ -95,7 +95,7 @@ def _type_of_pair(context: Any) -> Any:
 
 @lower_builtin(Pair, types.float64, types.float64)
 def _code_of_pair(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    pair = cgutils.create_struct_proxy(PAIR)(context, builder)
+    pair = context.make_helper(builder, PAIR)
     pair.high, pair.low = arguments
     return pair._getvalue()
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
-from idealgas.jit import compile_timer
+from idealgas.jit import compile_seconds
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
@@ -47,26 +47,26 @@ def resume(
     this program or a change of the scene would go on otherwise than the run began, if the log goes beyond the end asked
     for, or if it cannot be written.
     """
-    with compile_timer() as compilation:
-        with open_log(path) as log:
-            if log.live:
-                raise LogError(f"{log.path}: another process has this file open")
-            scene = _scene_to_go_on_with(log, overrides)
-            if log.complete and dump_document(scene) == dump_document(log.scene):
-                return Summary.of(log.summary)
-            last = log.checkpoints[-1] if len(log.checkpoints) else None
-            _check_end(log, last, scene)
-            _check_laws(log, last, _simulation_at(log, last, scene))
-            simulation = _simulation_at(log, last, scene)
-            past = _history_of(log, last, scene)
-        with LogWriter.resume(
-            path,
-            None if last is None else -1,
-            fsync=scene.log.fsync,
-            scene_text=dump_document(scene),
-            command=command,
-        ) as writer:
-            return LoggedRun(scene, simulation, writer, past, compilation).run(on_progress, interrupted)
+    compiled_before = compile_seconds()
+    with open_log(path) as log:
+        if log.live:
+            raise LogError(f"{log.path}: another process has this file open")
+        scene = _scene_to_go_on_with(log, overrides)
+        if log.complete and dump_document(scene) == dump_document(log.scene):
+            return Summary.of(log.summary)
+        last = log.checkpoints[-1] if len(log.checkpoints) else None
+        _check_end(log, last, scene)
+        _check_laws(log, last, _simulation_at(log, last, scene))
+        simulation = _simulation_at(log, last, scene)
+        past = _history_of(log, last, scene)
+    with LogWriter.resume(
+        path,
+        None if last is None else -1,
+        fsync=scene.log.fsync,
+        scene_text=dump_document(scene),
+        command=command,
+    ) as writer:
+        return LoggedRun(scene, simulation, writer, past, compiled_before).run(on_progress, interrupted)
 
 
 def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.core.event import TimingListener
 
 from idealgas.engine.audit import Audit
 from idealgas.engine.event_driven.method import expected_threads
@@ -17,7 +16,7 @@ from idealgas.engine.records import LATEST, ONE_THREAD, UNLIMITED, Threads
 from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
-from idealgas.jit import compile_timer
+from idealgas.jit import compile_seconds
 from idealgas.log import LogWriter
 from idealgas.log.summary import Summary
 from idealgas.physics.effects import Effects
@@ -115,25 +114,25 @@ def simulate(
     is removed during the run; UserError, with a log that can be read and resumed, if a disc collides without end at one
     instant, or if the events that are to end the run do not come (see `idealgas.run.stall`).
     """
-    with compile_timer() as compilation:
-        gas = make_gas(scene)
-        effects = make_effects(scene, gas)
-        method = method_of(scene, gas)
-        with LogWriter(
-            path,
-            gas,
-            layout_of(scene, gas, effects, method.without_positions, method.extra_state),
-            scene_text=dump_document(scene),
-            seed=scene.scene.seed,
-            command=command,
-            trajectory=TRAJECTORY,
-            fsync=scene.log.fsync,
-            force=force,
-        ) as log:
-            past = RunHistory(energy_of(gas, effects))
-            return LoggedRun(scene, Simulation(gas, method, effects), log, past, compilation).run(
-                on_progress, interrupted
-            )
+    compiled_before = compile_seconds()
+    gas = make_gas(scene)
+    effects = make_effects(scene, gas)
+    method = method_of(scene, gas)
+    with LogWriter(
+        path,
+        gas,
+        layout_of(scene, gas, effects, method.without_positions, method.extra_state),
+        scene_text=dump_document(scene),
+        seed=scene.scene.seed,
+        command=command,
+        trajectory=TRAJECTORY,
+        fsync=scene.log.fsync,
+        force=force,
+    ) as log:
+        past = RunHistory(energy_of(gas, effects))
+        return LoggedRun(scene, Simulation(gas, method, effects), log, past, compiled_before).run(
+            on_progress, interrupted
+        )
 
 
 class RunHistory(NamedTuple):
@@ -147,15 +146,15 @@ class RunHistory(NamedTuple):
 
 
 class LoggedRun:
-    """A simulation and its log on the way to a stop."""
+    """A simulation and its log on the way to a stop; compiled_before: `compile_seconds` before either was made."""
 
     def __init__(
-        self, scene: Scene, simulation: Simulation, log: LogWriter, past: RunHistory, compilation: TimingListener
+        self, scene: Scene, simulation: Simulation, log: LogWriter, past: RunHistory, compiled_before: float
     ) -> None:
         self._scene = scene
         self._simulation = simulation
         self._log = log
-        self._compilation = compilation
+        self._compiled_before = compiled_before
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
         self._stall = StallDetector(simulation, self._stop, self._begun)
@@ -277,7 +276,7 @@ class LoggedRun:
             deepest_overlap=self._overlap,
             farthest_outside=self._outside,
             seconds=seconds,
-            compile_seconds=self._compilation.duration if self._compilation.done else 0.0,
+            compile_seconds=compile_seconds() - self._compiled_before,
             threads=threads.number,
             threads_because=threads.because,
             shared_slices=threads.slices,

@@ -11,14 +11,13 @@ FREE = {"_version", "errors", "events", "files", "sides", ""}
 """Version, errors of the user and plain text, files to write, columns of events and numbers of walls are for all."""
 
 ALLOWED = {
-    "jit": {"_compiler"},
-    "prefetch": {"jit"},
+    "jit": set(),
     "state": {"jit"},
     "toml": set(),
     "physics": {"jit"},
     "scene": {"toml", "physics", "initial"},  # defaults that follow from a law; room for a lattice
     "initial": {"jit", "state", "toml", "scene", "physics"},  # discs are placed by the nearest image's distance
-    "engine": {"jit", "prefetch", "state", "initial", "physics"},
+    "engine": {"jit", "state", "initial", "physics"},
     "log": {"jit", "state", "initial", "scene", "physics"},  # states between two events are free flight
     "run": {"jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
     "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
@@ -27,7 +26,6 @@ ALLOWED = {
     "sweep": {"toml", "scene", "initial", "run", "log", "analysis"},
     "accuracy": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "bench": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
-    "_compiler": set(),
     "_version": set(),
     "errors": set(),
     "events": set(),

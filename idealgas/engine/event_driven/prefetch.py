@@ -9,8 +9,7 @@ the schedule; then the cells around it, and its partner; then the discs in the c
 import numpy as np
 
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
-from idealgas.jit import aligned, inline
-from idealgas.prefetch import fetch
+from idealgas.jit import aligned, inline, prefetch
 
 FROM = 6_000
 """Least number of discs at which that is faster."""
@@ -44,14 +43,14 @@ def first_of_part(tree, level, i):
 @inline
 def fetch_disc(tree, record, state, i):
     """Fetch disc i's record, prediction, link and place in the schedule."""
-    fetch(record, U(i))
-    fetch(state.prediction, U(i))
-    fetch(state.cells.link, U(i))
+    prefetch(record, U(i))
+    prefetch(state.prediction, U(i))
+    prefetch(state.cells.link, U(i))
     parent = U(tree.start[U(1)] + (i >> 3))
-    fetch(tree.key, U(i))
-    fetch(tree.winner, U(i))
-    fetch(tree.key, parent)
-    fetch(tree.winner, parent)
+    prefetch(tree.key, U(i))
+    prefetch(tree.winner, U(i))
+    prefetch(tree.key, parent)
+    prefetch(tree.winner, parent)
 
 
 @inline
@@ -66,7 +65,7 @@ def fetch_cells(cells, disc):
     """Fetch the cells around a disc, those that it may come within reach of included."""
     cell = cell_around(cells, disc)
     for row in range(-2, 3):
-        fetch(cells.head, U(cell + row * cells.columns))
+        prefetch(cells.head, U(cell + row * cells.columns))
 
 
 @inline
@@ -75,8 +74,8 @@ def fetch_first_of_three(cells, record, cell, stride):
     last = cells.head.shape[0] - 1
     for step in range(3):
         j = U(max(cells.head[U(min(max(cell + step * stride, 0), last))], 0))
-        fetch(record, j)
-        fetch(cells.link, j)
+        prefetch(record, j)
+        prefetch(cells.link, j)
 
 
 @inline

@@ -6,7 +6,7 @@ A load sees all that its thread had written before it stored what is loaded (acq
 import platform
 
 from llvmlite import ir
-from numba.core import cgutils, types
+from numba import types
 from numba.extending import intrinsic
 
 from idealgas.jit import CACHE_LINE, inline
@@ -25,7 +25,7 @@ _HINTS = {
 
 
 def _pointer(context, builder, kind, array, index):
-    return cgutils.get_item_pointer(context, builder, kind, context.make_array(kind)(context, builder, array), [index])
+    return builder.gep(context.make_array(kind)(context, builder, array).data, [index])
 
 
 @intrinsic
@@ -78,8 +78,8 @@ def pause(typingctx):
     def code(context, builder, signature, arguments):
         if hint := _HINTS.get(platform.machine()):
             name, numbers = hint
-            kind = ir.FunctionType(ir.VoidType(), [cgutils.int32_t] * len(numbers))
-            builder.call(builder.module.declare_intrinsic(name, [], kind), [cgutils.int32_t(k) for k in numbers])
+            kind = ir.FunctionType(ir.VoidType(), [ir.IntType(32)] * len(numbers))
+            builder.call(builder.module.declare_intrinsic(name, [], kind), [ir.IntType(32)(k) for k in numbers])
         return context.get_dummy_value()
 
     return types.void(), code
@@ -90,8 +90,11 @@ def give_way(typingctx):
     """Let another thread have the processor."""
 
     def code(context, builder, signature, arguments):
-        kind = ir.FunctionType(ir.IntType(32), [])
-        builder.call(cgutils.get_or_insert_function(builder.module, kind, "sched_yield"), [])
+        name = "sched_yield"
+        function = builder.module.globals.get(name) or ir.Function(
+            builder.module, ir.FunctionType(ir.IntType(32), []), name
+        )
+        builder.call(function, [])
         return context.get_dummy_value()
 
     return types.void(), code
