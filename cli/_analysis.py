@@ -33,7 +33,7 @@ def open_log(path: str) -> "Log":
     try_reading(path)
     opened = log.open_log(path)
     if opened.unclosed:
-        state = "is being written" if opened.live else "its writer died; `idealgas resume` would go on with it"
+        state = "is being written" if opened.live else "was not closed (crash?); continue it with `idealgas resume`"
         echo(f"{path}: {state}; read up to t = {opened.end_time:g}, {len(opened):,} event rows", err=True)
     return opened
 

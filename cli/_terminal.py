@@ -17,7 +17,7 @@ CLOSED_PIPE = 141
 """Exit code where the reader of the output has gone: 128 + SIGPIPE, as shells have it."""
 
 UNBOUNDED = 100_000
-"""Width of what is no terminal, in columns: whoever reads there breaks the lines, or nobody does."""
+"""Width of output that is not a terminal, in columns: lines are not broken."""
 
 _QUIET = "idealgas_cli.quiet"
 
@@ -69,7 +69,7 @@ def terminal(err: bool = False) -> "Console":
 
 @contextmanager
 def readers_may_go() -> Iterator[None]:
-    """End the program quietly where nobody reads its output any more, as `head` does not after its lines."""
+    """End the program quietly when the reader of its output, such as `head`, has gone."""
     try:
         yield
     except BrokenPipeError:

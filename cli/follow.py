@@ -57,7 +57,13 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
     from rich.console import Group
 
     state = (
-        "complete" if log.complete else "running" if log.live else "its writer died" if log.unclosed else "interrupted"
+        "complete"
+        if log.complete
+        else "running"
+        if log.live
+        else "not closed (crash?)"
+        if log.unclosed
+        else "interrupted"
     )
     rows = {
         "time": f"{seen.time:.6g}",

@@ -11,7 +11,7 @@
             print(route.name, route.compressibility.value, route.compressibility.standard_error)
         print(log.to_pandas("events", disc=0))
 
-`load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` goes on with a run; both
+`load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a run; both
 return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
 it. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which gives a
 figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard error.

@@ -79,7 +79,7 @@ def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool
     if any(os.path.samestat(found, there) for there in map(_stat, inputs) if there):
         raise OutputError(f"{path}: is an input too: another name is needed for the output")
     if not force:
-        raise OutputError(f"{path}: exists already (--force replaces it)")
+        raise OutputError(f"{path}: already exists (use --force to overwrite)")
     if found.st_size and not is_of_kind(path, kind):
         what = "log" if kind == LOG else f"{kind} file"
         raise OutputError(f"{path}: is no {what} of idealgas: --force replaces no other files")
@@ -132,7 +132,7 @@ def replacing(path: Path, force: bool = True) -> Iterator[Path]:
 
 
 def beside(path: Path) -> Path:
-    """A hidden name in the folder where the file is, or that a link leads to, which nobody else uses."""
+    """A hidden name in the folder where the file is, or that a link leads to, which no other process uses."""
     place = path.resolve()
     return place.with_name(f".{place.name}.{secrets.token_hex(4)}")
 
@@ -185,7 +185,7 @@ def storage_error(path: Path, error: Exception) -> OutputError:
     if number is None and (found := re.search(r"errno = (\d+)", str(error))):
         number = int(found[1])
     if number == errno.EEXIST:
-        return OutputError(f"{path}: exists already (--force replaces it)")
+        return OutputError(f"{path}: already exists (use --force to overwrite)")
     if number in (errno.EAGAIN, errno.EWOULDBLOCK):
         return OutputError(f"{path}: another process has this file open")
     reason = os.strerror(number) if number else str(error).splitlines()[0]

@@ -108,7 +108,7 @@ def _digits(ax: Panel, found: Accuracy) -> None:
         assert row.trajectory is not None
         ax.plot(found.collisions, np.maximum(row.trajectory, LEAST), "o-", ms=4, color=colour, label=name)
     ax.set(yscale="log", ylim=(LEAST, 100))
-    ax.set_xlabel("collisions a disc (no unit)")
+    ax.set_xlabel("collisions per disc (no unit)")
     ax.set_ylabel("rms distance from the true paths (diameters)")
     ax.legend()
 
@@ -121,7 +121,7 @@ def details_figure(found: Accuracy) -> Figure:
     axes[0].set_ylabel("error of averages (no unit)")
     if motion:
         picks = [int(np.abs(found.collisions - entry).argmin()) for entry in ENTRIES]
-        measures = {f"path at {found.collisions[k]:.2g} collisions a disc": _trajectory(k) for k in picks}
+        measures = {f"path at {found.collisions[k]:.2g} collisions per disc": _trajectory(k) for k in picks}
         _errors_against_time(axes[1], found, measures | {"way back (σ)": _way_back, "energy drift (relative)": _drift})
         axes[1].set_ylabel("error of the motion (diameters)")
         _trajectories(axes[2], found)
@@ -165,7 +165,7 @@ def _trajectories(ax: Panel, found: Accuracy) -> None:
         path = np.maximum(row.trajectory, LEAST)
         ax.plot(found.collisions, path, "-o", ms=3, color=colour, alpha=shade, label=row.case.name)
     ax.set_yscale("log")
-    ax.set_xlabel("collisions a disc (no unit)")
+    ax.set_xlabel("collisions per disc (no unit)")
     ax.set_ylabel("rms distance from the truth (diameters)")
     ax.legend()
 

@@ -115,7 +115,7 @@ class OrbitStudy:
         unbroken = sum(s.unbroken for s in found)
         spread = [max(s.times, default=math.inf) / s.median for s in found]
         return [
-            f"In exact arithmetic the orbit would last for ever. Median over {self.placements} boxes and radii, in "
+            f"In exact arithmetic the orbit would last indefinitely. Median over {self.placements} boxes and radii, in "
             f"time units at speed 1: {medians}.",
             f"Each decimal digit carried buys {self.time_per_digit:.3g} time units, the time in which a deviation "
             "grows tenfold. More digits, not a better method, make the orbit last longer.",

@@ -165,10 +165,10 @@ def _of_motion(found: Accuracy) -> list[str]:
 
     single, double, twice = found.precisions
     return [
-        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions a disc "
+        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions per disc "
         f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
         f"with dt = {finest.case.dt:.2g}. The truth is the double-double motion of the whole gas, followed for "
-        f"{last:.2g} collisions a disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times "
+        f"{last:.2g} collisions per disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times "
         "the event-driven time.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "
         "precision by the same method, whose motion is that of the event-driven run.",
@@ -203,7 +203,7 @@ def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
 def outputs(
     path: str | os.PathLike[str], name: str, pictures: Sequence[str] = ("",), force: bool = False
 ) -> list[Path]:
-    """Paths NAME.csv, NAME.json and a picture NAME….png for each ending, in a folder that is made if it is not there.
+    """Paths NAME.csv, NAME.json and a picture NAME….png for each ending, in a folder that is created if it is missing.
 
     Raises:
         OutputError: if the folder cannot be made, or one of the files not be written.

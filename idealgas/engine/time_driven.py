@@ -1,6 +1,6 @@
 """The time-driven method: all discs fly for a step, then those that overlap or stand outside, and approach, collide.
 
-It is the rival of the event-driven method, with errors that grow with its step: a contact is found late, by half a step
+For comparison with the event-driven method: its errors grow with its step. a contact is found late, by half a step
 on average, with a rotated line of centres; a contact that begins and ends between two steps is missed. It is as fast as
 such a method gets: near pairs are listed once, by cells, and the list serves until two discs may have come `skin`
 nearer (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley, Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).

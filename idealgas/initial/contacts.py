@@ -1,4 +1,4 @@
-"""Discs in static contact with a wall to which they are pressed: they would collide for ever at one instant.
+"""Discs in static contact with a wall to which they are pressed: they would collide indefinitely at one instant.
 
 Only a disc that touches the wall exactly and has no velocity along its normal is in static contact; any other disc
 flies or bounces.

@@ -198,7 +198,7 @@ class FlightReader:
             raise LogError(f"{log.path}: no flights from {got}")
         self._discs = None if discs is None else np.unique(np.asarray(discs))
         if self._discs is not None and not np.isin(self._discs, np.arange(len(log.discs))).all():
-            raise LogError(f"{log.path}: flights of a disc that is not there (allowed: 0 to {len(log.discs) - 1})")
+            raise LogError(f"{log.path}: flights of a disc that does not exist (allowed: 0 to {len(log.discs) - 1})")
         self._log, self._edges = log, times
         self._columns = set(known if columns is None else columns)
         self._made = _made_for(self._columns)

@@ -32,7 +32,7 @@ def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
 
 
 def _of_one_type(columns: Mapping[str, np.ndarray], column: Column) -> np.ndarray:
-    """A column, empty if it is not there, of a type that does not depend on how it was read, to be compiled once."""
+    """A column, empty if it is missing, of a type that does not depend on how it was read, to be compiled once."""
     found = columns.get(column.name, np.empty(0, column.dtype)).view()
     found.flags.writeable = False
     return found

@@ -76,7 +76,7 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
         except LogError:
             if not os.path.exists(path) or not is_locked(Path(path)):
                 raise
-            sleep(PAUSE)  # a run that goes on with the log may have cut off what its record named just before
+            sleep(PAUSE)  # a run that resumes the log may have truncated the rows that the record named
     return Log(Source(Path(path)))
 
 

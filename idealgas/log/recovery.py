@@ -60,7 +60,7 @@ def _check(log: Log, keep: Mapping[str, int]) -> None:
 
 
 def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, Table], int]:
-    """A log to go on with after one of its checkpoints, or from its start: file, tables, number of its last commit."""
+    """A log to resume after one of its checkpoints, or from its start: file, tables, number of its last commit."""
     path = Path(path)
     with open_log(path) as log:
         held = {"runs": log.commit.rows["runs"]}

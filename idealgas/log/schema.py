@@ -71,7 +71,7 @@ VERSIONS = ("idealgas", "python", *PACKAGES, "hdf5", "trajectory")
 """Attributes of the root and of `versions` that say what made a log."""
 
 SHORTEST_CHUNK = 8192
-"""Rows of events in a chunk of a run that cannot have many; another one may go on with its log."""
+"""Rows of events in a chunk of a run that cannot have many; another one may resume its log."""
 DISC_RECORDS = 4096
 """A chunk of checkpoints or snapshots holds about as many disc records, and at least one state."""
 SAMPLES = 1024

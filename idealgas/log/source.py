@@ -70,7 +70,7 @@ class Source:
             self._file = None
 
     def rows(self, table: str) -> int:
-        """Rows committed, 0 for a table that is not there."""
+        """Rows committed, 0 for a missing table."""
         return self.commit.rows.get(table, 0)
 
     def names(self, table: str) -> list[str]:

@@ -45,7 +45,7 @@ _END = object()
 class LogWriter:
     """A log being written; a context manager that closes it as interrupted unless `close` came first.
 
-    Whatever is handed over is stored in order. It is committed every 2¹⁸ rows or every second, whichever comes first:
+    Batches are stored in order. It is committed every 2¹⁸ rows or every second, whichever comes first:
     what is committed survives the death of the process, and with `fsync` that of the machine. Failures to store (a full
     disk, a file that was removed) come up as OutputError with exit code 1 in the next call; what was committed before a
     disk was full stays readable.

@@ -1,4 +1,4 @@
-"""The laws of motion and of collisions, one file a law: pure functions, the same in compiled and in plain Python.
+"""The laws of motion and of collisions, one file per law: pure functions, the same in compiled and in plain Python.
 
 Lengths, times and masses are in the units of the scene; temperatures are energies, k_B = 1. A `disc` is a record:
 position x, y (length), velocity vx, vy (length/time), radius r, mass m, all at its local time t, which counts from the

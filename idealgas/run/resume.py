@@ -96,7 +96,7 @@ def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:
     for passed, asked, there, unit in (
         (time > stop.time, run.until, time, "units of time"),
         (events >= stop.events, run.events, events, "events"),
-        (collisions >= stop.disc_collisions, run.collisions_per_disc, 2 * collisions / n, "collisions a disc"),
+        (collisions >= stop.disc_collisions, run.collisions_per_disc, 2 * collisions / n, "collisions per disc"),
         (trials >= stop.trials, run.trials, trials, "trials"),
     ):
         if passed and asked is not None:

@@ -20,7 +20,7 @@ The same number, and not one collision among all events, ends a run that only su
 """
 
 HOPELESS = 1e-9
-"""Where no more collisions than these are to be expected in an epoch, nobody can wait for one: no disc moves past
+"""Expected collisions per epoch below which no collision can be waited for: no disc moves past
 another."""
 
 QUIET_SAMPLES = 64
@@ -33,7 +33,7 @@ OVERDUE = 8
 class StallDetector:
     """Detects runs that no event will end: no events, or no pair collisions where only those can end the run.
 
-    A run that is resumed begins to count anew.
+    A resumed run starts to count again.
     """
 
     def __init__(self, simulation: Simulation, stop: Stop, begun: bool) -> None:

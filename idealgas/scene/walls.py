@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class NumberedWall(NamedTuple):
-    """name; start, end: length; action: what it does, in words; absence: from when to when it is not there."""
+    """name; start, end: length; action: what it does, in words; absence: times from and until which it is absent."""
 
     name: str
     start: Point
@@ -22,7 +22,7 @@ class NumberedWall(NamedTuple):
 
     @property
     def is_gate(self) -> bool:
-        """Whether it is not there at some time."""
+        """Whether it is absent at some time."""
         return math.isfinite(self.absence[0])
 
     def is_there(self, time: float) -> bool:

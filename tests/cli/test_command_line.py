@@ -93,7 +93,7 @@ def test_a_window_beyond_the_end_has_all_digits(log):
 
 
 def test_resume_to_an_earlier_end(log):
-    for option, text in (("--collisions-per-disc", "100 collisions a disc; 30"), ("--until", "units of time; 30")):
+    for option, text in (("--collisions-per-disc", "100 collisions per disc; 30"), ("--until", "units of time; 30")):
         done = called("resume", log, option, "30")
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr.startswith(f"{log}: already at ")

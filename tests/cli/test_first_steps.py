@@ -26,7 +26,7 @@ def test_an_example_is_copied_and_can_be_checked(tmp_path):
         assert (tmp_path / name).read_bytes() == (CONFIGS / name).read_bytes()
     assert called("check", "piston.toml", folder=tmp_path).returncode == 0
     again = called("examples", "piston", folder=tmp_path)
-    assert (again.returncode, again.stderr) == (2, "piston.toml: exists already (--force replaces it)\n")
+    assert (again.returncode, again.stderr) == (2, "piston.toml: already exists (use --force to overwrite)\n")
     assert called("examples", "piston", "--force", folder=tmp_path).returncode == 0
     assert called("examples", "quickstart.toml", "-o", "mine.toml", folder=tmp_path).returncode == 0
     assert (tmp_path / "mine.toml").read_bytes() == (CONFIGS / "quickstart.toml").read_bytes()

@@ -53,7 +53,7 @@ def test_plot_and_window(command, folder, tmp_path):
     assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
     again = called(command, "run.h5", "--plot", "picture.png", folder=tmp_path)
     assert (again.returncode, again.stdout) == (2, "")
-    assert again.stderr == "picture.png: exists already (--force replaces it)\n"
+    assert again.stderr == "picture.png: already exists (use --force to overwrite)\n"
 
 
 BAD = ("missing", "folder", "empty", "text", "noise", "other", "start", "half")

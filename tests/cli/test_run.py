@@ -91,7 +91,7 @@ NO_LOG = "is no log of idealgas: --force replaces no other files"
 def test_an_existing_output_is_refused_and_left_alone(tmp_path):
     output = tmp_path / "run.h5"
     output.write_bytes(b"precious")
-    for force, why in (((), "exists already (--force replaces it)"), (("--force",), NO_LOG)):
+    for force, why in (((), "already exists (use --force to overwrite)"), (("--force",), NO_LOG)):
         result = called("run", CORNER, "-o", "run.h5", *force, folder=tmp_path)
         assert (result.returncode, result.stdout) == (2, "")
         assert result.stderr == f"run.h5: {why}\n"

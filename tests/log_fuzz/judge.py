@@ -17,7 +17,7 @@ from log_fuzz.commands import Form
 from log_fuzz.effect import Effect, Expect
 from log_fuzz.workers import Outcome, run_form
 
-NOTICES = re.compile(r"^[^\n]*: (?:is being written|its writer died)[^\n]*\n|^premise: [^\n]*\n", re.MULTILINE)
+NOTICES = re.compile(r"^[^\n]*: (?:is being written|was not closed)[^\n]*\n|^premise: [^\n]*\n", re.MULTILINE)
 """Lines on stderr that a command says of a log that it reads."""
 PASSING = re.compile(r'"(?:bytes|seconds|compile_seconds|events_per_second|path)": [^\n]*|^│ bytes .*$', re.MULTILINE)
 """What is another at every run, or in another file with the same contents."""

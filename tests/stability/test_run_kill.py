@@ -100,7 +100,7 @@ def test_killed_and_resumed(case, kind, undisturbed, tmp_path):
     with open_log(path) as log:
         unclosed = log.unclosed
     said = idealgas("info", path)
-    assert (said.returncode, "its writer died" in said.stderr) == (0, unclosed)
+    assert (said.returncode, "was not closed" in said.stderr) == (0, unclosed)
     resumed(path)
     assert differences(path, expected) == []
 

@@ -158,7 +158,7 @@ def test_run_resume_and_analyse(tmp_path):
     )
     assert not stopped.completed
     assert shares
-    with pytest.raises(idealgas.OutputError, match="exists already"):
+    with pytest.raises(idealgas.OutputError, match="already exists"):
         idealgas.simulate(scene, path)
     idealgas.resume(path)
     summary = idealgas.resume(path, "run.until=500")

@@ -35,7 +35,7 @@ def test_only_files_of_the_same_kind_are_replaced(tmp_path):
     scene.write_text("[box]")
     page.write_text("<!doctype html><title>mine</title>")
     empty.touch()
-    assert refused(scene) == "exists already (--force replaces it)"
+    assert refused(scene) == "already exists (use --force to overwrite)"
     assert refused(scene, force=True) == "is no log of idealgas: --force replaces no other files"
     assert refused(page, ".html", force=True) == "is no .html file of idealgas: --force replaces no other files"
     check_output(empty, LOG, force=True)
@@ -97,7 +97,7 @@ def test_what_came_in_between_stays(tmp_path):
             part.write_text("mine")
             path.write_text("theirs")
 
-    with pytest.raises(OutputError, match="exists already"):
+    with pytest.raises(OutputError, match="already exists"):
         late()
     assert path.read_text() == "theirs"
 

@@ -17,6 +17,6 @@ ANALYSIS = Analysis(
             "momenta in cells against collisions of a disc; theory dashed",
         ),
     ),
-    start="20 collisions a disc, or more with slow spins",
+    start="20 collisions per disc, or more with slow spins",
     reads="frames",
 )

@@ -35,7 +35,7 @@ FEWEST = 16
 """Least number of instants in the window of the averages."""
 
 SETTLED, FOLDS = 20.0, 5.0
-"""Averages begin after so many collisions a disc, and after so many of the times in which the temperature ratio comes
+"""Averages begin after so many collisions per disc, and after so many of the times in which the temperature ratio comes
 nearer to its value by a factor e."""
 
 IN_A_CELL = 8
@@ -90,7 +90,7 @@ def cooling(
 ) -> Cooling:
     """Measure how a gas of equal discs cools by its collisions, and compare it with the laws of a uniform gas.
 
-    start, end: window of the averages, times; by default from 20 collisions a disc (more where the ratio of the
+    start, end: window of the averages, times; by default from 20 collisions per disc (more where the ratio of the
     temperatures takes longer) to the end of the log. progress(
     done, in all) is called as states are read. Raises NotApplicableError where anything but collisions of equal discs
     changes the energy, or where the window is too short.
@@ -114,7 +114,7 @@ def cooling(
     window = np.flatnonzero(collisions >= settled if start is None else time >= start)
     if len(window) < FEWEST:
         needs = f"the averages begin after {settled:.3g}; --from T sets a start by hand"
-        raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions a disc ({needs})")
+        raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions per disc ({needs})")
     share = dof / (2 * len(log.discs))  # a conserved momentum leaves as much heat to fewer degrees of freedom
     fast = None if rate is None else rate / share
     law = expected_course(grains, fast, t0, s0, time)
@@ -166,7 +166,7 @@ def _averages(
     freedom of the motion of the n discs.
     """
     energy, few = course.temperature + n / dof * course.spin, 1 / dof
-    temperature = energy * (course.temperature / energy).mean()  # without what goes to and fro between motion and spin
+    temperature = energy * (course.temperature / energy).mean()  # without the exchange between motion and spin
     lost, apart = -np.diff(np.log(temperature)), np.diff(course.collisions)
     expected = granular.cooling_per_collision(grains) * 2 * n / dof
     loss = ratio(lost, apart, _theory(grains, expected, math.hypot(LOSS_ERROR, few)))

@@ -191,7 +191,7 @@ class Analysis:
         label: name of the point. origin: its run.
         """
         result = self._code("combine", f"restore_{self.name}")(found, label)
-        premises = tuple(found.get("premises", ()))  # those of before have none
+        premises = tuple(found.get("premises", ()))
         return replace(result, premises=premises, origin=origin, title=origin.title if origin else label)
 
     def tables(self, combined: Any) -> "list[Table]":

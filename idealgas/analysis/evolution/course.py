@@ -115,7 +115,7 @@ def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarr
 def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
     """Scatter of bins about straight lines through GROUP of them, over what independent blocks in them let expect.
 
-    Sound and pistons push a wall to and fro within a bin, so that the mean of a bin varies less than its blocks tell.
+    Sound and pistons push a wall back and forth within a bin, so the mean of a bin varies less than its blocks.
     Groups far beyond the median of all do not count: a gate opened in them, or a heat bath set in.
     """
     if len(values) < GROUP:

@@ -103,9 +103,9 @@ def histogram(
     """Measure a distribution between two times of a log, species by species, and test it against its laws.
 
     quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
-    wait, the time between two successive events of the gas. The laws of velocities are Maxwell and Boltzmann's and that
-    at fixed energy of N discs; of free flights that of a dilute gas; of waits the exponential one. The p-values are
-    those of Kolmogorov and Smirnov's test of decorrelated samples. Under gravity or a piston the temperature of the law
+    wait, the time between two successive events of the gas. Velocities are compared with the Maxwell-Boltzmann
+    distribution and that of N discs at fixed energy, free flights with a dilute gas, waits with an exponential one. The
+    p-values are those of Kolmogorov and Smirnov's test of decorrelated samples. Under gravity or a piston the temperature of the law
     is the measured one. A gas that never comes to equilibrium has no law, and its window is the whole log by default.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as

@@ -163,7 +163,7 @@ class _Distances:
         """Middle of each bin that mostly has pairs in it, mean of the product there, and its standard error."""
         product, pairs = np.moveaxis(np.array(self._sums), 1, 0)
         middle = (np.arange(self._bins) + 0.5) * (self._reach / self._bins)
-        some = (pairs > 0).mean(axis=0) > 0.5  # seldom seen, a product has no error that is known
+        some = (pairs > 0).mean(axis=0) > 0.5  # a product that is rarely observed has no known error
         value = product.sum(axis=0)[some] / pairs.sum(axis=0)[some]
         influence = (product[:, some] - value * pairs[:, some]) / pairs[:, some].mean(axis=0)
         error = np.array([mean(column).standard_error for column in influence.T])

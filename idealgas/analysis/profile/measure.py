@@ -110,7 +110,7 @@ def profile(
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
-    """Sentence for each species that is seen too seldom in some strips."""
+    """Sentence for each species that is found too rarely in some strips."""
     for entry in species:
         if missing := sum(np.isnan(found.value) for found in entry.temperature):
             yield (

@@ -109,7 +109,7 @@ def relaxation(
     progress: Callable[[int, int], None] | None = None,
     every: float | None = None,
 ) -> Relaxation:
-    """Follow how the speeds of a gas come to Maxwell and Boltzmann's distribution, and fit the time that it takes.
+    """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit its time.
 
     start, end: times; by default from the start of the log until HORIZON collisions per disc later. progress(done, in
     all) is called as states are read. Raises UserError if no two discs collide in between, or if the energy of the

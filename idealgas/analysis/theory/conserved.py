@@ -70,7 +70,7 @@ def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
 def is_ergodic(scene: Scene, gas: Gas) -> bool:
     """Whether a gas reaches all states of its energy. False for one disc, and two equal discs without momentum.
 
-    One disc keeps its speed along x and along y, or hands it to and fro between few motions at rough walls. The
+    One disc keeps its speed along x and along y, or exchanges it between few motions at rough walls. The
     velocities of the two remain equal in every component except for signs between walls, and as long as they meet with
     opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
     """
@@ -94,7 +94,7 @@ def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
     elif not is_ergodic(scene, gas):
         found.append(
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
-            "temperatures along x and y may differ for ever. Give them velocities of their own."
+            "temperatures along x and y may differ indefinitely. Give them velocities of their own."
         )
     velocity = common_motion(scene, gas)
     if (share := share_of_motion(gas, velocity)) > SAID_FROM:

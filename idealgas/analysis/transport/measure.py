@@ -250,7 +250,7 @@ def _contacts(
 
 
 def _free_time(discs: Composition, rates: tuple[CollisionRate, ...]) -> float:
-    """Mean free time of the species that collides most seldom, time; infinite if none collides."""
+    """Longest mean free time of a species, time; infinite if none collides."""
     per_disc = [sum(r.rate.value for r in rates if r.species == name) for name in discs.name]
     slowest = min((rate for rate in per_disc if rate > 0), default=0.0)
     return 1 / slowest if slowest else math.inf

@@ -19,7 +19,7 @@ from idealgas.physics.effects import Effects
 from idealgas.state import Gas
 
 IN_ANY_ORDER = 4096
-"""Discs that the caches hold: they are not sorted in memory anew at each epoch."""
+"""Discs that the caches hold: they are not sorted again in memory at each epoch."""
 
 
 def expected_threads(gas: Gas, threads: int | None, local: bool) -> Threads:

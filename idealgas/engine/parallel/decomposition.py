@@ -171,7 +171,7 @@ class Team:
         return until if (until - now) * events >= tuning.events else 0.0
 
     def _trial(self, by_disc: float) -> int:
-        """Events of a slice that shows what a way takes; by_disc: events a disc, unless that comes to few."""
+        """Events of a slice that shows what a way takes; by_disc: events per disc, unless that comes to few."""
         return max(TRIAL * self._crew.tuning.events, int(by_disc * len(self._discs.record)), FEW)
 
     def _alone(

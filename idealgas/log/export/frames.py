@@ -105,7 +105,7 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
 
 
 class _Target(io.RawIOBase):
-    """A file for HDF5, which crashes where writing fails: this one goes on in vain, and `failure` says why."""
+    """A file for HDF5, which crashes where writing fails: this one continues without effect and keeps `failure`."""
 
     def __init__(self, path: Path) -> None:
         self._file = path.open("w+b")

@@ -23,7 +23,7 @@ class Objects:
         self._compressed = compression == "gzip"
 
     def group(self, path: str) -> h5g.GroupID:
-        """A group, made if it is not there."""
+        """A group, created if it is missing."""
         if path not in self._groups:
             above, _, name = path.rpartition("/")
             self._groups[path] = h5g.create(self.group(above), name.encode(), gcpl=_group_layout())

@@ -3,7 +3,7 @@
 A log has groups, datasets in chunks with one of two filter pipelines, and attributes; all of them hold numbers or text
 of fixed length, and lie in the file itself. Anything else is refused before HDF5 follows or allocates it: links to
 other places and files, storage in other files, virtual datasets, references, text of variable length, other filters.
-What is refused raises ValueError, and what is not there KeyError.
+Refused objects raise ValueError, missing ones KeyError.
 """
 
 import math

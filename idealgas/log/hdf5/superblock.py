@@ -44,7 +44,7 @@ def clear_mark(path: Path) -> None:
 class Unmarked(io.RawIOBase):
     """A file to read as if its writer had closed it.
 
-    HDF5's own way, SWMR, goes on trying for ever where a byte is damaged. The file seems to end far away, since a
+    HDF5's own way, SWMR, retries indefinitely where a byte is damaged. The file seems to end far away, since a
     living writer may put there what it will then tell of; whatever it has not put there yet is zero.
     """
 

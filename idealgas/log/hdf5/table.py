@@ -112,7 +112,7 @@ def _named(path: str) -> Iterator[None]:
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, Table]:
     """The tables of a file, ready to grow after the first `keep` rows of each.
 
-    To be called before SWMR mode, in which HDF5 goes on trying for ever where an index is damaged.
+    To be called before SWMR mode, in which HDF5 retries indefinitely where an index is damaged.
     """
     columns: dict[str, dict[str, StoredColumn]] = {name: {} for name in commit.rows}
     encoder = chunks.Encoder()

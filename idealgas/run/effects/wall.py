@@ -14,7 +14,7 @@ from idealgas.state import Gas
 def make_segments(
     start: np.ndarray, end: np.ndarray, opens: np.ndarray | float = math.inf, closes: np.ndarray | float = math.inf
 ) -> np.recarray:
-    """(S,) SEGMENT at time 0. start, end: (S, 2). opens, closes: from when to when each is not there."""
+    """(S,) SEGMENT at time 0. start, end: (S, 2). opens, closes: times from and until which each is absent."""
     segments = aligned(len(start), SEGMENT)
     segments.x, segments.y = start.T
     segments.length = np.hypot(*(end - start).T)

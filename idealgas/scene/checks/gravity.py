@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Gravity that does not acceleration, or pulls through periodic sides for ever."""
+    """Gravity without acceleration, or along periodic sides, where discs would accelerate indefinitely."""
     gravity = scene.gravity
     if gravity is None or {"gravity", "box"} & invalid:
         return

@@ -83,7 +83,7 @@ def contact_duration(
 ) -> float:
     """As given, or by default, time; infinite if nothing ever moves.
 
-    A constant force presses a disc that has come to rest on the wall below it for ever, so the default bounds its hits
+    A constant force presses a disc that has come to rest on the wall below it, so the default bounds its hits
     by a multiple of those of the gas: it is a twentieth of the mean free time. Without such a force the discs of a
     cluster part as soon as their collisions are elastic, and the default only has to end the collapse: it is a
     millionth of the time in which a disc moves by its diameter, which no average can tell from zero.

@@ -30,7 +30,7 @@ class Run(Table):
     until: Positive | None = Field(default=None, description="time")
     events: Whole | None = Field(default=None, ge=1, lt=2**63, description="number of pair collisions and wall hits")
     collisions_per_disc: Positive | None = Field(
-        default=None, description="pair collisions a disc takes part in, averaged over all discs (2 * collisions / N)"
+        default=None, description="average number of pair collisions per disc (2 * collisions / N)"
     )
     trials: Whole | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
     dt: Positive | None = Field(default=None, description="with time_driven, and required there: step, time")

@@ -24,13 +24,13 @@ class Wall(Table):
     temperature: Positive | None = Field(
         default=None, description="temperature > 0, energy, at which it emits discs; it reflects if absent"
     )
-    opens_at: Positive | None = Field(default=None, description="time > 0 from which it is not there")
+    opens_at: Positive | None = Field(default=None, description="time > 0 at which it is removed")
     closes_at: Positive | None = Field(default=None, description="time > 0 from which it is there again")
     name: Word | None = Field(default=None, description="a word of its own; in the log; if absent its number")
 
     @property
     def absence(self) -> tuple[float, float]:
-        """From when to when it is not there; both infinite for a wall that always is."""
+        """Times from and until which it is absent; both infinite for a wall that is always present."""
         if self.opens_at is None and self.closes_at is not None:
             return 0.0, self.closes_at
         return self.opens_at or math.inf, self.closes_at or math.inf

@@ -108,7 +108,7 @@ def test_recovery_of_a_copy(left, tmp_path):
     stop = recover(left, tmp_path / "copy.h5")
     assert left.read_bytes() == before
     assert_plain(tmp_path / "copy.h5", stop)
-    with pytest.raises(OutputError, match="exists already"):
+    with pytest.raises(OutputError, match="already exists"):
         recover(left, tmp_path / "copy.h5")
 
 

@@ -65,7 +65,7 @@ def test_clusters_are_said(make):
     [
         (("restitution.normal=1",), "collisions of its discs lose no energy"),
         (("restitution.wall=0.9", "box={ size = [14, 14] }"), r"more than collisions of discs .* \(walls\)"),
-        (("run.collisions_per_disc=15",), "too short, with 15 collisions a disc"),
+        (("run.collisions_per_disc=15",), "too short, with 15 collisions per disc"),
     ],
 )
 def test_refused(make, overrides, why):
