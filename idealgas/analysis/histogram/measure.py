@@ -102,11 +102,12 @@ def histogram(
 ) -> Histogram:
     """Measure a distribution between two times of a log, species by species, and test it against its laws.
 
-    quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs; or
-    wait, the time between two successive events of the gas. Velocities are compared with the Maxwell-Boltzmann
-    distribution and that of N discs at fixed energy, free flights with a dilute gas, waits with an exponential one. The
-    p-values are those of Kolmogorov and Smirnov's test of decorrelated samples. Under gravity or a piston the temperature of the law
-    is the measured one. A gas that never comes to equilibrium has no law, and its window is the whole log by default.
+    quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs;
+    or wait, the time between two successive events of the gas. Velocities are compared with the Maxwell-Boltzmann
+    distribution and that of N discs at fixed energy, free flights with a dilute gas, waits with an exponential one.
+    The p-values are those of Kolmogorov and Smirnov's test of decorrelated samples. Under gravity or a piston the
+    temperature of the law is the measured one. A gas that never comes to equilibrium has no law, and its window is
+    the whole log by default.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if no disc moves or if there are too few events in the window.
