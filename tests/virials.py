@@ -10,6 +10,8 @@ from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import IMAGES, POSITIONS, empty_batch, event_columns
 from idealgas.initial.placement import insert_on_lattice, insert_randomly, make_grid
+from idealgas.log import Flights, LogState
+from idealgas.log.join import Join
 from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
 from idealgas.sides import OUTWARD, SIDES
@@ -58,9 +60,27 @@ def _run(radius, box, periodic, random, collisions, warm_up, lattice):
     for _ in _rows(simulation, warm_up * n // 2, any(periodic)):
         pass
     start, tally = simulation.last_event_time, Impacts(periodic=periodic)
-    tally.begin(simulation.state()[0], np.array([start, math.inf]))
+    gas, _ = simulation.state()
+    tally.begin(gas, np.array([start, math.inf]))
+    join = Join(LogState(start, gas.position, gas.velocity), ("time", "velocity"))
     for rows in _rows(simulation, warm_up * n // 2 + collisions, any(periodic)):
-        tally.add(rows)
+        before = join.pass_on({"time": rows.time, "disc": rows.disc, "velocity": rows.velocity})
+        tally.add(
+            Flights(
+                disc=rows.disc,
+                block=np.zeros(len(rows.disc), np.intp),
+                start=before["time"],
+                end=rows.time,
+                kind=rows.kind,
+                partner=rows.partner,
+                velocity=before["velocity"],
+                end_velocity=before["velocity"],
+                new_velocity=rows.velocity,
+                displacement=before["velocity"] * (rows.time - before["time"])[:, None],
+                end_position=rows.position,
+            )
+        )
+    tally.finish()
     duration = simulation.last_event_time - start
     pairs = 1 + tally.pair_virial[0] / duration / (2 * n)
     axes = 2 - sum(periodic)

@@ -5,6 +5,7 @@ event left it in, when that was, and what the event at the end made of it. One p
 """
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, cast
 
@@ -173,8 +174,8 @@ class EventLog(Protocol):
 class FlightReader:
     """Flights of a log between the first and the last of some edges, cut at those in between.
 
-    `batches` is what most need. The steps in between are for sums over whole flights and over pieces in one pass;
-    there, flights are columns by name: those asked for, and those from which these follow where a flight is cut.
+    `batches` is what most need. Its steps are for sums over whole flights and over pieces in one pass; there, flights
+    are columns by name: those asked for, and those from which these follow where a flight is cut.
     """
 
     def __init__(
@@ -207,26 +208,26 @@ class FlightReader:
 
     def batches(self) -> Iterator[Flights]:
         """Pieces of flights between the edges, in batches."""
-        for flights in self.whole():
+        for flights in chain(self.whole(), self.open()):
             for pieces in self.cut(flights):
                 yield self.batch(pieces)
 
     def whole(self) -> Iterator[Arrays]:
-        """Flights that are not cut, in batches: those that events end, then the last one of each disc.
-
-        Their block is that of their end.
-        """
+        """Flights that events end, not cut, in batches. Their block is that of their end."""
         log, (first, last) = self._log, self._edges[[0, -1]]
-        join = Join(log.state_at(first), self._read)
+        self._join = Join(log.state_at(first), self._read)
         for rows in whole_pairs(log.chunks(self._read, log.row_at(first, "right"), log.row_at(last, "right"))):
             if self._discs is not None:
                 chosen = np.flatnonzero(np.isin(rows["disc"], self._discs))
                 rows = {name: values[chosen] for name, values in rows.items()}
             if len(rows["disc"]):
-                yield self._flights(join.pass_on(rows), rows["time"], rows)
-        every = np.arange(join.discs) if self._discs is None else self._discs
+                yield self._flights(self._join.pass_on(rows), rows["time"], rows)
+
+    def open(self) -> Iterator[Arrays]:
+        """Flights that are open at the last edge, one of each disc, in batches; after all those of `whole`."""
+        every = np.arange(self._join.discs) if self._discs is None else self._discs
         for some in np.split(every, range(BATCH, len(every), BATCH)):
-            yield self._flights(join.states(some), np.full(len(some), last), None)
+            yield self._flights(self._join.states(some), np.full(len(some), self._edges[-1]), None)
 
     def cut(self, flights: Arrays) -> Iterator[Arrays]:
         """The pieces between edges of a batch of whole flights, in batches."""

@@ -1,22 +1,22 @@
 """Velocity quantities along a fall at constant acceleration: values, times at which they are met, and integrals.
 
 A fall starts at velocity (vx, vy), length/time, under the acceleration `gravity`, length/time². Quantities are numbered
-as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy.
+as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy. All but `gravity` may be arrays (n,).
 """
 
-import math
+import numpy as np
 
-from idealgas.jit import inline
-from idealgas.physics.motion import NEVER, velocity_after
+from idealgas.physics.motion import velocity_after
 
 SPEED, ALONG_X, ALONG_Y = range(3)
 
+Gravity = tuple[float, float]
 
-@inline
-def velocity_quantity(quantity, mass, vx, vy):
+
+def velocity_quantity(quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray) -> np.ndarray:
     """Value of a quantity at a velocity."""
     if quantity == SPEED:
-        return math.sqrt(vx * vx + vy * vy)
+        return np.sqrt(vx * vx + vy * vy)
     if quantity == ALONG_X:
         return vx
     if quantity == ALONG_Y:
@@ -24,46 +24,51 @@ def velocity_quantity(quantity, mass, vx, vy):
     return 0.5 * mass * (vx * vx + vy * vy)
 
 
-@inline
-def value_in_fall(quantity, mass, vx, vy, gravity, time):
+def value_in_fall(
+    quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray
+) -> np.ndarray:
     """Value of a quantity at a time after the start of a fall."""
     return velocity_quantity(quantity, mass, velocity_after(vx, gravity[0], time), velocity_after(vy, gravity[1], time))
 
 
-@inline
-def changes_in_fall(quantity, gravity):
+def changes_in_fall(quantity: int, gravity: Gravity) -> bool:
     """Whether a quantity changes in a fall: a component of the velocity does not across the acceleration."""
-    if quantity == ALONG_X:
-        return gravity[0] != 0.0
-    if quantity == ALONG_Y:
-        return gravity[1] != 0.0
-    return gravity[0] != 0.0 or gravity[1] != 0.0
-
-
-@inline
-def turning_time(quantity, vx, vy, gravity):
-    """Time at which a quantity is least in a fall, maybe before its start; NEVER if it rises or falls all the time."""
     if quantity in (ALONG_X, ALONG_Y):
-        return NEVER
+        return gravity[quantity - ALONG_X] != 0.0
+    return any(gravity)
+
+
+def turning_time(quantity: int, vx: np.ndarray, vy: np.ndarray, gravity: Gravity) -> np.ndarray:
+    """Time at which a quantity is least in a fall, maybe before its start; infinite if it is monotonic."""
+    if quantity in (ALONG_X, ALONG_Y):
+        return np.full_like(vx, np.inf)
     return -(vx * gravity[0] + vy * gravity[1]) / (gravity[0] ** 2 + gravity[1] ** 2)
 
 
-@inline
-def time_at_value(quantity, mass, value, rises, vx, vy, gravity):
-    """Time in a fall at which a quantity has a value, after its least value if `rises`, else before it."""
+def time_at_value(
+    quantity: int,
+    mass: np.ndarray,
+    value: np.ndarray,
+    rises: np.ndarray,
+    vx: np.ndarray,
+    vy: np.ndarray,
+    gravity: Gravity,
+) -> np.ndarray:
+    """Time in a fall at which a quantity has a value, after its least value where it `rises`, else before it."""
     if quantity == ALONG_X:
         return (value - vx) / gravity[0]
     if quantity == ALONG_Y:
         return (value - vy) / gravity[1]
     square = value * value if quantity == SPEED else 2.0 * value / mass
     a = gravity[0] ** 2 + gravity[1] ** 2
-    across = vx * gravity[1] - vy * gravity[0]  # of the velocity, times √a: what the fall leaves as it is
-    way = math.sqrt(max(square - across * across / a, 0.0) / a)
-    return turning_time(quantity, vx, vy, gravity) + (way if rises else -way)
+    across = vx * gravity[1] - vy * gravity[0]  # of the velocity, times √a: unchanged by the fall
+    apart = np.sqrt(np.maximum(square - across * across / a, 0.0) / a)
+    return turning_time(quantity, vx, vy, gravity) + np.where(rises, apart, -apart)
 
 
-@inline
-def integral_over_fall(quantity, mass, vx, vy, gravity, time):
+def integral_over_fall(
+    quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray
+) -> np.ndarray:
     """Integral of a quantity over a fall of a duration."""
     if quantity == SPEED:
         return length_of_fall(vx, vy, gravity, time)
@@ -75,24 +80,21 @@ def integral_over_fall(quantity, mass, vx, vy, gravity, time):
     return 0.5 * mass * time * (c + time * (b + time * a / 3.0))
 
 
-@inline
-def length_of_fall(vx, vy, gravity, time):
+def length_of_fall(vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray) -> np.ndarray:
     """Length of the path of a fall of a duration, length."""
     a, b = gravity[0] ** 2 + gravity[1] ** 2, vx * gravity[0] + vy * gravity[1]  # v² = a s² + 2 b s + v₀²
-    across = abs(vx * gravity[1] - vy * gravity[0]) / a
-    return math.sqrt(a) * (_half_arc(time + b / a, across) - _half_arc(b / a, across))
+    across = np.abs(vx * gravity[1] - vy * gravity[0]) / a
+    return np.asarray(np.sqrt(a) * (_half_arc(time + b / a, across) - _half_arc(b / a, across)))
 
 
-@inline
-def length_of_flight(vx, vy, gravity, time):
+def length_of_flight(vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray) -> np.ndarray:
     """Length of the path of a flight of a duration, with or without acceleration, length."""
-    if gravity[0] != 0.0 or gravity[1] != 0.0:
+    if any(gravity):
         return length_of_fall(vx, vy, gravity, time)
-    return math.sqrt(vx**2 + vy**2) * time
+    return np.asarray(np.sqrt(vx**2 + vy**2) * time)
 
 
-@inline
-def _half_arc(u, k):
+def _half_arc(u: np.ndarray, k: np.ndarray) -> np.ndarray:
     """Integral ∫₀ᵘ √(s² + k²) ds."""
-    root = math.sqrt(u * u + k * k)
-    return 0.5 * (u * root + (k * k * math.asinh(u / k) if k > 0.0 else 0.0))
+    curved = np.where(k > 0.0, k, 1.0)
+    return 0.5 * (u * np.sqrt(u * u + k * k) + k * k * np.arcsinh(u / curved))

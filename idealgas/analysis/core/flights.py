@@ -1,7 +1,6 @@
-"""Time averages of velocities: moments and histograms, weighted with the duration of each flight."""
+"""Time averages of velocities and numbers of discs in bins of the box, from flights cut at the edges of blocks."""
 
-import math
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,20 +13,21 @@ from idealgas.analysis.core.ballistic import (
     value_in_fall,
     velocity_quantity,
 )
-from idealgas.analysis.core.stream import block_at, block_back
-from idealgas.events import BATH
-from idealgas.jit import inline, njit
-from idealgas.physics.motion import velocity_after
+from idealgas.analysis.core.stream import add_to
+from idealgas.events import Kind
+from idealgas.log import Flights
+from idealgas.log.flights import NO_EVENT
 from idealgas.state import Gas
 
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
 
-T, VX, VY = range(3)  # columns of a track: time of the disc's last event, velocity after it
+AT_ONCE = 2**13
+"""Number of falls whose ways through the bins of a histogram are in memory together."""
 
-
-def make_tracks(gas: Gas, start: float) -> np.ndarray:
-    """Tracks (N, 3) of all discs: time `start` and the components of the velocity then."""
-    return np.column_stack((np.full(len(gas), start), gas.velocity))
+_COLLISION, _WALL_HIT, _OTHER = range(3)
+_SORT = np.full(NO_EVENT + 1, _OTHER)  # of an event, by its kind
+_SORT[Kind.DISC] = _COLLISION
+_SORT[[Kind.WALL, Kind.WALL_END, Kind.PISTON]] = _WALL_HIT
 
 
 class Moments:
@@ -37,92 +37,54 @@ class Moments:
     events: (B, 2), numbers of pair collisions and of wall hits.
     """
 
-    columns = ("time", "disc", "partner", "velocity")
+    columns = ("disc", "block", "start", "end", "kind", "velocity")
+    cut = True
 
     def __init__(self, gravity: tuple[float, float] = (0.0, 0.0)) -> None:
         """Take the acceleration `gravity` in length/time²; with it flights are parabolas."""
         self.gravity = gravity
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
-        self.edges = edges
-        self.flights = np.zeros((len(edges) - 1, len(gas.species_names), 4))
-        self.events = np.zeros((len(edges) - 1, 2), np.int64)
-        self._species, self._mass = gas.species, gas.mass
-        self._tracks = make_tracks(gas, edges[0])
-        self._block = 0
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        self._species, self._mass = gas.species.astype(np.intp), gas.mass
+        self._sums = np.zeros((4, len(edges) - 1, len(gas.species_names)))
+        self._counts = np.zeros((len(edges) - 1, 3), np.int64)
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
-        self._block = _add_moments(
-            rows.time, rows.disc, rows.partner, rows.velocity, self.gravity,
-            self._species, self._mass, self._tracks, self.edges, self._block, self.flights, self.events,
-        )  # fmt: skip
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        add_to(self._counts, flights.block * 3 + _SORT.take(flights.kind))
+        index = flights.block * self._sums.shape[2] + self._species.take(flights.disc)
+        mass, time = self._mass.take(flights.disc), flights.end - flights.start
+        vx, vy = flights.velocity.T
+        if any(self.gravity):
+            integrals = _moments_of_fall(mass, vx, vy, self.gravity, time)
+        else:
+            squares = vx * vx, vy * vy
+            square = squares[0] + squares[1]
+            weight, energy = mass * time, mass * square  # twice the kinetic energy
+            integrals = time * np.sqrt(square), weight * squares[0], weight * squares[1], time * energy * energy
+        for sums, values in zip(self._sums, integrals, strict=True):
+            add_to(sums, index, values)
 
     def finish(self) -> None:
-        """Add the last part of the flight of every disc, up to time edges[-1]."""
-        _finish_moments(self.gravity, self._species, self._mass, self._tracks, self.edges, self.flights)
+        """Make the sums known."""
+        self.flights = np.moveaxis(self._sums, 0, 2)
+        self.events = self._counts[:, [_COLLISION, _WALL_HIT]] // [2, 1]  # a collision ends two flights
 
 
-@inline
-def _spend_moments(track, gravity, species, mass, until, edges, block, flights):
-    falls = gravity[0] != 0.0 or gravity[1] != 0.0
-    since = track[T]
-    k = block_back(edges, block, since)
-    while True:
-        stop = until if k == block else edges[k + 1]
-        weight = stop - since
-        vx = velocity_after(track[VX], gravity[0], since - track[T])
-        vy = velocity_after(track[VY], gravity[1], since - track[T])
-        sums = flights[k, species]
-        if falls:
-            _add_fall(sums, mass, vx, vy, gravity[0], gravity[1], weight)
-        else:
-            square = vx * vx + vy * vy
-            energy = mass * square  # twice the kinetic energy
-            sums[0] += weight * math.sqrt(square)
-            sums[1] += mass * weight * vx * vx
-            sums[2] += mass * weight * vy * vy
-            sums[3] += weight * energy * energy
-        if k == block:
-            break
-        since = stop
-        k += 1
-
-
-@inline
-def _add_fall(sums, mass, vx, vy, gx, gy, t):
-    """Add the time integrals over a parabolic flight of duration t that starts at velocity (vx, vy)."""
+def _moments_of_fall(
+    mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: tuple[float, float], t: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """Integrals of the moments over parabolic flights of durations t that start at velocities (vx, vy)."""
+    gx, gy = gravity
     a, b, c = gx * gx + gy * gy, vx * gx + vy * gy, vx * vx + vy * vy  # v² = a s² + 2 b s + c
-    sums[0] += length_of_fall(vx, vy, (gx, gy), t)
-    sums[1] += mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0))
-    sums[2] += mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0))
     power = c * c + t * (2.0 * b * c + t * ((4.0 * b * b + 2.0 * a * c) / 3.0 + t * (a * b + t * a * a / 5.0)))
-    sums[3] += mass * mass * t * power
-
-
-@njit
-def _add_moments(time, disc, partner, velocity, gravity, species, mass, tracks, edges, block, flights, events):
-    for row in range(time.shape[0]):
-        i = np.uintp(disc[row])
-        now = time[row]
-        block = block_at(edges, block, now)
-        track = tracks[i]
-        _spend_moments(track, gravity, species[i], mass[i], now, edges, block, flights)
-        track[T] = now
-        track[VX] = velocity[row, 0]
-        track[VY] = velocity[row, 1]
-        if partner[row] < 0:
-            events[block, 1] += partner[row] != BATH
-        elif disc[row] > partner[row]:
-            events[block, 0] += 1
-    return block
-
-
-@njit
-def _finish_moments(gravity, species, mass, tracks, edges, flights):
-    for i in range(tracks.shape[0]):
-        _spend_moments(tracks[i], gravity, species[i], mass[i], edges[-1], edges, edges.shape[0] - 2, flights)
+    return (
+        length_of_fall(vx, vy, gravity, t),
+        mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0)),
+        mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0)),
+        mass * mass * t * power,
+    )
 
 
 class VelocityHistogram:
@@ -132,7 +94,8 @@ class VelocityHistogram:
     over time. snapshots: (B - 1, M), values of the M `sampled` discs at the edges between blocks.
     """
 
-    columns = ("time", "disc", "velocity")
+    columns = ("disc", "block", "start", "end", "velocity")
+    cut = True
 
     def __init__(
         self,
@@ -153,130 +116,109 @@ class VelocityHistogram:
         self.sampled = sampled
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
         self.counts = np.zeros((len(edges) - 1, len(gas.species_names), self.bins + 2))
         self.sums = np.zeros((len(edges) - 1, len(gas.species_names)))
-        self.snapshots = np.zeros((len(edges) - 1, len(self.sampled)))
+        self.snapshots = np.zeros((len(edges) - 2, len(self.sampled)))
         self._slot = np.full(len(gas), -1)
         self._slot[self.sampled] = np.arange(len(self.sampled))
-        self._species, self._mass = gas.species, gas.mass
-        self._tracks = make_tracks(gas, edges[0])
-        self._block = 0
+        self._species, self._mass = gas.species.astype(np.intp), gas.mass
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
-        self._block = _add_histogram(
-            rows.time, rows.disc, rows.velocity, self.quantity, self.gravity, self._species, self._mass, self._slot,
-            self._tracks, self.edges, self._block, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
-        )  # fmt: skip
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        time, (vx, vy) = flights.end - flights.start, flights.velocity.T
+        species, mass = self._species.take(flights.disc), self._mass.take(flights.disc)
+        place = flights.block * len(self.low) + species
+        value = velocity_quantity(self.quantity, mass, vx, vy)
+        if changes_in_fall(self.quantity, self.gravity):
+            add_to(self.sums, place, integral_over_fall(self.quantity, mass, vx, vy, self.gravity, time))
+            for first in range(0, len(time), AT_ONCE):
+                some = slice(first, first + AT_ONCE)
+                self._spread(place[some], species[some], mass[some], vx[some], vy[some], time[some])
+        else:
+            add_to(self.sums, place, value * time)
+            add_to(self.counts, place * (self.bins + 2) + self._bin_of(value, species), time)
+        slot = self._slot.take(flights.disc)
+        at_edge = np.flatnonzero((slot >= 0) & (flights.block > 0) & (flights.start == self.edges.take(flights.block)))
+        self.snapshots[flights.block[at_edge] - 1, slot[at_edge]] = value[at_edge]
 
     def finish(self) -> None:
-        """Add the last part of the flight of every disc, up to time edges[-1]."""
-        _finish_histogram(
-            self.quantity, self.gravity, self._species, self._mass, self._slot,
-            self._tracks, self.edges, self.low, self.per_unit, self.counts, self.sums, self.snapshots,
-        )  # fmt: skip
-        self.snapshots = self.snapshots[:-1]
+        """Do nothing: the sums are complete."""
+
+    def _bin_of(self, value: np.ndarray, species: np.ndarray) -> np.ndarray:
+        return bin_of(value, self.low.take(species), self.per_unit.take(species), self.bins)
+
+    def _spread(
+        self,
+        place: np.ndarray,
+        species: np.ndarray,
+        mass: np.ndarray,
+        vx: np.ndarray,
+        vy: np.ndarray,
+        duration: np.ndarray,
+    ) -> None:
+        """Add the times that a quantity spends in each bin during falls (n,), before its least value and after it."""
+        turn = np.clip(turning_time(self.quantity, vx, vy, self.gravity), 0.0, duration)
+        for rises, start, end in ((False, np.zeros_like(turn), turn), (True, turn, duration)):
+            first, last = (
+                self._bin_of(value_in_fall(self.quantity, mass, vx, vy, self.gravity, time), species)
+                for time in (start, end)
+            )
+            steps = np.abs(last - first)
+            k = np.repeat(np.arange(len(steps)), steps + 1)  # the fall of each stay in a bin
+            number = np.arange(len(k)) - (np.cumsum(steps + 1) - steps - 1)[k]
+            up = last[k] > first[k]
+            b = first[k] + np.where(up, number, -number)
+            edge = self.low[species[k]] + np.where(up, b, b - 1) / self.per_unit[species[k]]
+            met = time_at_value(self.quantity, mass[k], edge, np.full(len(k), rises), vx[k], vy[k], self.gravity)
+            until = np.where(number == steps[k], end[k], np.clip(met, start[k], end[k]))
+            since = np.where(number == 0, start[k], np.roll(until, 1))
+            add_to(self.counts, place[k] * (self.bins + 2) + b, until - since)
 
 
-@inline
-def bin_of(value, low, per_unit, bins):
-    """Index of the bin of a value: 0 below the range, 1 to `bins` inside, bins + 1 above."""
+def bin_of(value: np.ndarray, low: np.ndarray | float, per_unit: np.ndarray | float, bins: int) -> np.ndarray:
+    """Index of the bin of each value: 0 below the range, 1 to `bins` inside, bins + 1 above."""
     place = (value - low) * per_unit
-    inside = np.int64(min(max(place, -1.0), bins + 0.0))
-    return 0 if place < 0 else inside + 1
+    return np.where(place < 0, 0, np.clip(place, 0, bins).astype(np.intp) + 1)
 
 
-@inline
-def _spend_histogram(
-    quantity, gravity, mass, slot, track, s, until, edges, block, low, per_unit, counts, sums, snapshots
-):
-    vx, vy = track[VX], track[VY]
-    changes = changes_in_fall(quantity, gravity)
-    value = velocity_quantity(quantity, mass, vx, vy)
-    b = bin_of(value, low[s], per_unit[s], counts.shape[2] - 2)
-    since = track[T]
-    k = block_back(edges, block, since)
-    while True:
-        stop = until if k == block else edges[k + 1]
-        if changes:
-            start, weight = since - track[T], stop - since
-            fall_x = velocity_after(vx, gravity[0], start)
-            fall_y = velocity_after(vy, gravity[1], start)
-            _spend_fall(quantity, mass, fall_x, fall_y, gravity, weight, low[s], per_unit[s], counts[k, s])
-            sums[k, s] += integral_over_fall(quantity, mass, fall_x, fall_y, gravity, weight)
-            value = value_in_fall(quantity, mass, fall_x, fall_y, gravity, weight)
-        else:
-            counts[k, s, b] += stop - since
-            sums[k, s] += value * (stop - since)
-        if k == block:
-            break
-        if slot >= 0:
-            snapshots[k, slot] = value
-        since = stop
-        k += 1
+class DensityBins:
+    """Numbers of discs of each species in bins of the box at the end of each block of time.
 
+    discs: (B, S, 2, bins), for B blocks, S species, x and y.
+    """
 
-@inline
-def _spend_fall(quantity, mass, vx, vy, gravity, duration, low, per_unit, counts):
-    """Add the times to counts (bins + 2,) that a quantity spends in each bin during a fall."""
-    bins = counts.shape[0] - 2
-    turn = turning_time(quantity, vx, vy, gravity)
-    b = bin_of(velocity_quantity(quantity, mass, vx, vy), low, per_unit, bins)
-    since = 0.0
-    while since < duration:  # twice at most: before the least value and after it
-        rises = since >= turn
-        until = duration if rises else min(turn, duration)
-        last = bin_of(value_in_fall(quantity, mass, vx, vy, gravity, until), low, per_unit, bins)
-        step = 1 if last > b else -1
-        while b != last:
-            edge = low + (b if step > 0 else b - 1) / per_unit
-            met = min(max(time_at_value(quantity, mass, edge, rises, vx, vy, gravity), since), until)
-            counts[b] += met - since
-            since = met
-            b += step
-        counts[b] += until - since
-        since = until
+    columns = ("disc", "block", "start", "kind", "position", "end_position")
+    cut = True
 
+    def __init__(self, bins: int) -> None:
+        """Take the number of bins along each axis."""
+        self.bins = bins
 
-@njit
-def _add_histogram(
-    time, disc, velocity, quantity, gravity, species, mass, slot,
-    tracks, edges, block, low, per_unit, counts, sums, snapshots,
-):  # fmt: skip
-    for row in range(time.shape[0]):
-        i = np.uintp(disc[row])
-        now = time[row]
-        block = block_at(edges, block, now)
-        track = tracks[i]
-        _spend_histogram(
-            quantity, gravity, mass[i], slot[i], track, species[i], now,
-            edges, block, low, per_unit, counts, sums, snapshots,
-        )  # fmt: skip
-        track[T] = now
-        track[VX] = velocity[row, 0]
-        track[VY] = velocity[row, 1]
-    return block
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        self.edges = edges
+        self.discs = np.zeros((len(edges) - 1, len(gas.species_names), 2, self.bins))
+        self._per_length = self.bins / np.array(gas.box)
+        self._species = gas.species.astype(np.intp)
 
+    def add(self, flights: Flights) -> None:
+        """Add the next flights: each disc begins one at the end of each block but the last, where one is open."""
+        for chosen, block, position in self._at_edges(flights):
+            place = np.clip(position * self._per_length, 0, self.bins - 1).astype(np.intp)
+            first = (block * self.discs.shape[1] + self._species[flights.disc[chosen]]) * 2
+            for axis in range(2):
+                add_to(self.discs, (first + axis) * self.bins + place[:, axis])
 
-@njit
-def _finish_histogram(quantity, gravity, species, mass, slot, tracks, edges, low, per_unit, counts, sums, snapshots):
-    last = edges.shape[0] - 2
-    for i in range(tracks.shape[0]):
-        _spend_histogram(
-            quantity,
-            gravity,
-            mass[i],
-            slot[i],
-            tracks[i],
-            species[i],
-            edges[-1],
-            edges,
-            last,
-            low,
-            per_unit,
-            counts,
-            sums,
-            snapshots,
-        )
+    def finish(self) -> None:
+        """Do nothing: the sums are complete."""
+
+    def _at_edges(self, flights: Flights) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Flights of discs at ends of blocks, these blocks, and positions then."""
+        assert flights.position is not None
+        assert flights.end_position is not None
+        later = np.flatnonzero((flights.block > 0) & (flights.start == self.edges.take(flights.block)))
+        yield later, flights.block[later] - 1, flights.position[later]
+        last = np.flatnonzero((flights.kind == NO_EVENT) & (flights.block == len(self.discs) - 1))
+        yield last, flights.block[last], flights.end_position[last]

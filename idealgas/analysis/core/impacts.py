@@ -1,17 +1,15 @@
-"""Sums over collisions and wall hits: virials, momentum given to the walls, and numbers of events."""
+"""Sums over collisions and wall hits: virials, momentum given to walls and their faces, and numbers of events.
 
-from typing import Any
+What an event gives is the change of a disc's momentum there; what gravity gave it during the flight is left out.
+"""
 
 import numpy as np
 
-from idealgas.analysis.core.stream import block_at
-from idealgas.events import BATH
-from idealgas.jit import njit
-from idealgas.physics.periodic import nearest_image
-from idealgas.sides import SIDES
+from idealgas.analysis.core.stream import add_to
+from idealgas.events import Kind
+from idealgas.log import Flights, Log
+from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES
 from idealgas.state import Gas
-
-X, Y, VX, VY = range(4)  # columns of a track: position and velocity of a disc after its last event
 
 
 class Impacts:
@@ -26,87 +24,128 @@ class Impacts:
     impulse: (B, W, 2), momentum given to each wall, mass·length/time. hits: (B, W), numbers of hits of each wall.
     """
 
-    columns = ("time", "disc", "partner", "position", "velocity")
+    columns = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity", "end_position")
+    cut = False
 
-    def __init__(self, walls: int = len(SIDES), periodic: tuple[bool, bool] = (False, False)) -> None:
+    def __init__(self, walls: int = len(SIDES), periodic: tuple[bool, ...] = (False, False)) -> None:
         """Take the number of walls, in which the sides of the box come first, and whether x and y are periodic."""
         self.walls, self.periodic = walls, periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         blocks, species = len(edges) - 1, len(gas.species_names)
-        self.edges = edges
         self.pair_virial = np.zeros(blocks)
         self.wall_virial = np.zeros(blocks)
         self.inner_virial = np.zeros(blocks)
-        self.passed_on = np.zeros((blocks, len(SIDES)))
+        self._passed_on = np.zeros((len(SIDES), blocks))
         self.collisions = np.zeros((blocks, species, species), np.int64)
-        self.impulse = np.zeros((blocks, self.walls, 2))
+        self._impulse = np.zeros((2, blocks, self.walls))
         self.hits = np.zeros((blocks, self.walls), np.int64)
-        self._middle = np.array(gas.box) / 2
-        self._box = gas.box
-        self._species, self._mass, self._radius = gas.species, gas.mass, gas.radius
-        self._tracks = np.column_stack((gas.position, gas.velocity))
-        self._block = 0
+        self._box, self._species, self._mass, self._radius = gas.box, gas.species.astype(np.intp), gas.mass, gas.radius
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log.
+    def add(self, flights: Flights) -> None:
+        """Add the events at the ends of the next flights.
 
         Momentum counts for a side of the box in proportion to how near the disc is to it: by 0 at the opposite side, by
         1 at the side itself. An event that moves momentum from one disc to another passes some of it on towards a side.
         """
-        self._block = _add_impacts(
-            rows.time, rows.disc, rows.partner, rows.position, rows.velocity, self._middle, self._box, self.periodic,
-            self._species, self._mass, self._radius, self._tracks, self.edges, self._block, self.pair_virial,
-            self.wall_virial, self.inner_virial, self.passed_on, self.collisions, self.impulse, self.hits,
-        )  # fmt: skip
+        assert flights.end_position is not None
+        block, partner, place = flights.block, flights.partner, flights.end_position
+        given = self._mass.take(flights.disc)[:, None] * (flights.new_velocity - flights.end_velocity)
+        radius, virial = self._radius.take(flights.disc), np.zeros(len(block))
+        for axis in (axis for axis in range(2) if not self.periodic[axis]):
+            along, width = given[:, axis], self._box[axis]
+            virial += (place[:, axis] - width / 2) * along
+            near = (place[:, axis] - radius) / (width - 2.0 * radius)
+            low, high = 2 * axis, 2 * axis + 1
+            add_to(self._passed_on[low], block, np.where(partner == -1 - low, 0.0, (near - 1.0) * along))
+            add_to(self._passed_on[high], block, np.where(partner == -1 - high, 0.0, near * along))
+        hit = is_wall_hit(flights.kind)
+        add_to(self.inner_virial, block, np.where(hit, 0.0, virial))
+        add_to(self.wall_virial, block, np.where(hit, -virial, 0.0))
+        self._add_pairs(flights, given)
+        some = np.flatnonzero(hit)
+        walls = block[some] * self.walls + (-1 - partner[some])
+        add_to(self.hits, walls)
+        for axis in range(2):
+            add_to(self._impulse[axis], walls, -given[some, axis])
 
     def finish(self) -> None:
-        """Do nothing: flights between events add nothing to these sums."""
+        """Make the sums known."""
+        self.passed_on, self.impulse = self._passed_on.T, np.moveaxis(self._impulse, 0, 2)
+
+    def _add_pairs(self, flights: Flights, given: np.ndarray) -> None:
+        """Add collisions of two discs. given: (n, 2), momentum that each event gives to its disc."""
+        second, apart = contacts(flights, self._box, self.periodic)
+        block, species = flights.block[second], self._species
+        one, other = species.take(flights.disc[second]), species.take(flights.partner[second])
+        add_to(self.pair_virial, block, (apart * given[second]).sum(axis=1))
+        number = self.collisions.shape[1]
+        add_to(self.collisions, (block * number + np.minimum(one, other)) * number + np.maximum(one, other))
 
 
-@njit
-def _add_impacts(
-    time, disc, partner, position, velocity, middle, box, periodic, species, mass, radius, tracks, edges, block,
-    pair_virial, wall_virial, inner_virial, passed_on, collisions, impulse, hits,
-):  # fmt: skip
-    for row in range(time.shape[0]):
-        i = np.uintp(disc[row])
-        x, y = position[row, 0], position[row, 1]
-        block = block_at(edges, block, time[row])
-        track = tracks[i]
-        px = mass[i] * (velocity[row, 0] - track[VX])
-        py = mass[i] * (velocity[row, 1] - track[VY])
-        track[X] = x
-        track[Y] = y
-        track[VX] = velocity[row, 0]
-        track[VY] = velocity[row, 1]
-        virial = 0.0
+def contacts(flights: Flights, box: tuple[float, float], periodic: tuple[bool, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of whole flights that end collisions as the second of two, and their discs' places relative to the others.
+
+    Returns:
+        The rows (c,), and the positions (c, 2), length, of the discs of these relative to the nearest images of their
+        partners.
+    """
+    assert flights.end_position is not None
+    second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))
+    apart = flights.end_position[second] - flights.end_position[second - 1]
+    for axis in range(2):
+        if periodic[axis]:
+            apart[:, axis] -= box[axis] * np.rint(apart[:, axis] / box[axis])
+    return second, apart
+
+
+def is_wall_hit(kind: np.ndarray) -> np.ndarray:
+    """Whether events of these kinds are hits of walls or of the piston."""
+    return (kind == Kind.WALL) | (kind == Kind.WALL_END) | (kind == Kind.PISTON)
+
+
+class WallImpulses:
+    """Momentum given to each of W walls in each of B blocks of time, mass·length/time.
+
+    normals: (W, 2), unit normals of the first face of each wall; that of a side of the box points into the box.
+    faces: (B, W, 2, 2), momentum given to the first and to the second face by discs that touch the body of the wall,
+    perpendicular to it and along it; the direction along a wall is its first normal turned by -90°, for a segment from
+    its start to its end. given: (B, W, 2), momentum along x and y, with that of discs that touch the ends of the wall.
+    hits: (B, W), numbers of hits.
+    """
+
+    columns = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity")
+    cut = False
+
+    def __init__(self, log: Log) -> None:
+        """Take the walls of a log."""
+        along = np.array([np.subtract(wall.end, wall.start) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2)
+        along /= np.hypot(*along.T)[:, None]
+        self.normals = np.concatenate((-np.array(OUTWARD), np.column_stack((-along[:, 1], along[:, 0]))))
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        shape = (len(edges) - 1, len(self.normals))
+        self.faces, self.given = np.zeros((*shape, 2, 2)), np.zeros((*shape, 2))
+        self.hits = np.zeros(shape, np.int64)
+        self._mass = gas.mass
+
+    def add(self, flights: Flights) -> None:
+        """Add the hits at the ends of the next flights."""
+        some = np.flatnonzero(is_wall_hit(flights.kind))
+        wall = -1 - flights.partner[some]
+        place = flights.block[some] * len(self.normals) + wall
+        given = self._mass[flights.disc[some], None] * (flights.end_velocity[some] - flights.new_velocity[some])
+        add_to(self.hits, place)
         for axis in range(2):
-            if not periodic[axis]:
-                given = px if axis == 0 else py
-                place = position[row, axis]
-                virial += (place - middle[axis]) * given
-                near = (place - radius[i]) / (box[axis] - 2.0 * radius[i])
-                if partner[row] != -1 - 2 * axis:
-                    passed_on[block, 2 * axis] -= (1.0 - near) * given
-                if partner[row] != -2 - 2 * axis:
-                    passed_on[block, 2 * axis + 1] += near * given
-        if partner[row] == BATH:
-            inner_virial[block] += virial
-            continue
-        if partner[row] < 0:
-            wall = -1 - partner[row]
-            hits[block, wall] += 1
-            impulse[block, wall, 0] -= px
-            impulse[block, wall, 1] -= py
-            wall_virial[block] -= virial
-            continue
-        inner_virial[block] += virial
-        if disc[row] > partner[row]:  # second row of a collision: now both tracks are at the contact
-            j = np.uintp(partner[row])
-            apart_x = nearest_image(x - tracks[j][X], box[0], periodic[0])
-            apart_y = nearest_image(y - tracks[j][Y], box[1], periodic[1])
-            pair_virial[block] += apart_x * px + apart_y * py
-            collisions[block, min(species[i], species[j]), max(species[i], species[j])] += 1
-    return block
+            add_to(self.given, place * 2 + axis, given[:, axis])
+        body = np.flatnonzero(flights.kind[some] != Kind.WALL_END)
+        (px, py), (nx, ny) = given[body].T, self.normals[wall[body]].T
+        across = px * nx + py * ny
+        face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it
+        add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
+        add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
+
+    def finish(self) -> None:
+        """Do nothing: the sums are complete."""

@@ -1,13 +1,13 @@
 """Intervals between events: free flights of discs and waiting times of the gas, as histograms and thinned samples."""
 
-from typing import Any
-
 import numpy as np
 
 from idealgas.analysis.core.ballistic import length_of_flight
 from idealgas.analysis.core.flights import bin_of
-from idealgas.analysis.core.stream import block_at, block_back
-from idealgas.jit import inline, njit
+from idealgas.analysis.core.stream import add_to, began_in
+from idealgas.events import Kind
+from idealgas.jit import njit
+from idealgas.log import Flights
 from idealgas.state import Gas
 
 
@@ -18,42 +18,41 @@ class _Intervals:
     lengths or times. sample, sample_block, sample_species: sampled intervals, and the block and species of their start.
     """
 
+    cut = False
+
     def __init__(self, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
         """Take the upper end of the histogram of each species, high (S,), in lengths or times."""
         self.per_unit, self.bins, self.stride = bins / high, bins, stride
-        self._sample = np.zeros(most_samples)
-        self._origin = np.zeros((most_samples, 2), np.int64)
-        self._seen = np.zeros(1, np.int64)
+        self._left, self._seen = most_samples, 0
+        self._samples: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
 
     def _make_sums(self, edges: np.ndarray) -> None:
         self.edges = edges
         shape = (len(edges) - 1, len(self.per_unit))
         self.counts = np.zeros((*shape, self.bins + 2), np.int64)
         self.sums = np.zeros(shape)
-        self._block = 0
 
     def finish(self) -> None:
-        """Do nothing: intervals that have not ended by the end of the window are left out."""
-        taken = min(len(self._sample), -(-int(self._seen[0]) // self.stride))
-        self.sample = self._sample[:taken]
-        self.sample_block, self.sample_species = self._origin[:taken].T
+        """Make the sample known; intervals that have not ended by the end of the window are left out."""
+        found = zip(*self._samples, strict=True) if self._samples else np.empty((3, 1, 0))
+        sample, block, species = (np.concatenate(list(values)) for values in found)
+        self.sample, self.sample_block, self.sample_species = sample, block.astype(int), species.astype(int)
 
-
-@inline
-def _put(value, block, s, per_unit, counts, sums, stride, seen, sample, origin):
-    counts[block, s, bin_of(value, 0.0, per_unit[s], counts.shape[2] - 2)] += 1
-    sums[block, s] += value
-    if seen[0] % stride == 0 and seen[0] // stride < sample.shape[0]:
-        sample[seen[0] // stride] = value
-        origin[seen[0] // stride, 0] = block
-        origin[seen[0] // stride, 1] = s
-    seen[0] += 1
+    def _put(self, values: np.ndarray, block: np.ndarray, species: np.ndarray) -> None:
+        """Add intervals (n,) in the order of their ends, with the blocks and species in which they start."""
+        place = block * len(self.per_unit) + species
+        add_to(self.counts, place * (self.bins + 2) + bin_of(values, 0.0, self.per_unit.take(species), self.bins))
+        add_to(self.sums, place, values)
+        chosen = np.arange(-self._seen % self.stride, len(values), self.stride)[: self._left]
+        self._samples.append((values[chosen], block[chosen], species[chosen]))
+        self._left -= len(chosen)
+        self._seen += len(values)
 
 
 class FreeFlights(_Intervals):
     """Free path or free time of a disc between successive collisions with discs; wall hits do not end a free path."""
 
-    columns = ("time", "disc", "partner", "velocity")
+    columns = ("disc", "block", "start", "end", "kind", "velocity")
 
     def __init__(
         self,
@@ -69,74 +68,72 @@ class FreeFlights(_Intervals):
         self.path, self.gravity = path, gravity
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
-        self._species = gas.species
-        # time of the last event, velocity then, path (or time) since the last collision, time of that collision
-        self._tracks = np.zeros((len(gas), 5))
-        self._tracks[:, 4] = -np.inf
+        self._species = gas.species.astype(np.intp)
+        self._total, self._since = np.zeros(len(gas)), np.full(len(gas), -np.inf)
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
-        self._block = _add_free_flights(
-            rows.time, rows.disc, rows.partner, rows.velocity, self.path, self.gravity, self._species, self._tracks,
-            self.edges, self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample,
-            self._origin,
-        )  # fmt: skip
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        length = flights.end - flights.start
+        if self.path:
+            vx, vy = flights.velocity.T
+            length = length_of_flight(vx, vy, self.gravity, length)
+        ends, start = flights.kind == Kind.DISC, np.empty(len(length))
+        _total_since_collision(
+            flights.disc.astype(np.intp), flights.end.copy(), ends, length, start, self._total, self._since
+        )
+        some = np.flatnonzero(ends & (start >= self.edges[0]))
+        species = self._species.take(flights.disc[some])
+        self._put(length[some], began_in(self.edges, start[some], flights.block[some]), species)
 
 
 @njit
-def _add_free_flights(
-    time, disc, partner, velocity, path, gravity, species, tracks, edges, block,
-    per_unit, counts, sums, stride, seen, sample, origin,
-):  # fmt: skip
-    for row in range(time.shape[0]):
-        i = np.uintp(disc[row])
-        now = time[row]
-        block = block_at(edges, block, now)
-        track = tracks[i]
-        since = now - track[0]
-        track[3] += length_of_flight(track[1], track[2], gravity, since) if path else since
-        if partner[row] >= 0:
-            if track[4] >= edges[0]:
-                began = block_back(edges, block, track[4])
-                _put(track[3], began, species[i], per_unit, counts, sums, stride, seen, sample, origin)
-            track[3] = 0.0
-            track[4] = now
-        track[0] = now
-        track[1] = velocity[row, 0]
-        track[2] = velocity[row, 1]
-    return block
+def _total_since_collision(
+    disc: np.ndarray,
+    end: np.ndarray,
+    collides: np.ndarray,
+    length: np.ndarray,
+    start: np.ndarray,
+    total: np.ndarray,
+    since: np.ndarray,
+) -> None:
+    """Turn the lengths of flights into those since the last collision of each disc, which start then.
+
+    Compiled, as a free path may have any number of flights between walls: NumPy would sort them by disc, or take the
+    difference of two sums from the start of the log, which loses digits.
+
+    Args:
+        disc: (n,), disc of each flight.
+        end: (n,), time of its end.
+        collides: (n,), whether it ends in a collision with a disc.
+        length: (n,), its length; replaced.
+        start: (n,), filled with the time of the last collision before it.
+        total: (N,), length since the last collision of each disc; carried on.
+        since: (N,), time of that collision; carried on.
+    """
+    for k in range(disc.shape[0]):
+        i = disc[k]
+        total[i] += length[k]
+        length[k], start[k] = total[i], since[i]
+        if collides[k]:
+            total[i], since[i] = 0.0, end[k]
 
 
 class Waits(_Intervals):
     """Time between successive events of the gas, a pair collision being one event."""
 
-    columns = ("time", "disc", "partner")
+    columns = ("disc", "block", "end", "partner")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._make_sums(edges)
-        self._last = -np.inf
+        self._last = np.empty(0)
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
-        self._block, self._last = _add_waits(
-            rows.time, rows.disc, rows.partner, self._last, self.edges,
-            self._block, self.per_unit, self.counts, self.sums, self.stride, self._seen, self._sample, self._origin,
-        )  # fmt: skip
-
-
-@njit
-def _add_waits(time, disc, partner, last, edges, block, per_unit, counts, sums, stride, seen, sample, origin):
-    for row in range(time.shape[0]):
-        if partner[row] >= 0 and disc[row] > partner[row]:
-            continue
-        now = time[row]
-        began = block
-        block = block_at(edges, block, now)
-        if last >= edges[0]:
-            began = block_back(edges, block, last)
-            _put(now - last, began, 0, per_unit, counts, sums, stride, seen, sample, origin)
-        last = now
-    return block, last
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        some = np.flatnonzero((flights.partner < 0) | (flights.disc < flights.partner))
+        times = np.append(self._last, flights.end[some])
+        block = flights.block[some][len(some) + 1 - len(times) :]
+        self._put(np.diff(times), began_in(self.edges, times[:-1], block), np.zeros(len(block), np.intp))
+        self._last = times[-1:]

@@ -6,13 +6,13 @@ import numpy as np
 
 from idealgas.errors import UserError
 from idealgas.events import Kind
-from idealgas.log import Log
+from idealgas.log import Flights, Log
 from idealgas.sides import SIDES
 from idealgas.state import Gas
 
 
 class MovingWall:
-    """Depth of the room between a piston and the opposite side of the box, as a tally over the events of a log.
+    """Depth of the room between a piston and the opposite side of the box, as a tally over the flights of a log.
 
     The place of the piston is known at its samples and at every hit of a disc, and lies on a parabola in between. A
     bounce at the piston's end stop between two such times is left out.
@@ -21,7 +21,8 @@ class MovingWall:
     length. depth: (B,), mean depth of the room in each block of time, length.
     """
 
-    columns = ("time", "disc", "kind", "position")
+    columns = ("disc", "end", "kind", "end_position")
+    cut = False
 
     def __init__(self, log: Log, table: Any) -> None:
         """Take a log and the table of the piston in its scene."""
@@ -44,11 +45,12 @@ class MovingWall:
         self._known = np.array([[time[k], place[k]]])
         self._total, self._done = 0.0, 0
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
-        hits = rows.kind == Kind.PISTON
-        place = rows.position[hits, self.axis] + self._outward * self._radius[rows.disc[hits]]
-        self._follow(np.column_stack((rows.time[hits], place)), float(rows.time[-1]))
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        assert flights.end_position is not None
+        hits = flights.kind == Kind.PISTON
+        place = flights.end_position[hits, self.axis] + self._outward * self._radius[flights.disc[hits]]
+        self._follow(np.column_stack((flights.end[hits], place)), float(flights.end[-1]))
 
     def finish(self) -> None:
         """Go on to the last edge, and turn the integrals into mean depths."""

@@ -15,14 +15,13 @@ import numpy as np
 from scipy import special
 
 from idealgas.analysis.core.autoregression import error_of_mean, is_constant, process_of, variance_of_mean
-from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.flights import DensityBins, Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import Tally
-from idealgas.analysis.core.strips import Strips
 from idealgas.log import Log
 
-STRIPS = 4
-"""Number of strips of the box along each axis in which the density is tested."""
+BINS = 4
+"""Number of bins of the box along each axis in which the density is tested."""
 
 REFERENCES = (2, 4)
 """Parts of a log whose last one is tried as reference: its last half, or its last quarter."""
@@ -65,7 +64,7 @@ ROUNDING = 1e-9
 class Course:
     """Course of a gas in blocks of time: the tallies to fill, and the series that are steady in equilibrium.
 
-    They are kurtosis, kinetic energy and density in strips of each species, the virial and numbers of events.
+    They are kurtosis, kinetic energy and density in bins of each species, the virial and numbers of events.
     """
 
     def __init__(self, log: Log, present: Iterable[Tally] = ()) -> None:
@@ -75,16 +74,16 @@ class Course:
         self._clusters = not log.scene.properties.lossless
         self.moments = next((t for t in present if isinstance(t, Moments)), None) or Moments(log.gravity)
         self.impacts: Impacts | None = None
-        self.strips: Strips | None = None
+        self.bins: DensityBins | None = None
         if log.has_positions:
             found = next((t for t in present if isinstance(t, Impacts)), None)
             self.impacts = found or Impacts(len(log.walls), log.periodic)
-            self.strips = Strips(STRIPS, log.gravity, log.periodic)
+            self.bins = DensityBins(BINS)
 
     @property
     def tallies(self) -> list[Tally]:
         """All tallies to fill, those that were present first."""
-        own = (tally for tally in (self.moments, self.impacts, self.strips) if tally is not None)
+        own = (tally for tally in (self.moments, self.impacts, self.bins) if tally is not None)
         return [*self._present, *(tally for tally in own if tally not in self._present)]
 
     def series(self) -> Iterator[np.ndarray]:
@@ -101,9 +100,9 @@ class Course:
         The number is infinite where discs form clusters, and their numbers scatter more than if each had a place of its
         own.
         """
-        if self.strips is not None:
-            for s in range(self.strips.discs.shape[1]):
-                discs = self.strips.discs[:, s].reshape(len(self.strips.discs), -1)
+        if self.bins is not None:
+            for s in range(self.bins.discs.shape[1]):
+                discs = self.bins.discs[:, s].reshape(len(self.bins.discs), -1)
                 yield from ((one, math.inf if self._clusters else float(discs[0].sum() / 2)) for one in discs.T)
 
 

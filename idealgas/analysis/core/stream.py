@@ -1,36 +1,45 @@
-"""One pass over the events of a log in bounded memory, for any number of tallies.
+"""One pass over the flights of a log in bounded memory, for any number of tallies.
 
-A tally follows every disc from event to event and adds the contributions of its flights and events to B blocks of time.
-Flights are split at the edges of the blocks, so that time averages are exact. Shape of the sums: (B, …).
+A tally adds up what flights and the events at their ends contribute to B blocks of time. Where flights are cut at the
+edges of the blocks, time averages are exact. Shape of the sums: (B, …).
 """
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from idealgas.analysis.core.equilibrium import drift
-from idealgas.jit import inline
-from idealgas.log import Log
+from idealgas.log import Flights, Log
+from idealgas.log.flights import FlightReader
 from idealgas.state import Gas
+
+VELOCITIES = ("velocity", "end_velocity", "new_velocity")
 
 
 class Tally(Protocol):
-    """Interface of the sums that `stream` collects over the events of a log."""
+    """Interface of the sums that `stream` collects over the flights of a log."""
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the event columns that the tally reads."""
+        """Names of the columns of `Flights` that the tally reads."""
+
+    @property
+    def cut(self) -> bool:
+        """Whether it takes all flights, cut at the edges of the blocks.
+
+        Otherwise it takes those that events end, each as a whole and in the block of its end.
+        """
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
 
     def finish(self) -> None:
-        """Add the last part of the flight of every disc, up to time edges[-1]."""
+        """Complete the sums after the last flight."""
 
 
 def stream(
@@ -39,7 +48,7 @@ def stream(
     tallies: Iterable[Tally],
     progress: Callable[[int, int], None] | None = None,
 ) -> None:
-    """Pass the events after time edges[0] and up to edges[-1] to all tallies.
+    """Pass the flights between the times edges[0] and edges[-1] to all tallies.
 
     Velocities are relative to the centre of mass along axes where momentum is conserved. progress(done, total) is
     called with the number of rows read and the number of all rows.
@@ -48,34 +57,47 @@ def stream(
     state = log.state_at(edges[0])
     gas = replace(log.discs, position=state.position, velocity=state.velocity - frame)
     tallies = list(tallies)
-    columns = tuple(dict.fromkeys(name for tally in tallies for name in tally.columns))
+    reader = FlightReader(log, edges, columns=tuple({name for tally in tallies for name in tally.columns}))
+
+    def moving(flights: Flights) -> Flights:
+        if not frame.any():
+            return flights
+        found = {name: getattr(flights, name) for name in VELOCITIES}
+        return flights._replace(**{name: values - frame for name, values in found.items() if values is not None})
+
     for tally in tallies:
         tally.begin(gas, edges)
-    first, last = log.row_at(edges[0], "right"), log.row_at(edges[-1], "right")
-    done = 0
-    for rows in log.chunks(columns, first, last):
-        if frame.any() and "velocity" in columns:
-            rows = rows._replace(velocity=rows.velocity - frame)
+    cutting = [tally for tally in tallies if tally.cut]
+    done, rows = 0, log.row_at(edges[-1], "right") - log.row_at(edges[0], "right")
+    for flights in reader.whole():
+        whole = moving(reader.batch(flights)) if len(cutting) < len(tallies) else None
         for tally in tallies:
-            tally.add(rows)
-        done += len(rows[0])
+            if whole is not None and not tally.cut:
+                tally.add(whole)
+        for pieces in reader.cut(flights) if cutting else ():
+            some = moving(reader.batch(pieces))
+            for tally in cutting:
+                tally.add(some)
+        done += len(flights["disc"])
         if progress is not None:
-            progress(done, last - first)
+            progress(done, rows)
+    for flights in reader.open() if cutting else ():
+        for pieces in reader.cut(flights):
+            some = moving(reader.batch(pieces))
+            for tally in cutting:
+                tally.add(some)
     for tally in tallies:
         tally.finish()
 
 
-@inline
-def block_at(edges, block, time):
-    """Index of the block that contains a time, searched forwards from a given block."""
-    while block + 2 < edges.shape[0] and time > edges[block + 1]:
-        block += 1
-    return block
+def add_to(sums: np.ndarray, index: np.ndarray, values: np.ndarray | None = None) -> None:
+    """Add values (n,), or 1 for each index, to the places `index` (n,) of sums, counted along all of their axes."""
+    if len(index):
+        low = int(index.min())
+        found = np.bincount(index - low, values)
+        sums.reshape(-1)[low : low + len(found)] += found if values is not None else found.astype(sums.dtype)
 
 
-@inline
-def block_back(edges, block, time):
-    """Index of the block that contains a time, searched backwards from a given block."""
-    while time < edges[block]:
-        block -= 1
-    return block
+def began_in(edges: np.ndarray, start: np.ndarray, block: np.ndarray) -> np.ndarray:
+    """Blocks in which intervals started that end in the given blocks."""
+    return np.minimum(edges.searchsorted(start, "right") - 1, block)

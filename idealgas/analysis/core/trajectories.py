@@ -1,58 +1,31 @@
-"""Exact positions and velocities of some discs at many instants, from their events."""
+"""Exact positions and velocities of some discs at many instants, from their flights."""
 
 import numpy as np
 
-from idealgas.jit import njit, noinline
 from idealgas.log import Log
-from idealgas.physics.motion import position_after
+from idealgas.log.flights import NO_EVENT
 
 
 def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (length) and velocities (length/time) of M discs at G increasing times, each (G, M, 2).
+    """Positions (length) and velocities (length/time) of M discs at G times in order, each (G, M, 2).
 
-    Positions are unwrapped along periodic axes. Flights must be straight lines, without gravity.
+    Positions are unwrapped along periodic axes.
     """
-    state = log.state_at(times[0])
-    box = np.array(log.box)
-    position = state.position if state.image is None else state.position + state.image * box
+    instants, back = np.unique(times, return_inverse=True)
+    edges = np.append(instants, instants[-1]) if len(instants) == 1 else instants
     slot = np.full(len(log.discs), -1)
     slot[discs] = np.arange(len(discs))
-    tracks = np.column_stack((np.full(len(discs), times[0]), position[discs], state.velocity[discs]))
-    reached = np.zeros(len(discs), np.int64)
-    places, velocities = np.empty((2, len(times), len(discs), 2))
-    columns = ("time", "disc", "position", "velocity", *(("image",) if state.image is not None else ()))
-    for rows in log.chunks(columns, log.row_at(times[0], "right"), log.row_at(times[-1], "right")):
-        place = rows.position + rows.image * box if state.image is not None else rows.position
-        _follow(rows.time, rows.disc, place, rows.velocity, slot, tracks, reached, times, places, velocities)
-    _finish(tracks, reached, times, places, velocities)
-    return places, velocities
-
-
-@njit
-def _follow(time, disc, position, velocity, slot, tracks, reached, times, places, velocities):
-    for row in range(time.shape[0]):
-        k = slot[np.uintp(disc[row])]
-        if k < 0:
-            continue
-        while reached[k] < times.shape[0] and times[reached[k]] < time[row]:
-            _put(tracks[k], k, reached, times, places, velocities)
-        tracks[k, 0] = time[row]
-        for axis in range(2):
-            tracks[k, 1 + axis] = position[row, axis]
-            tracks[k, 3 + axis] = velocity[row, axis]
-
-
-@njit
-def _finish(tracks, reached, times, places, velocities):
-    for k in range(tracks.shape[0]):
-        while reached[k] < times.shape[0]:
-            _put(tracks[k], k, reached, times, places, velocities)
-
-
-@noinline
-def _put(track, k, reached, times, places, velocities):
-    g = reached[k]
-    for axis in range(2):
-        places[g, k, axis] = position_after(track[1 + axis], track[3 + axis], None, times[g] - track[0])
-        velocities[g, k, axis] = track[3 + axis]
-    reached[k] += 1
+    places, velocities = np.empty((2, len(edges), len(discs), 2))
+    columns = ["disc", "block", "start", "velocity", "position", "displacement", "end_velocity", "kind"]
+    if any(log.periodic):
+        columns.append("image")
+    for flights in log.flights(edges, discs=discs, columns=columns):
+        assert flights.position is not None
+        place = flights.position if flights.image is None else flights.position + flights.image * np.array(log.box)
+        begun = np.flatnonzero(flights.start == edges.take(flights.block))
+        at = flights.block[begun], slot[flights.disc[begun]]
+        places[at], velocities[at] = place[begun], flights.velocity[begun]
+        ended = np.flatnonzero((flights.kind == NO_EVENT) & (flights.block == len(edges) - 2))
+        last = slot[flights.disc[ended]]
+        places[-1, last], velocities[-1, last] = (place + flights.displacement)[ended], flights.end_velocity[ended]
+    return places[back], velocities[back]

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.impacts import WallImpulses
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.samples import SampledWalls
 from idealgas.analysis.core.stream import Tally
-from idealgas.analysis.core.wall_impulses import WallImpulses
 from idealgas.log import Log
 from idealgas.scene.walls import number_walls
 from idealgas.sides import FIRST_SEGMENT, SIDES, axis_of

@@ -6,12 +6,11 @@ discs, momentum Δp and energy ΔE jump from the centre of one to that of the ot
 Δp_a r_b and ΔE r_a. These sums are the Helfand moments: Helfand, Phys. Rev. 119, 1 (1960).
 """
 
-from typing import Any
-
 import numpy as np
 
-from idealgas.jit import inline, njit
-from idealgas.physics.periodic import nearest_image
+from idealgas.analysis.core.impacts import contacts
+from idealgas.analysis.core.stream import add_to
+from idealgas.log import Flights
 from idealgas.state import Gas
 
 XX, XY, YY, HEAT_X, HEAT_Y, APART_X, APART_Y = range(7)
@@ -19,8 +18,6 @@ XX, XY, YY, HEAT_X, HEAT_Y, APART_X, APART_Y = range(7)
 
 CARRIED, PASSED_ON = range(2)
 """Part of a current that discs carry as they fly, and part that they pass on in collisions."""
-
-X, Y, VX, VY = range(4)  # columns of a track: position and velocity of a disc after its last event
 
 
 class Currents:
@@ -30,29 +27,47 @@ class Currents:
     (energy·length), APART_X and APART_Y (length), which are carried only, and 0 unless there are two species.
     """
 
-    columns = ("time", "disc", "partner", "position", "velocity")
+    columns = ("disc", "block", "end", "kind", "partner", "velocity", "new_velocity", "end_position")
+    cut = False
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
-        self.flow = np.zeros((len(edges) - 1, 2, 7))
+        self._flow = np.zeros((2, 7, len(edges) - 1))
         self._box, self._mass, self._share = gas.box, gas.mass, shares(gas)
-        self._tracks = np.column_stack((gas.position, gas.velocity))
-        self._total = np.zeros(7)
-        for mass, share, track in zip(self._mass, self._share, self._tracks, strict=True):
-            _carry(self._total, mass, share, track[VX], track[VY], 1.0)
-        self._reached = 0, float(edges[0])
+        self._total = carried(self._mass, self._share, gas.velocity).sum(axis=0)
+        self._reached = float(edges[0])
 
-    def add(self, rows: Any) -> None:
-        """Add the next event rows of the log."""
-        self._reached = _add_currents(
-            rows.time, rows.disc, rows.partner, rows.position, rows.velocity, self._box, self._mass, self._share,
-            self._tracks, self._total, self.edges, *self._reached, self.flow,
-        )  # fmt: skip
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        mass, share = self._mass.take(flights.disc), self._share.take(flights.disc)
+        change = carried(mass, share, flights.new_velocity) - carried(mass, share, flights.velocity)
+        current = np.cumsum(np.concatenate((self._total[None], change)), axis=0)  # before each event, and after all
+        self._flow_until(flights.end, current[:-1])
+        self._total = current[-1]
+        second, apart = contacts(flights, self._box, (True, True))
+        before, after, block = flights.velocity[second], flights.new_velocity[second], flights.block[second]
+        given = mass[second, None] * (after - before)
+        energy = 0.5 * (given * (after + before)).sum(axis=1)
+        (px, py), (x, y) = given.T, apart.T
+        for k, passed in enumerate((px * x, px * y, py * y, energy * x, energy * y)):
+            add_to(self._flow[PASSED_ON, k], block, passed)
 
     def finish(self) -> None:
         """Add the currents from the last event up to time edges[-1]."""
-        _flow_until(self.edges[-1], self._total, self.edges, *self._reached, self.flow)
+        self._flow_until(self.edges[-1:], self._total[None])
+        self.flow = np.ascontiguousarray(np.moveaxis(self._flow, 2, 0))
+
+    def _flow_until(self, times: np.ndarray, current: np.ndarray) -> None:
+        """Add currents (n, 7) up to times (n,) in order, each from the time before."""
+        inner = self.edges[(self.edges > self._reached) & (self.edges < times[-1])]
+        at = times.searchsorted(inner)
+        ends = np.insert(times, at, inner)
+        flow = np.insert(current, at, current[at], axis=0) * np.diff(ends, prepend=self._reached)[:, None]
+        block = self.edges[1:-1].searchsorted(ends)
+        for k in range(7):
+            add_to(self._flow[CARRIED, k], block, flow[:, k])
+        self._reached = float(times[-1])
 
 
 def shares(gas: Gas) -> np.ndarray:
@@ -63,59 +78,9 @@ def shares(gas: Gas) -> np.ndarray:
     return np.array([1.0, -1.0])[gas.species] / number[gas.species]
 
 
-@inline
-def _carry(total, mass, share, vx, vy, sign):
-    """Add sign times what a disc carries to the current (7,) of all discs."""
-    px = sign * mass * vx
-    py = sign * mass * vy
-    energy = sign * 0.5 * mass * (vx * vx + vy * vy)
-    total[XX] += px * vx
-    total[XY] += px * vy
-    total[YY] += py * vy
-    total[HEAT_X] += energy * vx
-    total[HEAT_Y] += energy * vy
-    total[APART_X] += sign * share * vx
-    total[APART_Y] += sign * share * vy
-
-
-@njit
-def _flow_until(now, total, edges, block, since, flow):
-    """Add the current since a time until now, over as many blocks as that takes; returns the last block."""
-    while block + 2 < edges.shape[0] and now > edges[block + 1]:
-        for k in range(7):
-            flow[block, CARRIED, k] += total[k] * (edges[block + 1] - since)
-        since = edges[block + 1]
-        block += 1
-    for k in range(7):
-        flow[block, CARRIED, k] += total[k] * (now - since)
-    return block
-
-
-@njit
-def _add_currents(time, disc, partner, position, velocity, box, mass, share, tracks, total, edges, block, since, flow):
-    for row in range(time.shape[0]):
-        i = np.uintp(disc[row])
-        track = tracks[i]
-        if time[row] > since:
-            block = _flow_until(time[row], total, edges, block, since, flow)
-            since = time[row]
-        vx, vy = velocity[row, 0], velocity[row, 1]
-        _carry(total, mass[i], share[i], track[VX], track[VY], -1.0)
-        _carry(total, mass[i], share[i], vx, vy, 1.0)
-        if disc[row] > partner[row] >= 0:  # second row of a collision: now both tracks are at the contact
-            j = np.uintp(partner[row])
-            x = nearest_image(position[row, 0] - tracks[j][X], box[0], True)
-            y = nearest_image(position[row, 1] - tracks[j][Y], box[1], True)
-            px, py = mass[i] * (vx - track[VX]), mass[i] * (vy - track[VY])
-            energy = 0.5 * (px * (vx + track[VX]) + py * (vy + track[VY]))
-            passed = flow[block, PASSED_ON]
-            passed[XX] += px * x
-            passed[XY] += px * y
-            passed[YY] += py * y
-            passed[HEAT_X] += energy * x
-            passed[HEAT_Y] += energy * y
-        track[X] = position[row, 0]
-        track[Y] = position[row, 1]
-        track[VX] = vx
-        track[VY] = vy
-    return block, since
+def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """What each disc carries of the currents, (n, 7)."""
+    vx, vy = velocity.T
+    px, py = mass * vx, mass * vy
+    energy = 0.5 * mass * (vx * vx + vy * vy)
+    return np.column_stack((px * vx, px * vy, py * vy, energy * vx, energy * vy, share * vx, share * vy))

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from crafted import craft
 
+from idealgas.analysis.core.impacts import WallImpulses
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.wall_impulses import WallImpulses
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.errors import UserError
 from idealgas.events import Kind
