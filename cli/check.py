@@ -99,9 +99,9 @@ def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
 
 
 def _absent(scene: "Scene") -> tuple[str, ...]:
-    from idealgas.scene import EFFECTS
+    from idealgas.effects import EFFECT_NAMES
 
-    return tuple(name for name in EFFECTS if name not in scene.effects)
+    return tuple(name for name in EFFECT_NAMES if name not in scene.effects)
 
 
 def _number(value: float | None, digits: str = ".5g", rough: str = "") -> "Number":

@@ -45,12 +45,12 @@ _LIFETIME = 24 * 3600  # seconds since its last use after which another one is r
 
 
 def sources() -> list[Path]:
-    """Source files that determine the machine code: all of laws and engine, and others that import this module."""
+    """Source files that determine the machine code: laws, effects, engine, and others that import this module."""
     return [
         path
         for path in sorted(_PACKAGE.rglob("*.py"))
         if path.parent == _PACKAGE
-        or path.relative_to(_PACKAGE).parts[0] in ("physics", "engine")
+        or path.relative_to(_PACKAGE).parts[0] in ("physics", "effects", "engine")
         or b"idealgas.jit" in path.read_bytes()
     ]
 

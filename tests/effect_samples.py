@@ -5,9 +5,10 @@ import math
 import numpy as np
 from support import record
 
+from idealgas.effects.bundle import Effects
+from idealgas.effects.wall import make_segments
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
-from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
@@ -17,7 +18,6 @@ from idealgas.physics.rotation import Rotation
 from idealgas.physics.stress import StressAccumulator, empty_buffer
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat, draw_first_kicks
-from idealgas.run.effects.wall import make_segments
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
 from idealgas.sides import FIRST_SEGMENT

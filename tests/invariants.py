@@ -16,11 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from random_walls import crossings, distances
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation
 from idealgas.events import BATH, EventBatch, Kind
-from idealgas.physics.effects import Effects
 from idealgas.physics.piston import piston_motion
-from idealgas.run.effects.thermal import temperature_of_walls
 from idealgas.run.energy import energy_of
 from idealgas.scene import Scene
 from idealgas.sides import SIDES
@@ -52,9 +51,10 @@ class InvariantChecker:
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
         self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
-        self.temperature = temperature_of_walls(scene)
+        emits = [*scene.properties.emits, *[None] * len(scene.wall)][: 4 + len(scene.wall)]
+        self.temperature = np.array([-1.0 if t is None else t for t in emits])
         self.piston = scene.piston
-        self.push = abs(scene.piston.acceleration(gas.box, scene.gravity)) if scene.piston else 0.0
+        self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
         self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
         self.rotation, self.restitution = effects.rotation, effects.restitution
         self.since, self.last = np.zeros(n), np.full(n, -math.inf)

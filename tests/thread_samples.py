@@ -5,14 +5,14 @@ from collections import Counter
 import numpy as np
 from support import gas_of, record
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.parallel.slabs import Tuning
 from idealgas.engine.parallel.subdomain import LEAST_ROWS
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
-from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import Periodic
-from idealgas.run.effects.bundle import make_effects
+from idealgas.run.effects import make_effects
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
 from idealgas.scene import parse_scene

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.multiprecision import PreciseBruteForce
 from idealgas.engine.simulation import Method, Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven
 from idealgas.initial.build import make_gas
-from idealgas.physics.effects import Effects
 from idealgas.run.effects import make_effects
 from idealgas.scene import Scene, parse_scene
 from idealgas.state import Gas

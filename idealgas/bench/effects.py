@@ -3,22 +3,23 @@
 import math
 import statistics
 import tempfile
-from collections.abc import Callable
-from itertools import pairwise
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from idealgas.effects import EFFECTS
+from idealgas.effects.effect import SAMPLE_DISCS, Sample
 from idealgas.log.summary import Summary
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
 
-NUMBER, RADIUS, PACKING_FRACTION = 1000, 0.5, 0.1
-SIDE = math.sqrt(NUMBER * math.pi * RADIUS**2 / PACKING_FRACTION)
+RADIUS, PACKING_FRACTION = 0.5, 0.1
+SIDE = math.sqrt(SAMPLE_DISCS * math.pi * RADIUS**2 / PACKING_FRACTION)
 
 PLAIN = f"""
 [[species]]
 name = "gas"
-count = {NUMBER}
+count = {SAMPLE_DISCS}
 radius = {RADIUS}
 temperature = 1
 [log]
@@ -26,42 +27,15 @@ events = false
 """
 
 
-def polygon(corners: int, height: float = SIDE / 2, radius: float = 4.0) -> str:
-    """Tables `[[wall]]` of a regular polygon of `radius` (length) with its centre at `height` in the box."""
-    turn = [2 * math.pi * k / corners for k in range(corners + 1)]
-    points = [[SIDE / 2 + radius * math.cos(a), height + radius * math.sin(a)] for a in turn]
-    return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))
+def _scenes() -> dict[str, Sequence[Sample]]:
+    scenes: dict[str, Sequence[Sample]] = {
+        ", ".join(filter(None, (effect.name, sample.name))): [sample] for effect in EFFECTS for sample in effect.samples
+    }
+    return scenes | {"all": [effect.sample_together or effect.samples[0] for effect in EFFECTS]}
 
 
-PERIODIC = '{0} = "periodic"\n{1} = "periodic"\n'
-GRAVITY = f"[gravity]\nacceleration = [0, {-1 / SIDE!r}]\n"
-ROTATION = "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"
-RESTITUTION = "[restitution]\nnormal = 0.999\nwall = 0.999\n"
-PISTON = f'[piston]\nside = "top"\nposition = {0.95 * SIDE!r}\nmass = 100\npressure = {1.2 * NUMBER / SIDE**2!r}\n'
-THERMOSTAT = "[thermostat]\ntemperature = 1\nrate = 0.053\n"  # a tenth of the collisions of a disc per time
-
-
-def thermal(*sides: str) -> str:
-    """Keys of `[box]` for thermal sides at the temperature of the gas."""
-    return "".join(f"{side} = {{ thermal = 1 }}\n" for side in sides)
-
-
-SCENES = {
-    "gravity": ("", GRAVITY),
-    "periodic sides": (PERIODIC.format("left", "right") + PERIODIC.format("bottom", "top"), ""),
-    "wall segments, 6": ("", polygon(6)),
-    "wall segments, 1000": ("", polygon(1000)),
-    "rotation": ("", ROTATION),
-    "restitution": ("", RESTITUTION),
-    "thermal walls": (thermal("left", "right", "bottom", "top"), ""),
-    "piston": ("", PISTON),
-    "thermostat": ("", THERMOSTAT),
-    "all": (
-        PERIODIC.format("left", "right") + thermal("bottom"),
-        polygon(6, height=5.0) + GRAVITY + ROTATION + RESTITUTION + PISTON + THERMOSTAT,
-    ),
-}
-"""Keys of `[box]` and further tables that each effect adds to the scene of the plain box."""
+SCENES = _scenes()
+"""What each effect, and all together, add to the scene of the plain box."""
 
 
 class Row(NamedTuple):
@@ -80,7 +54,9 @@ class Row(NamedTuple):
 
 def effect_scene(effect: str | None, events: int) -> Scene:
     """Scene of the plain box with one effect of SCENES, or with none."""
-    keys, tables = SCENES[effect] if effect is not None else ("", "")
+    samples = SCENES[effect] if effect is not None else ()
+    keys = "".join(sample.box(SIDE) for sample in samples)
+    tables = "".join(sample.tables(SIDE) for sample in samples)
     return parse_scene(f"run.events = {events}\n[box]\nsize = [{SIDE!r}, {SIDE!r}]\n{keys}{PLAIN}{tables}")
 
 

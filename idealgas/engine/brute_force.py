@@ -6,6 +6,7 @@ predictions.
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.audit import deepest_overlap_of_all
 from idealgas.engine.event_writer import (
     batch_capacity,
@@ -28,7 +29,6 @@ from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay, side_contact
-from idealgas.physics.effects import Effects
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.physics.collision_rates import collisions_per_length
-from idealgas.physics.effects import Effects
 from idealgas.state import Gas
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many

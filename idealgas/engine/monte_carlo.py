@@ -18,6 +18,7 @@ from functools import partial
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_trial
 from idealgas.engine.records import ONE_THREAD, Limits, make_discs
 from idealgas.engine.resolve import energy_of_pair, record_pair_loss
@@ -26,7 +27,6 @@ from idealgas.events import Column, EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.collision_rates import mean_trial_time
 from idealgas.physics.disc_disc import collide, random_contact
-from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 from idealgas.physics.restitution import record_collision

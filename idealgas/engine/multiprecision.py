@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.audit import deepest_overlap_of_all
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
 from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
@@ -17,7 +18,6 @@ from idealgas.jit import inline, njit
 from idealgas.physics.arithmetic import load, number, rounded, store
 from idealgas.physics.disc_disc import contact_time, velocities_after
 from idealgas.physics.disc_wall import side_contact
-from idealgas.physics.effects import Effects
 from idealgas.physics.motion import NEVER, position_after
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.state import Gas

@@ -7,13 +7,13 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
 from idealgas.engine.audit import Audit, audit
 from idealgas.engine.epoch import encounters_per_length, epoch_length, kick_rate, speed_beyond
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
 from idealgas.physics import stress
-from idealgas.physics.effects import Effects, begin_epoch, end_epoch, next_change
 from idealgas.physics.exact_sum import SumRangeError
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 from idealgas.physics.stress import StressAccumulator

@@ -52,7 +52,10 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     if scene.piston:
         piston = scene.piston
         gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
-        pressed = piston.outward * (piston.acceleration(gas.box, scene.gravity) - acceleration[piston.axis]) < 0
+        pressed = (
+            piston.outward * (piston.acceleration(gas.box, scene.properties.acceleration) - acceleration[piston.axis])
+            < 0
+        )
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
         yield "the piston", in_contact & pressed
 

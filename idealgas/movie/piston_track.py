@@ -54,6 +54,6 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
     time, unique = np.unique(np.concatenate(times), return_index=True)
     if len(time) < 2:
         return None
-    pull = piston.acceleration(log.box, log.scene.gravity)
+    pull = piston.acceleration(log.box, log.scene.properties.acceleration)
     limits = (0.0, log.box[piston.axis])
     return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward)

@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.physics.effects import Effects
+from idealgas.effects.bundle import Effects, present
 from idealgas.physics.exact_sum import values
-from idealgas.run.effects.bundle import present
 from idealgas.state import Gas
 
 
@@ -57,5 +56,5 @@ def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
 
 
 def is_conserved(effects: Effects) -> bool:
-    """Whether the balance is: what is lost between discs, or with a wall that has energy of its own, is recorded."""
-    return effects.dissipated is not None or all(effect.conserves(effects) for effect, _ in present(effects))
+    """Whether the balance is conserved: nothing is lost in collisions, or all of it is recorded."""
+    return effects.dissipated is not None or not any(effect.loses_energy(state) for effect, state in present(effects))

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from idealgas.effects import bundle
+from idealgas.effects.bundle import Effects
 from idealgas.events import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Arrays, Column, Values, event_columns
 from idealgas.log import Checkpoint, LogLayout, Wall
-from idealgas.physics.effects import Effects
-from idealgas.run.effects import bundle
 from idealgas.run.energy import Energy, energy_of
 from idealgas.run.sums import kept_sums, observed_sums, restore_sums
 from idealgas.scene import Scene
@@ -79,7 +79,7 @@ def whole_state(effects: Effects) -> Values:
 
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> tuple[Gas, Effects]:
     """The gas and the effects at a checkpoint, of which the state is written into these. gas: any of the same discs."""
-    bundle.restore_effects(effects, checkpoint)
+    bundle.restore_effects(effects, checkpoint.arrays, checkpoint.values)
     effects = restore_sums(effects, checkpoint.arrays)
     arrays = checkpoint.arrays
     gas = replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())

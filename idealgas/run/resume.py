@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
@@ -10,7 +11,6 @@ from idealgas.jit import compile_seconds
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
-from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import SumRangeError
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.audit import Audit
 from idealgas.engine.event_driven.method import expected_threads
 from idealgas.engine.methods import make_method
@@ -19,8 +20,7 @@ from idealgas.initial.build import make_gas
 from idealgas.jit import compile_seconds
 from idealgas.log import LogWriter
 from idealgas.log.summary import Summary
-from idealgas.physics.effects import Effects
-from idealgas.run.effects.bundle import make_effects
+from idealgas.run.effects import make_effects
 from idealgas.run.energy import Energy, energy_of, is_conserved
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
 from idealgas.run.stall import StallDetector

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
+from idealgas.effects.bundle import next_change
 from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.physics.collision_rates import disc_collisions_per_length
-from idealgas.physics.effects import next_change
 from idealgas.state import Gas
 
 EMPTY_EPOCHS = 10_000

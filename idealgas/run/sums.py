@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.epoch import encounters_per_length, energy_beyond, speed_beyond
 from idealgas.events import Column, Values
-from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene

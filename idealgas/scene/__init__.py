@@ -1,22 +1,21 @@
 """Scenes: the TOML model, its loader and its resolved dump."""
 
+from idealgas.effects.gravity import Gravity
+from idealgas.effects.piston import Piston
+from idealgas.effects.restitution import Restitution
+from idealgas.effects.rotation import Rotation
+from idealgas.effects.thermal import ThermalSide
+from idealgas.effects.thermostat import Thermostat
+from idealgas.effects.wall import Wall
+from idealgas.scene.defaults import RestingDisc
 from idealgas.scene.loader import load_scene, parse_scene
 from idealgas.scene.model import Scene
 from idealgas.scene.tables.box import Box
 from idealgas.scene.tables.discs import Disc, Species
-from idealgas.scene.tables.document import EFFECTS
-from idealgas.scene.tables.gravity import Gravity
-from idealgas.scene.tables.piston import Piston
-from idealgas.scene.tables.restitution import RestingDisc, Restitution
-from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
-from idealgas.scene.tables.thermal import ThermalSide
-from idealgas.scene.tables.thermostat import Thermostat
-from idealgas.scene.tables.wall import Wall
 from idealgas.toml.messages import SceneError
 
 __all__ = [
-    "EFFECTS",
     "Box",
     "Disc",
     "Gravity",

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from idealgas.effects.wall import Wall
     from idealgas.scene.tables.box import Box
-    from idealgas.scene.tables.wall import Wall
 
 Point = tuple[float, float]
 

@@ -265,7 +265,7 @@ def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) ->
         SceneError: if phi is no packing fraction, or if the scene has parts with positions in the box.
     """
     fixed = ["disc"] if scene.disc else []
-    fixed += [str(effect.keys[0][0]) for effect in scene.called if not effect.properties.is_scalable]
+    fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []
     if fixed:
         allowed = "a scene in which nothing but the box has a place"

@@ -47,7 +47,7 @@ def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # tags of unions
     kind, got = finding["type"], finding["input"]
     if kind == "extra_forbidden":
-        known = list(_keys(table_at(key[:-1], model)))
+        known = [name for table in _tables_at(key[:-1], model) for name in _keys(table)]
         close = get_close_matches(str(key[-1]), known, n=1)
         wrong = f"unknown {'key' if key[1:] else 'table'}" + (f', did you mean "{close[0]}"?' if close else "")
         return Issue((key,), wrong, str(key[-1]), ", ".join(known))
@@ -81,11 +81,17 @@ def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
 
 
 def table_at(key: Key, model: type[BaseModel]) -> type[BaseModel]:
-    """The model of the table at a key."""
+    """The model of the table at a key; the first where there are several kinds."""
+    return _tables_at(key, model)[0]
+
+
+def _tables_at(key: Key, model: type[BaseModel]) -> list[type[BaseModel]]:
+    """The models of all kinds of tables that may stand at a key."""
+    models = [model]
     for name in key:
         if isinstance(name, str):
-            model = next(t for t in _types_in(_keys(model)[name].annotation) if issubclass(t, BaseModel))
-    return model
+            models = [t for t in _types_in(_keys(models[0])[name].annotation) if issubclass(t, BaseModel)]
+    return models
 
 
 def _types_in(annotation: Any) -> Iterator[type]:

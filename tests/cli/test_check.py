@@ -3,7 +3,8 @@ import json
 import pytest
 from support import ROOT, called, idealgas
 
-from idealgas.scene import EFFECTS, load_scene
+from idealgas.effects import EFFECT_NAMES
+from idealgas.scene import load_scene
 
 CONFIGS = ROOT / "configs"
 
@@ -35,7 +36,7 @@ def test_a_shipped_scene_is_shown_in_full(shipped_scene):
     for part in ("[scene]", "[run]", "compression = ", "packing fraction φ", "wall hits per time", "rows in the log"):
         assert part in result.stdout
     effects = load_scene(shipped_scene).effects
-    absent = [name for name in EFFECTS if name not in effects]
+    absent = [name for name in EFFECT_NAMES if name not in effects]
     assert result.stdout.splitlines()[-2:] == [
         f"effects: {', '.join(effects) or 'none beyond elastic discs and a reflecting box'}",
         f"compiled out: {', '.join(absent)}",
@@ -62,7 +63,7 @@ def test_what_theory_does_not_know_is_said():
         None,
     )
     assert found["duration"] == 2000
-    assert found["compiled_out"] == [name for name in EFFECTS if name != "piston"]
+    assert found["compiled_out"] == [name for name in EFFECT_NAMES if name != "piston"]
 
 
 def test_a_column_under_gravity_is_known_roughly():

@@ -20,13 +20,13 @@ from hypothesis import HealthCheck, example, given, settings
 from invariants import InvariantChecker, MaxErrors
 from support import ROOT, batches, joined, record, same_rows
 
+from idealgas.effects.bundle import Effects, inner_energy
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.epoch import LONGEST_WAY
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import EventBatch
 from idealgas.jit import aligned
-from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
@@ -35,7 +35,7 @@ from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat
 from idealgas.physics.wall import SEGMENT
-from idealgas.run.effects.bundle import inner_energy, make_effects
+from idealgas.run.effects import make_effects
 from idealgas.run.simulate import stop_of
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene

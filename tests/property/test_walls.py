@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
 from support import batches
 
+from idealgas.effects.bundle import Effects
+from idealgas.effects.wall import make_segments
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.physics.effects import Effects
 from idealgas.physics.gravity import Gravity
-from idealgas.run.effects.wall import make_segments
 from idealgas.state import Gas
 
 EVENTS = 120

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from support import batches, gas_of, record, within
 
+from idealgas.effects.bundle import Effects
+from idealgas.effects.wall import make_segments
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import Kind
-from idealgas.physics.effects import Effects
 from idealgas.physics.gravity import Gravity
-from idealgas.run.effects.wall import make_segments
 
 U = 2.0**-53
 FEW = 16  # roundings on the way to a contact time, each of u times the condition number

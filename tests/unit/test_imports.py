@@ -15,17 +15,18 @@ ALLOWED = {
     "state": {"jit"},
     "toml": set(),
     "physics": {"jit"},
-    "scene": {"toml", "physics", "initial"},  # defaults that follow from a law; room for a lattice
+    "effects": {"jit", "state", "toml", "physics"},  # a scene stands on its effects
+    "scene": {"effects", "toml", "physics", "initial"},  # defaults that follow from a law; room for a lattice
     "initial": {"jit", "state", "toml", "scene", "physics"},  # discs are placed by the nearest image's distance
-    "engine": {"jit", "state", "initial", "physics"},
+    "engine": {"effects", "jit", "state", "initial", "physics"},
     "log": {"jit", "state", "initial", "scene", "physics"},  # states between two events are free flight
-    "run": {"jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
+    "run": {"effects", "jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
     "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
     "movie": {"state", "scene", "log", "analysis"},
     "report": {"state", "scene", "log", "analysis", "movie"},
     "sweep": {"toml", "scene", "initial", "run", "log", "analysis"},
-    "accuracy": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
-    "bench": {"state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
+    "accuracy": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
+    "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "_version": set(),
     "errors": set(),
     "events": set(),
@@ -130,6 +131,7 @@ def test_commands_use_what_is_public(name):
     used = {part(other) for other in GRAPH[name] if other.split(".")[0] == "idealgas"}
     assert used <= FREE | {
         "toml",
+        "effects",
         "scene",
         "initial",
         "run",

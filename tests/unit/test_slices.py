@@ -1,64 +1,61 @@
-"""An effect is one word with a file of this name in four places; nobody else names it, but where it is said why."""
+"""An effect is one word with a law and a file of this name; other files name it only for a reason given here."""
 
 import ast
-from importlib import import_module
 
 import pytest
 from support import ROOT
 
-from idealgas.physics.effects import Effects
-from idealgas.run.effects.bundle import SLICES
-from idealgas.scene import EFFECTS
+from idealgas.effects import EFFECTS, NAMES
+from idealgas.effects.bundle import ENERGIES, Effects
 from idealgas.scene.tables.document import Document
 
-WORDS = ("gravity", "periodic", "wall", "rotation", "restitution", "thermal", "piston", "thermostat")
-PLACES = ("scene/tables", "scene/checks", "physics", "run/effects")
-
-NOTHING_TO_HOLD = {"scene/checks/thermal.py": "a temperature > 0 is all they ask for, and its type says so"}
-
-TOGETHER = {
-    "scene/tables/box.py": "the keys of the box, of which some effects are a part",
-    "scene/tables/document.py": "the fields of a scene, and which effect each calls for",
-    "scene/checks/issues.py": "the list of the checks",
-    "run/effects/bundle.py": "the list of the effects of a run",
-}
-"""Where the effects are put together. `physics` and `engine`, the bundle and the kernels, are another matter: there an
-effect is an argument."""
+PLACES = ("physics", "effects")
 
 NAMED = {
-    "scene/__init__.py": ({*WORDS} - {"periodic"}, "hands out the classes of the tables"),
+    "scene/__init__.py": ({*NAMES} - {"periodic"}, "hands out the classes of the tables"),
+    "scene/tables/box.py": ({"periodic"}, "the word for a side"),
+    "scene/tables/document.py": ({*NAMES} - {"thermal", "gravity"}, "defaults that follow from other tables"),
+    "scene/defaults.py": ({"restitution"}, "the default of its contact duration"),
+    "scene/checks/issues.py": (
+        {"rotation", "restitution", "wall", "thermostat", "gravity", "piston"},
+        "checks of several tables",
+    ),
+    "scene/checks/piston.py": ({"gravity", "periodic", "piston", "wall", "thermal"}, "checks of several tables"),
     "scene/model.py": ({"piston", "restitution"}, "defaults that follow from other tables"),
     "scene/walls.py": ({"piston", "wall", "periodic"}, "lists the walls: sides, segments, and what stands for a side"),
     "scene/geometry.py": ({"periodic", "wall"}, "images of a disc in a box while other tables may not be valid"),
     "scene/checks/discs.py": ({"periodic", "piston"}, "discs in a box while other tables may not be valid"),
     "scene/checks/placement.py": ({"periodic", "wall"}, "a lattice goes on through periodic sides, and among no walls"),
-    "initial/contacts.py": ({"gravity", "piston"}, "what discs may rest on, which shows once they are placed"),
+    "initial/contacts.py": ({"piston"}, "what discs may rest on, which shows once they are placed"),
     "log/schema.py": ({"gravity"}, "names in the file"),
     "log/header.py": ({"gravity"}, "names in the file"),
     "log/export/frames.py": ({"periodic"}, "H5MD's word for a boundary"),
     "run/layout.py": ({"periodic"}, "H5MD's word for a boundary"),
-    "analysis/core/moving_wall.py": ({"gravity", "piston"}, "the room that a piston leaves, and what presses it"),
+    "analysis/core/moving_wall.py": ({"piston"}, "the room that a piston leaves, and what presses it"),
     "analysis/cooling/theory.py": ({"restitution", "rotation"}, "the coefficients of collisions"),
     "analysis/evolution/theory.py": ({"restitution", "piston"}, "Haff's law and those of a piston"),
-    "analysis/evolution/measure.py": ({"gravity", "piston"}, "the course of a piston and its energy"),
+    "analysis/evolution/measure.py": ({"piston"}, "the course of a piston and its energy"),
     "analysis/evolution/figure.py": ({"piston"}, "the course of a piston"),
-    "analysis/heat_capacity/energy_series.py": ({"gravity", "piston"}, "the energy of a piston"),
+    "analysis/heat_capacity/energy_series.py": ({"piston"}, "the energy of a piston"),
     "analysis/heat_capacity/measure.py": ({"gravity", "piston"}, "constant pressure, and the kinds of gas by name"),
-    "movie/piston_track.py": ({"gravity", "piston"}, "where a piston is"),
+    "movie/piston_track.py": ({"piston"}, "where a piston is"),
     "report/player.py": ({"gravity", "periodic", "piston"}, "names in the data of the page"),
-    "bench/effects.py": ({*WORDS} - {"wall"}, "a scene for each effect"),
 }
 """Files that name effects all the same: which, and why."""
 
 PATHS = {path.relative_to(ROOT / "idealgas").as_posix(): path for path in sorted((ROOT / "idealgas").rglob("*.py"))}
 PATHS |= {path.relative_to(ROOT).as_posix(): path for path in sorted((ROOT / "cli").rglob("*.py"))}
-SLICED = {f"{place}/{word}.py" for place in PLACES for word in WORDS}
+COMMON = ("__init__", "bundle", "effect", "properties")
+"""Files of the effects in common."""
 
-SUMS = ("wall_energy", "dissipated", "bath_energy", "flow")
+SLICED = {f"{place}/{word}.py" for place in PLACES for word in NAMES}
+
+SUMS = (*ENERGIES, "flow")
 """What the bundle has beside the effects: sums over a run."""
 
-FIELDS = {"gravity", "wall", "rotation", "restitution", "piston", "thermostat"}
-SAID = dict(zip(EFFECTS, WORDS, strict=True)) | {word: word for word in WORDS if word != "wall"} | {"segments": "wall"}
+FIELDS = {effect.key for effect in EFFECTS if effect.key}
+SAID = {text: word for effect, word in zip(EFFECTS, NAMES, strict=True) for text in (effect.name, effect.field)}
+SAID |= {word: word for word in NAMES if word != "wall"}
 """Strings that name an effect; "wall" does not, as a wall is anything that has a number."""
 
 
@@ -98,28 +95,23 @@ def named(path: str) -> set[str]:
     return {word for word in found if word is not None}
 
 
-@pytest.mark.parametrize("word", WORDS)
-@pytest.mark.parametrize("place", PLACES)
-def test_every_effect_has_its_file_in_every_place(place, word):
-    path = f"{place}/{word}.py"
-    assert (path in PATHS) != (path in NOTHING_TO_HOLD)
-    if path in PATHS:
-        body = ast.parse(PATHS[path].read_text(encoding="utf-8")).body
+@pytest.mark.parametrize("word", NAMES)
+def test_an_effect_is_two_files(word):
+    for place in PLACES:
+        body = ast.parse(PATHS[f"{place}/{word}.py"].read_text(encoding="utf-8")).body
         assert any(isinstance(node, ast.FunctionDef | ast.ClassDef) for node in body), "an empty file"
 
 
-def test_the_lists_of_effects_have_them_all_in_one_order():
-    tables = [import_module(f"idealgas.scene.tables.{word}") for word in WORDS]
-    runs = [import_module(f"idealgas.run.effects.{word}") for word in WORDS]
-    assert tuple(table.NAME for table in tables) == EFFECTS
-    assert tuple(run.SLICE for run in runs) == SLICES
-    assert (*(piece.field for piece in SLICES), *SUMS) == Effects._fields
-    assert set(Document.model_fields) >= FIELDS
+def test_all_lists_follow_from_one():
+    assert (*(effect.field for effect in EFFECTS), *SUMS) == Effects._fields
+    assert {effect.key for effect in EFFECTS if effect.table and effect.key} <= set(Document.model_fields)
+    files = {f"effects/{name}.py" for name in (*NAMES, *COMMON)}
+    assert files == {path for path in PATHS if path.startswith("effects/")}
 
 
 def others() -> list[str]:
-    """All files but the slices, the places where they are put together, and the laws and kernels."""
-    rest = PATHS.keys() - SLICED - TOGETHER.keys()
+    """All files except those of the effects, the laws and the kernels."""
+    rest = PATHS.keys() - SLICED - {f"effects/{name}.py" for name in COMMON}
     return sorted(path for path in rest if not path.startswith(("physics/", "engine/")))
 
 
@@ -130,4 +122,3 @@ def test_nobody_else_names_an_effect(path):
 
 def test_what_is_excepted_is_there():
     assert set(NAMED) <= set(others())
-    assert set(TOGETHER) | set(NOTHING_TO_HOLD) <= set(PATHS) | set(NOTHING_TO_HOLD)

@@ -29,7 +29,7 @@ class MovingWall:
         self.wall, self.axis = SIDES.index(table.side), table.axis
         self.across = log.box[1 - table.axis]
         self._outward, self._far = table.outward, log.box[table.axis] - table.stop(log.box)
-        self._pull = table.acceleration(log.box, log.scene.gravity)
+        self._pull = table.acceleration(log.box, log.scene.properties.acceleration)
         self._mass, self._stop = table.mass, table.stop(log.box)
         self._samples = log.observables["piston_position"]
         if not len(self._samples[0]):

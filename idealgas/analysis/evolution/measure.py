@@ -184,7 +184,7 @@ def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.nda
     if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
         own = [wall.name for wall in log.walls].index(piston.side)
         counted[own], unpaid = False, unpaid + lost[:, 1 + own]
-        pull = piston.acceleration(log.box, log.scene.gravity)
+        pull = piston.acceleration(log.box, log.scene.properties.acceleration)
         place, velocity = observed["piston_position"], observed["piston_velocity"]
         parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
     bath = observed.get("bath_energy", np.zeros(len(given)))

@@ -59,7 +59,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
     position = None
     if scene.piston and scene.piston.mass:
         position, velocity = (observed[name][1][at] for name in ("piston_position", "piston_velocity"))
-        pull = scene.piston.acceleration(scene.box.size, scene.gravity)
+        pull = scene.piston.acceleration(scene.box.size, scene.properties.acceleration)
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
     first = 0
     if start is None:

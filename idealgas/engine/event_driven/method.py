@@ -6,6 +6,7 @@ batches.
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cells
 from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
@@ -15,7 +16,6 @@ from idealgas.engine.parallel.decomposition import Crew, Team
 from idealgas.engine.parallel.slabs import FAST, Tuning, share_out
 from idealgas.engine.records import NO_EXTRA_STATE, Discs, Limits, Threads, make_discs
 from idealgas.events import EventBatch
-from idealgas.physics.effects import Effects
 from idealgas.state import Gas
 
 IN_ANY_ORDER = 4096

@@ -4,13 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.cells import Cells
 from idealgas.engine.event_driven.prediction import PREDICTION
 from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
 from idealgas.jit import aligned, inline
-from idealgas.physics.effects import Effects
 from idealgas.physics.periodic import NO_IMAGES
 
 IMAGE = np.dtype([("x", "i4"), ("y", "i4")], align=True)  # box lengths, along x and along y

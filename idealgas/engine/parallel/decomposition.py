@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.effects.bundle import Effects, add_sums_of, clear_sums, with_own_sums
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import build, make_tree
@@ -24,7 +25,6 @@ from idealgas.engine.records import COUNTERS, UNLIMITED, Discs, Limits
 from idealgas.events import EventBatch
 from idealgas.jit import aligned
 from idealgas.physics import stress
-from idealgas.physics.effects import Effects, add_sums_of, clear_sums, with_own_sums
 from idealgas.physics.periodic import periodic_axes
 
 REASONS = {VIOLATION: "past", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}

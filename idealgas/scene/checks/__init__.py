@@ -1,1 +1,1 @@
-"""What is wrong with a scene, one file a table."""
+"""What is wrong with a scene: faults between its tables."""

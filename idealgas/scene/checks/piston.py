@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.scene.tables.periodic import PERIODIC
+from idealgas.effects.periodic import PERIODIC
 from idealgas.sides import SIDES, opposite
 from idealgas.toml.error import Issue, Key
 
 if TYPE_CHECKING:
+    from idealgas.effects.piston import Piston
     from idealgas.scene.tables.document import Document
-    from idealgas.scene.tables.piston import Piston
 
 WAY = ", as one with a mass comes as near to the other side as the discs let it"
 
@@ -98,7 +98,7 @@ def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
 
 def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Pistons with a mass that nothing presses on the gas."""
-    acceleration = piston.acceleration(scene.box.size, scene.gravity)
+    acceleration = piston.acceleration(scene.box.size, scene.properties.acceleration)
     if acceleration * piston.outward >= 0:
         keys: tuple[Key, ...] = (("piston", "pressure"), ("piston", "mass"), ("gravity", "acceleration"))
         got = f"an acceleration of {acceleration}"

@@ -85,7 +85,7 @@ def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
         yield Issue((key, ("log", "pressure")), wrong, "pressure = false", "pressure = true")
     if not all(scene.properties.periodic):
         yield Issue((key, ("box",)), "walls take heat and momentum", "sides that reflect", "four periodic sides")
-    for effect in scene.called:
+    for effect in scene.active_effects:
         if not (effect.properties.uniform and effect.properties.conserves_motion):
             for place in effect.keys:
                 yield Issue((place, key), "changes velocities between collisions", effect.name, "heat_flow = false")
@@ -142,7 +142,7 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
 
 def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
     """Keys of all effects, or of those that lack a property."""
-    for effect in scene.called:
+    for effect in scene.active_effects:
         if missing is None or not getattr(effect.properties, missing):
             yield from effect.keys
 

@@ -1,1 +1,1 @@
-"""The tables of a scene, one file a table."""
+"""The tables of a scene: box, discs, run and log; those of the effects are in `idealgas.effects`."""

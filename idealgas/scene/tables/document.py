@@ -1,65 +1,96 @@
 """A scene's tables together, as a TOML file holds them, before anything between them is checked.
 
-Reduced units, k_B = 1; a whole number will do for any number. An effect is a table of its own, or a part of the box's:
-a file of its name here says what it changes. It has one field below, `None` when absent, and one line in `CALLS`.
+Reduced units, k_B = 1; a whole number will do for any number. The tables of the effects follow from
+the list of effects.
 """
 
 import math
-from collections.abc import Callable
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, create_model
 
-from idealgas.scene.defaults import mean_free_time, number_of_discs, trial_time
+from idealgas.effects import EFFECTS
+from idealgas.effects.effect import EffectSpec, Tables
+from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
+from idealgas.effects.rotation import loses
+from idealgas.scene.defaults import (
+    RestingDisc,
+    contact_duration,
+    mean_free_time,
+    number_of_discs,
+    resting_disc,
+    trial_time,
+)
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
-from idealgas.scene.properties import Effect, Properties, combine, lacking
-from idealgas.scene.tables import gravity, periodic, piston, restitution, rotation, thermal, thermostat, wall
 from idealgas.scene.tables.box import Box
 from idealgas.scene.tables.discs import Disc, Species
-from idealgas.scene.tables.gravity import Gravity
-from idealgas.scene.tables.piston import Piston
-from idealgas.scene.tables.restitution import RestingDisc, Restitution
-from idealgas.scene.tables.rotation import Rotation
 from idealgas.scene.tables.run import Header, Log, Run
-from idealgas.scene.tables.thermostat import Thermostat
-from idealgas.scene.tables.wall import Wall
 from idealgas.toml.table import Rectangle, Table, Vector
 
 
-class Document(Table):
-    """All tables of a scene."""
+class _Discs(Table):
+    """Box and discs."""
 
     scene: Header = Field(default_factory=Header, description="[scene]: title, seed")
     box: Box = Field(description="[box]: size")
     species: Annotated[tuple[Species, ...], Field(strict=False)] = Field(default=(), description="[[species]] tables")
     disc: Annotated[tuple[Disc, ...], Field(strict=False)] = Field(default=(), description="[[disc]] tables")
-    wall: Annotated[tuple[Wall, ...], Field(strict=False)] = Field(default=(), description="[[wall]] tables")
-    gravity: Gravity | None = Field(default=None, description="[gravity]: acceleration")
-    rotation: Rotation | None = Field(default=None, description="[rotation]: inertia, roughness, wall_roughness")
-    restitution: Restitution | None = Field(default=None, description="[restitution]: normal, wall, contact_duration")
-    piston: Piston | None = Field(default=None, description="[piston]: side, position, velocity or mass and pressure")
-    thermostat: Thermostat | None = Field(default=None, description="[thermostat]: temperature, rate")
+
+
+def _fields_of_effects() -> dict[str, Any]:
+    """Fields for the tables of the effects; arrays of tables come first, next to those of the discs."""
+    fields: dict[str, Any] = {}
+    for effect in sorted(EFFECTS, key=lambda effect: not effect.many):
+        if effect.table is not None and effect.many:
+            array = Annotated[tuple[effect.table, ...], Field(strict=False)]  # type: ignore[name-defined]
+            fields[effect.key] = array, Field(default=(), description=effect.description)
+        elif effect.table is not None:
+            fields[effect.key] = effect.table | None, Field(default=None, description=effect.description)
+    return fields
+
+
+if TYPE_CHECKING:
+
+    class _DiscsAndEffects(_Discs):
+        def __getattr__(self, name: str) -> Any:
+            """The table of an effect."""
+            ...
+
+else:
+    _DiscsAndEffects = create_model("_DiscsAndEffects", __base__=_Discs, **_fields_of_effects())
+
+
+class Document(_DiscsAndEffects):
+    """All tables of a scene."""
+
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
     log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
 
+    def tables_of(self, effect: EffectSpec) -> Tables:
+        """The part of the scene that an effect sees; of a scene that is being checked, the box may be missing."""
+        own = getattr(self, effect.key) if effect.key else None
+        size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())
+        return Tables(own, size, sides, self.wall)
+
     @property
-    def called(self) -> tuple[Effect, ...]:
-        """The effects that the scene calls for."""
-        return tuple(effect for call in CALLS.values() if (effect := call(self)) is not None)
+    def active_effects(self) -> tuple[ActiveEffect, ...]:
+        """The effects that the scene has, in the order of EFFECTS."""
+        found = (effect.find(self.tables_of(effect)) for effect in EFFECTS)
+        return tuple(effect for effect in found if effect is not None)
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Which of EFFECTS the scene calls for."""
-        return tuple(effect.name for effect in self.called)
+        """Names of the effects that the scene has."""
+        return tuple(effect.name for effect in self.active_effects)
 
     @property
     def properties(self) -> Properties:
-        """What is true of the gas with all effects that the scene calls for."""
-        return combine(self.called)
+        """Properties of the gas with all effects that the scene has."""
+        return combine(self.active_effects)
 
     def lacking(self, *properties: str) -> tuple[str, ...]:
         """Names of the effects for which one of these properties is not true."""
-        return lacking(self.called, *properties)
+        return lacking(self.active_effects, *properties)
 
     @property
     def room(self) -> Rectangle:
@@ -75,10 +106,11 @@ class Document(Table):
     @property
     def body_force(self) -> Vector:
         """Constant acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
-        body_force = list(self.properties.acceleration)
+        gravity = self.properties.acceleration
+        body_force = list(gravity)
         if self.piston:
             axis = self.piston.axis
-            body_force[axis] = max(body_force[axis], self.piston.acceleration(self.box.size, self.gravity), key=abs)
+            body_force[axis] = max(body_force[axis], self.piston.acceleration(self.box.size, gravity), key=abs)
         return body_force[0], body_force[1]
 
     @property
@@ -109,7 +141,7 @@ class Document(Table):
         """Time after a collision in which a disc loses nothing, time; 0 if discs never lose anything."""
         if self.restitution is None or self.restitution.elastic:
             return 0.0
-        return restitution.contact_duration(
+        return contact_duration(
             self.restitution, self.species, self.disc, self.room, self.box.periodic, self.body_force
         )
 
@@ -118,25 +150,9 @@ class Document(Table):
         """What discs do that have come to rest; None if no constant force presses them, or nothing is lost."""
         if self.restitution is None:
             return None
-        return restitution.rest(self.restitution, self.contact_duration, self.free_time, self.body_force)
+        return resting_disc(self.restitution, self.contact_duration, self.free_time, self.body_force)
 
     @property
     def collapse_risk(self) -> bool:
         """Whether a constant force presses discs that roughness slows down, without bounds for their collisions."""
-        return any(self.body_force) and rotation.loses(self.rotation) and self.thermostat is None
-
-
-CALLS: dict[str, Callable[[Document], Effect | None]] = {
-    gravity.NAME: lambda scene: gravity.effect(scene.gravity),
-    periodic.NAME: lambda scene: periodic.effect(scene.box.sides if scene.box else ()),
-    wall.NAME: lambda scene: wall.effect(scene.wall),
-    rotation.NAME: lambda scene: rotation.effect(scene.rotation),
-    restitution.NAME: lambda scene: restitution.effect(scene.restitution),
-    thermal.NAME: lambda scene: thermal.effect(scene.box.sides if scene.box else (), scene.wall),
-    piston.NAME: lambda scene: piston.effect(scene.piston),
-    thermostat.NAME: lambda scene: thermostat.effect(scene.thermostat),
-}
-"""Every effect by its name, and whether a scene calls for it; one that is being checked may lack its box."""
-
-EFFECTS = tuple(CALLS)
-"""What a scene may add to smooth elastic discs in a reflecting box; no code of the others runs."""
+        return any(self.body_force) and loses(self.rotation) and self.thermostat is None

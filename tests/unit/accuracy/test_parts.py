@@ -11,10 +11,10 @@ from idealgas.accuracy.motion import Missed, count_missed, error_on_return, flow
 from idealgas.accuracy.report import cost_of, flat_row, linear_coefficient, lost_after, sentences
 from idealgas.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
 from idealgas.analysis.core.statistics import Estimate
+from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Stop
 from idealgas.errors import UserError
-from idealgas.physics.effects import Effects
 from idealgas.scene import parse_scene
 
 

@@ -23,11 +23,11 @@ from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature.figure import temperature_figure
 from idealgas.analysis.temperature.measure import temperature
 from idealgas.analysis.transport.measure import transport
+from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.errors import OutputError, UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
-from idealgas.scene.properties import Effect, Properties
 
 SCENE = """
 [scene]
@@ -106,7 +106,7 @@ def test_log_without_events_is_refused(tmp_path):
 
 
 def test_effects_are_not_ignored(log, monkeypatch):
-    monkeypatch.setattr(Scene, "called", (Effect("magnets", (), Properties(uniform=False)),))
+    monkeypatch.setattr(Scene, "active_effects", (ActiveEffect("magnets", (), Properties(uniform=False)),))
     with pytest.raises(UserError, match="no answer for a gas with magnets"):
         transport(log)
     found = pressure(log)

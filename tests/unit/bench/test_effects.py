@@ -2,14 +2,15 @@
 
 import pytest
 
-from idealgas.bench.effects import NUMBER, SCENES, bench_effects, effect_scene
-from idealgas.scene import EFFECTS
+from idealgas.bench.effects import SCENES, bench_effects, effect_scene
+from idealgas.effects import EFFECT_NAMES
+from idealgas.effects.effect import SAMPLE_DISCS
 
 
 def test_every_effect_is_there():
     called = {effect for name in SCENES for effect in effect_scene(name, 1).effects}
-    assert called == set(EFFECTS)
-    assert set(effect_scene("all", 1).effects) == set(EFFECTS)
+    assert called == set(EFFECT_NAMES)
+    assert set(effect_scene("all", 1).effects) == set(EFFECT_NAMES)
     assert effect_scene(None, 1).effects == ()
 
 
@@ -18,7 +19,7 @@ def test_one_at_a_time(name):
     scene = effect_scene(name, 1)
     assert len(scene.effects) == 1
     assert name.startswith(scene.effects[0])
-    assert sum(s.count for s in scene.species) == NUMBER
+    assert sum(s.count for s in scene.species) == SAMPLE_DISCS
 
 
 def test_ratios_are_measured(monkeypatch):

@@ -7,11 +7,11 @@ import pytest
 from log_compare import differences
 from support import gas_of, record, same_rows
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven, first_step_after, make_nearby
 from idealgas.events import Kind
 from idealgas.log import open_log
-from idealgas.physics.effects import Effects
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
 from idealgas.run.resume import resume

@@ -6,10 +6,11 @@ from effect_samples import make_flow
 from scipy.integrate import quad
 from support import gas_of
 
+from idealgas.effects.bundle import Effects
+from idealgas.effects.wall import make_segments
 from idealgas.engine.records import DISC
 from idealgas.engine.resolve import resolve_pair, resolve_segment, resolve_side
 from idealgas.jit import aligned
-from idealgas.physics.effects import Effects
 from idealgas.physics.exact_sum import BATCH, stored, values
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.rotation import Rotation
@@ -21,7 +22,6 @@ from idealgas.physics.stress import (
     flush,
     kinetic_flow,
 )
-from idealgas.run.effects.wall import make_segments
 
 
 def flow_of(faces=4, rough=False):

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from idealgas.effects import EFFECTS
 from idealgas.initial.build import make_gas
 from idealgas.physics.exact_sum import values
 from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects
-from idealgas.scene import EFFECTS, load_scene, parse_scene
+from idealgas.scene import load_scene, parse_scene
 
 PLAIN = """
 box.size = [20, 10]
@@ -20,8 +21,6 @@ species = [
 ]
 disc = [{ position = [7, 5], velocity = [1, 0], radius = 0.5, mass = 2 }]
 """
-FIELDS = ("gravity", "periodic", "segments", "rotation", "restitution", "thermal", "piston", "thermostat")
-"""Of the engines' effects, in the order of EFFECTS."""
 
 
 def effects_of(*overrides, text=PLAIN):
@@ -37,7 +36,7 @@ def test_no_table_no_effect():
 
 def assert_as_called_for(scene):
     effects = make_effects(scene, make_gas(scene))
-    called = tuple(name for name, field in zip(EFFECTS, FIELDS, strict=True) if getattr(effects, field) is not None)
+    called = tuple(effect.name for effect in EFFECTS if getattr(effects, effect.field) is not None)
     assert called == scene.effects
 
 

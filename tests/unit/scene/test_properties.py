@@ -6,9 +6,10 @@ from itertools import combinations
 
 import pytest
 
+from idealgas.effects import EFFECT_NAMES
+from idealgas.effects.properties import Properties
 from idealgas.physics.disc_wall import inward_normal
-from idealgas.scene import EFFECTS, parse_scene
-from idealgas.scene.properties import Properties
+from idealgas.scene import parse_scene
 from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
 
 PLAIN = """
@@ -43,11 +44,11 @@ def together(*names):
 
 def test_a_plain_box_has_all_defaults():
     assert properties() == Properties()
-    assert scene().called == ()
+    assert scene().active_effects == ()
     assert scene().lacking("uniform", "isolated", "conserves_motion") == ()
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("name", EFFECT_NAMES)
 def test_an_effect_is_called_for_by_its_table(name):
     assert scene(*TABLES[name]).effects == (name,)
 
@@ -78,24 +79,24 @@ BRINGING = {
 
 @pytest.mark.parametrize("name", LACKING)
 def test_what_effects_take_away(name):
-    """From a scene with all of them, each alone, and in the order of EFFECTS."""
-    everything = scene(*together(*EFFECTS))
-    assert everything.effects == EFFECTS
-    assert everything.lacking(name) == tuple(effect for effect in EFFECTS if effect in LACKING[name])
+    """From a scene with all of them, each alone, and in the order of EFFECT_NAMES."""
+    everything = scene(*together(*EFFECT_NAMES))
+    assert everything.effects == EFFECT_NAMES
+    assert everything.lacking(name) == tuple(effect for effect in EFFECT_NAMES if effect in LACKING[name])
     assert not getattr(everything.properties, name)
-    for effect in EFFECTS:
+    for effect in EFFECT_NAMES:
         assert getattr(properties(*TABLES[effect]), name) == (effect not in LACKING[name])
 
 
 @pytest.mark.parametrize("name", BRINGING)
 def test_what_effects_bring(name):
-    for effect in EFFECTS:
+    for effect in EFFECT_NAMES:
         assert getattr(properties(*TABLES[effect]), name) == (effect in BRINGING[name])
 
 
 def test_several_properties_at_once():
-    everything = scene(*together(*EFFECTS))
-    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in EFFECTS if e != "periodic sides")
+    everything = scene(*together(*EFFECT_NAMES))
+    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in EFFECT_NAMES if e != "periodic sides")
     assert everything.lacking() == ()
 
 
@@ -169,7 +170,7 @@ def test_along_which_axes_momentum_is_kept(overrides, kept):
     assert properties(*overrides).conserves_momentum == kept
 
 
-@pytest.mark.parametrize("names", list(combinations(EFFECTS, 2)))
+@pytest.mark.parametrize("names", list(combinations(EFFECT_NAMES, 2)))
 def test_effects_come_together(names):
     """Whichever comes first; the plain box adds nothing."""
     one, other = (properties(*TABLES[name]) for name in names)

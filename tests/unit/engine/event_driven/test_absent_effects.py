@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from idealgas.physics.effects import Effects
-from idealgas.scene import EFFECTS
+from idealgas.effects import EFFECT_NAMES
+from idealgas.effects.bundle import Effects
 
 pytestmark = pytest.mark.slow
 
@@ -79,4 +79,4 @@ def test_with_the_effects_the_same_functions_run(tmp_path):
     """What the names above are worth: each is called where its effect is."""
     called, _ = run(tmp_path, "all", NUMBA_DISABLE_JIT="1")
     assert set().union(*MARKERS.values()) <= called
-    assert set(MARKERS) | {"restitution"} == set(EFFECTS)
+    assert set(MARKERS) | {"restitution"} == set(EFFECT_NAMES)

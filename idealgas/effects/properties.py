@@ -124,19 +124,19 @@ class Properties:
 
 
 @dataclass(frozen=True)
-class Effect:
-    """An effect that a scene calls for: its name for people, where the scene says so, what it changes."""
+class ActiveEffect:
+    """An effect that a scene has: its name for people, the keys that turn it on, and what it changes."""
 
     name: str
     keys: tuple[Key, ...]
     properties: Properties
 
 
-def combine(effects: tuple[Effect, ...]) -> Properties:
+def combine(effects: tuple[ActiveEffect, ...]) -> Properties:
     """Properties of a scene with these effects."""
     return reduce(Properties.__and__, (effect.properties for effect in effects), Properties())
 
 
-def lacking(effects: tuple[Effect, ...], *names: str) -> tuple[str, ...]:
+def lacking(effects: tuple[ActiveEffect, ...], *names: str) -> tuple[str, ...]:
     """Which of the effects lack one of these properties, by their names."""
     return tuple(e.name for e in effects if not all(getattr(e.properties, name) for name in names))

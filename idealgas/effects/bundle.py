@@ -1,0 +1,152 @@
+"""The effects of a scene as one argument of the engines: a field per effect, None if the scene does not have it.
+
+A field is only ever passed on as an argument: numba removes `if gravity is not None` from a function whose argument is
+None, so that no machine code is made for an absent effect.
+"""
+
+from collections import namedtuple
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from idealgas.effects import EFFECTS
+from idealgas.effects.effect import EffectSpec
+from idealgas.events import Arrays, Column, Values
+from idealgas.physics import stress
+from idealgas.physics.exact_sum import add_sums, clear
+from idealgas.state import Gas
+
+ENERGIES = ("wall_energy", "dissipated", "bath_energy")
+"""Fields that are sums of energies."""
+
+FIELDS = (*(effect.field for effect in EFFECTS), *ENERGIES, "flow")
+"""Fields of the bundle: all effects, and the sums over a run."""
+
+if TYPE_CHECKING:
+
+    class Effects(tuple):
+        """Parameters and state of all effects; mypy cannot see the fields, which follow from the list of effects."""
+
+        def __new__(cls, **fields: Any) -> "Effects":
+            """Bundle of these fields; None for all others."""
+            ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
+        def _replace(self, **fields: Any) -> "Effects": ...
+
+        _fields: tuple[str, ...]
+
+else:
+    Effects = namedtuple("Effects", FIELDS, defaults=[None] * len(FIELDS), module=__name__)
+    Effects.__doc__ = """Parameters and state of all effects of a scene; None for those that it does not have.
+
+    In addition to the fields of `EFFECTS`:
+
+    Attributes:
+        wall_energy: (walls,) SUM, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
+        dissipated: (1 + walls,) SUM, energy lost in collisions of two discs, then in hits of each wall that is not
+            thermal, mass length²/time²; None if nothing is lost. What a wall at rest gave is less by this.
+        bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without one.
+        flow: momentum that the gas carries and passes on; None if it is not recorded.
+    """
+
+
+def present(effects: Effects) -> Iterator[tuple[EffectSpec, Any]]:
+    """The effects that a bundle has, with their states."""
+    for effect in EFFECTS:
+        if (state := getattr(effects, effect.field)) is not None:
+            yield effect, state
+
+
+def begin_epoch(effects: Effects, time: float) -> None:
+    """Prepare all effects for an epoch that begins at a time, counted from the start of the run."""
+    for effect, state in present(effects):
+        effect.begin_epoch(state, time)
+
+
+def end_epoch(effects: Effects, length: float) -> None:
+    """Finish an epoch of some length (time): local times of all effects count from its end."""
+    for effect, state in present(effects):
+        effect.end_epoch(state, length)
+
+
+def next_change(effects: Effects, time: float) -> float:
+    """Earliest time, after the given one, at which an effect changes by itself; infinite if none does."""
+    return min((effect.next_change(state, time) for effect, state in present(effects)), default=float("inf"))
+
+
+def inner_energy(effects: Effects, gas: Gas) -> float:
+    """Energy of the discs at time 0 that may become motion, mass length²/time²."""
+    parts = ((effect.energy, state) for effect, state in present(effects))
+    return sum(part.of(state, gas, 0.0) for part, state in parts if part is not None and part.inner)
+
+
+def counted(effects: Effects) -> tuple[Column, ...]:
+    """Totals of events that only these effects have."""
+    return tuple(effect.counted for effect, _ in present(effects) if effect.counted is not None)
+
+
+def disc_state(effects: Effects) -> Arrays:
+    """What checkpoints keep of each disc: the effects' own arrays; times count from the checkpoint."""
+    return {column: values for effect, state in present(effects) for column, values in effect.disc_state(state).items()}
+
+
+def disc_constants(effects: Effects) -> Arrays:
+    """What the log keeps of each disc at the start, in addition to motion, radius and mass."""
+    return {column: values for effect, state in present(effects) for column, values in effect.constants(state).items()}
+
+
+def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
+    """What checkpoints and samples keep of the effects as a whole; local_time: from the start of the epoch."""
+    return {
+        column: value
+        for effect, state in present(effects)
+        for column, value in effect.values(state, local_time).items()
+    }
+
+
+def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray], values: Mapping[str, Any]) -> None:
+    """Set the effects to the state of a checkpoint, given by its columns: arrays per disc, and values."""
+    for column, own in disc_state(effects).items():
+        own[:] = arrays[column.name]
+    for effect, state in present(effects):
+        effect.restore(state, values)
+
+
+def with_own_sums(effects: Effects) -> Effects:
+    """The same effects with sums of their own, which are 0: what several threads add up can be put together."""
+    sums = {name: None if (found := getattr(effects, name)) is None else found.copy() for name in ENERGIES}
+    own = effects._replace(flow=stress.copy_of(effects.flow), **sums)
+    clear_sums(own)
+    return own
+
+
+def clear_sums(effects: Effects) -> None:
+    """Set all sums and numbers of collisions to 0."""
+    for sums in _sums(effects):
+        clear(sums)
+    for counts in _counts(effects):
+        counts[...] = 0
+    if effects.flow is not None:
+        effects.flow.buffer.number[0] = 0
+
+
+def add_sums_of(effects: Effects, part: Effects) -> None:
+    """Add to the sums and numbers of collisions what another bundle of the same effects has; no term waits in that."""
+    for total, sums in zip(_sums(effects), _sums(part), strict=True):
+        add_sums(total, sums)
+    for number, counts in zip(_counts(effects), _counts(part), strict=True):
+        number += counts
+
+
+def _sums(effects: Effects) -> list[np.ndarray]:
+    """All arrays of SUM."""
+    found = [] if effects.flow is None else stress.sums_of(effects.flow)
+    return [*found, *(sums for name in ENERGIES if (sums := getattr(effects, name)) is not None)]
+
+
+def _counts(effects: Effects) -> list[np.ndarray]:
+    """All arrays of numbers of collisions."""
+    return [] if effects.flow is None else stress.counts_of(effects.flow)

@@ -1,0 +1,164 @@
+"""What an effect is: its table in a scene, its state in a run, and what the log keeps of it."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from idealgas.effects.properties import ActiveEffect
+from idealgas.events import Arrays, Column, Values
+from idealgas.state import Gas
+from idealgas.toml.error import Issue
+from idealgas.toml.table import Table
+
+
+class Tables(NamedTuple):
+    """The part of a scene that an effect sees.
+
+    Attributes:
+        own: its table, None if absent; for an effect with an array of tables a tuple, with None for invalid ones.
+        size: width and height of the box, length.
+        sides: what the left, right, bottom and top side are; empty while the table of the box is invalid.
+        walls: wall segments, None for invalid ones.
+    """
+
+    own: Any
+    size: tuple[float, float]
+    sides: tuple[Any, ...]
+    walls: tuple[Any, ...]
+
+
+class Start(NamedTuple):
+    """The discs at time 0, for an effect that makes its state.
+
+    Attributes:
+        gas: the discs.
+        seed: seed of the scene.
+        acceleration: constant acceleration of all discs by all effects, length/time².
+        angular_velocity: (N,) as the scene gives it, 1/time; 0 where it does not.
+        spin_temperature: (N,) energy; 0 where spins are not drawn at random.
+    """
+
+    gas: Gas
+    seed: int
+    acceleration: tuple[float, float]
+    angular_velocity: np.ndarray
+    spin_temperature: np.ndarray
+
+
+class EnergyPart(NamedTuple):
+    """A part of the energy that an effect adds.
+
+    Attributes:
+        part: a field of `idealgas.run.energy.Energy`.
+        of: the energy, from the effect's state, the gas and the local time.
+        observed: the column of the samples that holds it, None if they do not.
+        inner: whether discs have it in addition to their motion, and may turn it into motion in collisions.
+    """
+
+    part: str
+    of: Callable[[Any, Gas, float], float]
+    observed: Column | None = None
+    inner: bool = False
+
+
+SAMPLE_DISCS = 1000
+
+
+class Sample(NamedTuple):
+    """What an effect adds to the scene of the benchmark: SAMPLE_DISCS discs at temperature 1 in a square box.
+
+    Attributes:
+        name: added to the name of the effect, if it has several samples.
+        box: keys of `[box]`, from the length of the box's sides.
+        tables: further tables, from the same length.
+    """
+
+    name: str = ""
+    box: Callable[[float], str] = lambda side: ""
+    tables: Callable[[float], str] = lambda side: ""
+
+
+def _no_issues(_: Tables) -> Iterable[Issue]:
+    return ()
+
+
+def _no_arrays(_: Any) -> Arrays:
+    return {}
+
+
+def _no_values(_: Any, __: float) -> Values:
+    return {}
+
+
+def _nothing_to_restore(_: Any, __: Mapping[str, Any]) -> None:
+    pass
+
+
+def _nothing_at_epochs(_: Any, __: float) -> None:
+    pass
+
+
+def _never(_: Any, __: float) -> float:
+    return float("inf")
+
+
+@dataclass(frozen=True)
+class EffectSpec:
+    """One effect. Its state is what `make` returned, and what the engine has made of it since.
+
+    Attributes:
+        name: for people.
+        field: of the bundle of all effects (`idealgas.effects.bundle`).
+        find: how the effect changes the gas; None if the scene does not have the effect.
+        make: the state at time 0; None if the gas does not need it.
+        key: of its table in a scene; empty if it is only a kind of side, or a key of other tables.
+        table: its table, a Pydantic model.
+        many: whether the scene has an array of such tables.
+        description: of the table, for the JSON Schema.
+        side: a kind of side of the box: a word, or a table with one key.
+        side_text: how such a side is written.
+        check: faults of its own table that the table does not find itself; called if the box is valid.
+        disc_state: what a checkpoint keeps of each disc, the state's own arrays; those that are columns of events are
+            in event rows and snapshots too.
+        constants: what the log keeps of each disc at the start.
+        values: what checkpoints and samples keep of the effect as a whole, at a local time.
+        restore: set the state to the values of a checkpoint, by name, except for arrays per disc.
+        energy: the part of the energy that it adds.
+        gives_energy: whether it lets walls give energy to discs, or take some.
+        loses_energy: whether it lets collisions lose energy.
+        own_wall: number of a wall that has energy of its own, so that what it gives does not come from outside.
+        counted: total number of its own events.
+        begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run.
+        end_epoch: count local times from the end of an epoch of some length (time).
+        next_change: next time after a given one at which the effect changes by itself, so that an epoch must end.
+        samples: scenes of the benchmark.
+        sample_together: its part in the scene of all effects together; the first of the samples if None.
+    """
+
+    name: str
+    field: str
+    find: Callable[[Tables], ActiveEffect | None]
+    make: Callable[[Tables, Start], Any]
+    samples: tuple[Sample, ...]
+    sample_together: Sample | None = None
+    key: str = ""
+    table: type[Table] | None = None
+    many: bool = False
+    description: str = ""
+    side: str | type[Table] | None = None
+    side_text: str = ""
+    check: Callable[[Tables], Iterable[Issue]] = _no_issues
+    disc_state: Callable[[Any], Arrays] = _no_arrays
+    constants: Callable[[Any], Arrays] = _no_arrays
+    values: Callable[[Any, float], Values] = _no_values
+    restore: Callable[[Any, Mapping[str, Any]], None] = _nothing_to_restore
+    energy: EnergyPart | None = None
+    gives_energy: Callable[[Any], bool] = lambda state: False
+    loses_energy: Callable[[Any], bool] = lambda state: False
+    own_wall: Callable[[Any], int | None] = lambda state: None
+    counted: Column | None = None
+    begin_epoch: Callable[[Any, float], None] = _nothing_at_epochs
+    end_epoch: Callable[[Any, float], None] = _nothing_at_epochs
+    next_change: Callable[[Any, float], float] = _never

@@ -1,0 +1,75 @@
+"""Gravity: one constant acceleration of all discs."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from pydantic import Field
+
+from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
+from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.events import Column
+from idealgas.physics import gravity as law
+from idealgas.sides import SIDES, sides_across
+from idealgas.state import Gas
+from idealgas.toml.error import Issue, Key
+from idealgas.toml.table import Table, Vector
+
+NAME = "gravity"
+
+
+class Gravity(Table):
+    """`[gravity]`: the same acceleration everywhere."""
+
+    acceleration: Vector = Field(description="[gx, gy], length/time²")
+
+
+def _find(tables: Tables) -> ActiveEffect | None:
+    if tables.own is None:
+        return None
+    properties = Properties(
+        uniform=False,
+        straight_flight=False,
+        allows_monte_carlo=False,
+        drives_discs=True,
+        acceleration=tables.own.acceleration,
+    )
+    return ActiveEffect(NAME, (("gravity",),), properties)
+
+
+def _check(tables: Tables) -> Iterator[Issue]:
+    """Gravity without acceleration, or along periodic sides, where discs would accelerate indefinitely."""
+    if tables.own is None:
+        return
+    key: Key = ("gravity", "acceleration")
+    acceleration = tables.own.acceleration
+    if not any(acceleration):
+        yield Issue((key,), "no acceleration", str(list(acceleration)), "no [gravity], or one that pulls")
+    for axis, component in enumerate(acceleration):
+        low, high = (SIDES[side] for side in sides_across(axis))
+        if component and tables.sides[2 * axis] == "periodic":
+            keys = (key, ("box", low), ("box", high))
+            what = f"gravity through the periodic sides {low} and {high}"
+            yield Issue(keys, what, f"a component of {component}", "0, or sides that end the fall")
+
+
+def _make(_: Tables, start: Start) -> law.Gravity | None:
+    """The acceleration of all effects: discs follow their sum."""
+    return law.Gravity(*start.acceleration) if any(start.acceleration) else None
+
+
+def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
+    return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
+
+
+EFFECT = EffectSpec(
+    name=NAME,
+    field="gravity",
+    key="gravity",
+    table=Gravity,
+    description="[gravity]: acceleration",
+    find=_find,
+    check=_check,
+    make=_make,
+    energy=EnergyPart("potential", _energy, Column("potential_energy", "f8", (), "energy")),
+    samples=(Sample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),),
+)

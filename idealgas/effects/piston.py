@@ -1,0 +1,148 @@
+"""A piston: a wall across the whole box that moves."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from idealgas.effects.effect import SAMPLE_DISCS, EffectSpec, EnergyPart, Sample, Start, Tables
+from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.events import Column, Values
+from idealgas.jit import aligned
+from idealgas.physics import piston as law
+from idealgas.sides import OUTWARD, SIDES, axis_of
+from idealgas.state import Gas
+from idealgas.toml.table import NotNegative, Number, Positive, Rectangle, Table
+
+NAME = "piston"
+
+POSITION = Column("piston_position", "f8", (), "length")
+VELOCITY = Column("piston_velocity", "f8", (), "length/time")
+
+
+class Piston(Table):
+    """`[piston]`: a wall across the whole box that moves in the place of one side and keeps the gas to itself.
+
+    Either it moves at a given velocity whatever hits it, or it has a mass and gives way: the outer pressure, and
+    gravity if that acts along its way, press it on the gas. At its side of the box it turns back.
+    """
+
+    side: Literal["left", "right", "bottom", "top"] = Field(default="right", description="the side it stands for")
+    position: Number | None = Field(default=None, description="coordinate at the start, length; at its side if absent")
+    velocity: Number | None = Field(default=None, description="length/time along the axis, kept up against all hits")
+    mass: Positive | None = Field(default=None, description="mass > 0, together with pressure")
+    pressure: NotNegative | None = Field(default=None, description="outer pressure, force per length of the piston")
+
+    @property
+    def axis(self) -> int:
+        """0 if it moves along x, 1 along y."""
+        return axis_of(SIDES.index(self.side))
+
+    @property
+    def outward(self) -> float:
+        """+1 if it is above the gas on its axis, -1 if below."""
+        return sum(OUTWARD[SIDES.index(self.side)])
+
+    def stop(self, size: tuple[float, float]) -> float:
+        """Coordinate of its side of the box."""
+        return size[self.axis] if self.outward > 0 else 0.0
+
+    def start(self, size: tuple[float, float]) -> float:
+        """Coordinate at time 0."""
+        return self.stop(size) if self.position is None else self.position
+
+    def room(self, size: tuple[float, float]) -> Rectangle:
+        """What the gas has at the start: the box, up to the piston if that is in it."""
+        low, high = [0.0, 0.0], list(size)
+        if 0 <= (start := self.start(size)) <= size[self.axis]:
+            (high if self.outward > 0 else low)[self.axis] = start
+        return low[0], low[1], high[0], high[1]
+
+    @property
+    def action(self) -> str:
+        """What it does, in words."""
+        if self.mass is None:
+            return f"piston of velocity {self.velocity:g}"
+        return f"piston of mass {self.mass:g} under pressure {self.pressure:g}"
+
+    def acceleration(self, size: tuple[float, float], gravity: tuple[float, float]) -> float:
+        """Along the axis, between hits, length/time². gravity: constant acceleration of all discs, length/time²."""
+        if self.mass is None:
+            return 0.0
+        return gravity[self.axis] - self.outward * (self.pressure or 0.0) * size[1 - self.axis] / self.mass
+
+
+def _find(tables: Tables) -> ActiveEffect | None:
+    piston = tables.own
+    if piston is None:
+        return None
+    properties = Properties(
+        uniform=False,
+        fixed_walls=False,
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        local=False,
+        is_scalable=False,
+        driven=piston.mass is None and bool(piston.velocity),
+        drives_discs=True,
+    )
+    return ActiveEffect(NAME, (("piston",),), properties)
+
+
+def _make(tables: Tables, start: Start) -> np.ndarray | None:
+    table, size = tables.own, tables.size
+    if table is None:
+        return None
+    piston = aligned(1, law.PISTON)
+    record = piston[0]
+    record.x, record.v, record.a = (
+        table.start(size),
+        table.velocity or 0.0,
+        table.acceleration(size, start.acceleration),
+    )
+    record.m, record.stop, record.side = table.mass or 0.0, table.stop(size), SIDES.index(table.side)
+    return piston
+
+
+def _values(piston: np.ndarray, local_time: float) -> Values:
+    position, velocity = law.piston_motion(piston[0], local_time)
+    return {POSITION: float(position), VELOCITY: float(velocity)}
+
+
+def _restore(piston: np.ndarray, values: Mapping[str, Any]) -> None:
+    record = piston[0]
+    record.x, record.v, record.t = values[POSITION.name], values[VELOCITY.name], 0.0
+
+
+def _energy(piston: np.ndarray, _: Gas, local_time: float) -> float:
+    record = piston[0]
+    position, velocity = law.piston_motion(record, local_time)
+    return float(law.piston_energy(record.m, position, velocity, record.a)) if record.m > 0 else 0.0
+
+
+def _own_wall(piston: np.ndarray) -> int | None:
+    return int(piston[0].side) if piston[0].m > 0 else None
+
+
+def _sample(side: float) -> str:
+    pressure = 1.2 * SAMPLE_DISCS / side**2
+    return f'[piston]\nside = "top"\nposition = {0.95 * side!r}\nmass = 100\npressure = {pressure!r}\n'
+
+
+EFFECT = EffectSpec(
+    name=NAME,
+    field="piston",
+    key="piston",
+    table=Piston,
+    description="[piston]: side, position, velocity or mass and pressure",
+    find=_find,
+    make=_make,
+    values=_values,
+    restore=_restore,
+    energy=EnergyPart("piston", _energy),
+    gives_energy=lambda piston: True,
+    own_wall=_own_wall,
+    end_epoch=law.end_epoch,
+    samples=(Sample(tables=_sample),),
+)

@@ -1,0 +1,66 @@
+"""Inelastic collisions of discs with each other and with walls."""
+
+import math
+
+import numpy as np
+from pydantic import Field
+
+from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.events import Column
+from idealgas.physics import restitution as law
+from idealgas.toml.table import Positive, Real, Table
+
+NAME = "restitution"
+
+LAST_COLLISION = Column("last_collision", "f8", (), "time")
+"""Counted from the checkpoint."""
+
+
+class Restitution(Table):
+    """`[restitution]`: discs part more slowly than they met.
+
+    A disc that collided less than the contact duration ago collides elastically: this keeps a gas from infinitely many
+    collisions in a finite time (Luding & McNamara, Granular Matter 1, 113 (1998)).
+    """
+
+    normal: Real = Field(default=1.0, ge=0, le=1, description="of two discs, 0 to 1")
+    wall: Real = Field(default=1.0, ge=0, le=1, description="of a disc with a wall or piston, 0 to 1")
+    contact_duration: Positive | None = Field(
+        default=None, description="time > 0; if absent 0.05 of the mean free time, or without a force far less"
+    )
+
+    @property
+    def elastic(self) -> bool:
+        """Whether nothing is lost."""
+        return self.normal == 1 and self.wall == 1
+
+
+def _find(tables: Tables) -> ActiveEffect | None:
+    if tables.own is None or tables.own.elastic:
+        return None
+    properties = Properties(uniform=False, elastic=False, dissipative=True)
+    return ActiveEffect(NAME, (("restitution",),), properties)
+
+
+def _make(tables: Tables, start: Start) -> law.Restitution | None:
+    table = tables.own
+    if table is None or table.elastic:
+        return None
+    return law.Restitution(table.normal, table.wall, table.contact_duration, np.full(len(start.gas), -math.inf))
+
+
+EFFECT = EffectSpec(
+    name=NAME,
+    field="restitution",
+    key="restitution",
+    table=Restitution,
+    description="[restitution]: normal, wall, contact_duration",
+    find=_find,
+    make=_make,
+    disc_state=lambda restitution: {LAST_COLLISION: restitution.last},
+    gives_energy=lambda restitution: restitution.wall < 1,
+    loses_energy=lambda restitution: True,
+    end_epoch=law.end_epoch,
+    samples=(Sample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),),
+)

@@ -1,0 +1,85 @@
+"""Rough discs that spin."""
+
+import math
+
+import numpy as np
+from pydantic import Field
+
+from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
+from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.events import ANGULAR_VELOCITY, Arrays, Column
+from idealgas.physics import rotation as law
+from idealgas.state import Gas, rng
+from idealgas.toml.table import Real, Table
+
+NAME = "rotation"
+
+INERTIA = Column("inertia", "f8", (), "mass length^2")
+
+
+class Rotation(Table):
+    """`[rotation]`: discs have a spin, and a tangential coefficient couples it to their motion.
+
+    The coefficient runs from -1 (smooth) to 1 (perfectly rough); energy is conserved at these two. A piston is smooth.
+    """
+
+    inertia: Real = Field(
+        default=0.5, gt=0, le=1, description="moment of inertia in units of mass * radius²: 0.5 for a uniform disc"
+    )
+    roughness: Real = Field(default=1.0, ge=-1, le=1, description="of discs, -1 to 1")
+    wall_roughness: Real = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")
+
+
+def loses(rotation: Rotation | None) -> bool:
+    """Whether collisions of rough discs, with each other or with walls, lose energy."""
+    return rotation is not None and any(-1 < r < 1 for r in (rotation.roughness, rotation.wall_roughness))
+
+
+def _find(tables: Tables) -> ActiveEffect | None:
+    rotation = tables.own
+    if rotation is None:
+        return None
+    properties = Properties(
+        dissipative=loses(rotation), inertia=rotation.inertia, has_rough_walls=rotation.wall_roughness > -1
+    )
+    return ActiveEffect(NAME, (("rotation",),), properties)
+
+
+def _make(tables: Tables, start: Start) -> law.Rotation | None:
+    table, gas = tables.own, start.gas
+    if table is None:
+        return None
+    omega = start.angular_velocity.copy()
+    for k, name in enumerate(gas.species_names):
+        ids = np.flatnonzero(gas.species == k)
+        if len(ids) and (temperature := start.spin_temperature[ids[0]]) > 0:
+            spin = rng(start.seed, f"spins {name}").standard_normal(len(ids))
+            inertia = law.moment_of_inertia(table.inertia, gas.mass[ids[0]], gas.radius[ids[0]])
+            omega[ids] = spin * math.sqrt(temperature / (inertia * (spin**2).mean()))
+    inertias = law.moment_of_inertia(table.inertia, gas.mass, gas.radius)
+    return law.Rotation(omega, inertias, table.roughness, table.wall_roughness)
+
+
+def _constants(rotation: law.Rotation) -> Arrays:
+    return {ANGULAR_VELOCITY: rotation.omega.copy(), INERTIA: rotation.inertia}
+
+
+def _energy(rotation: law.Rotation, _: Gas, __: float) -> float:
+    return float((0.5 * rotation.inertia * rotation.omega**2).sum())
+
+
+EFFECT = EffectSpec(
+    name=NAME,
+    field="rotation",
+    key="rotation",
+    table=Rotation,
+    description="[rotation]: inertia, roughness, wall_roughness",
+    find=_find,
+    make=_make,
+    disc_state=lambda rotation: {ANGULAR_VELOCITY: rotation.omega},
+    constants=_constants,
+    energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy"), inner=True),
+    gives_energy=lambda rotation: abs(rotation.wall_roughness) < 1,
+    loses_energy=lambda rotation: abs(rotation.roughness) < 1 or abs(rotation.wall_roughness) < 1,
+    samples=(Sample(tables=lambda side: "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"),),
+)

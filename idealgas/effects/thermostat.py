@@ -1,0 +1,71 @@
+"""A thermostat: a heat bath that gives discs new velocities at random times."""
+
+import numpy as np
+from pydantic import Field
+
+from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.events import Column
+from idealgas.physics import thermostat as law
+from idealgas.toml.table import Positive, Table
+
+NAME = "thermostat"
+
+KICKS = Column("kicks", "i8")
+NEXT_KICK = Column("next_kick", "f8", (), "time")
+"""Counted from the checkpoint."""
+KICK_NUMBER = Column("kick_number", "u8")
+"""Of each disc's next kick, from 0."""
+
+
+class Thermostat(Table):
+    """`[thermostat]`: a heat bath gives each disc a new velocity at random times, wherever it is.
+
+    The velocity is that of a gas at the bath's temperature, and so is the spin of a disc that has one (Andersen,
+    J. Chem. Phys. 72, 2384 (1980)).
+    """
+
+    temperature: Positive = Field(description="temperature > 0 of the heat bath, energy")
+    rate: Positive = Field(description="kicks of each disc per time > 0, 1/time")
+
+
+def _find(tables: Tables) -> ActiveEffect | None:
+    thermostat = tables.own
+    if thermostat is None:
+        return None
+    properties = Properties(
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        drives_discs=True,
+        bath=thermostat.temperature,
+        kicks=thermostat.rate,
+    )
+    return ActiveEffect(NAME, (("thermostat",),), properties)
+
+
+def _make(tables: Tables, start: Start) -> law.Thermostat | None:
+    if (table := tables.own) is None:
+        return None
+    n = len(start.gas)
+    thermostat = law.Thermostat(
+        table.temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64)
+    )
+    law.draw_first_kicks(thermostat)
+    return thermostat
+
+
+EFFECT = EffectSpec(
+    name=NAME,
+    field="thermostat",
+    key="thermostat",
+    table=Thermostat,
+    description="[thermostat]: temperature, rate",
+    find=_find,
+    make=_make,
+    disc_state=lambda thermostat: {NEXT_KICK: thermostat.time, KICK_NUMBER: thermostat.number},
+    counted=KICKS,
+    end_epoch=law.end_epoch,
+    samples=(  # a tenth of the collisions of a disc per time
+        Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),
+    ),
+)
