@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from idealgas.analysis import registry
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
@@ -16,7 +17,7 @@ from ._tables import print_tables
 from ._terminal import data, echo, terminal, written
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.declaration import Analysis, Option
+    from idealgas.analysis.core.analysis import Analysis, Option
     from idealgas.log import Log
 
 
@@ -59,23 +60,44 @@ def print_json(result: dict[str, Any]) -> None:
 # ── one command an analysis ──
 
 
-def analysis_command(analysis: "Analysis") -> click.Command:
-    """Make the command of an analysis: its logs, its own options, and the options of all analyses."""
+class AnalysisCommand(click.Command):
+    """Command of an analysis: its logs, its own options, and the options of all analyses.
 
-    def command(**arguments: Any) -> None:
-        _analyse(analysis, **arguments)
+    Its help is that of the module of the analysis, which is imported when options are needed.
+    """
+
+    def __init__(self, name: str) -> None:
+        example = f"Example: idealgas {name} gas.h5 --plot {name}.png"
+        super().__init__(name, help=registry.help_of(name.replace("-", "_")), epilog=example, callback=self._call)
+
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """Parameters of the command."""
+        if not self.params:
+            self.params = _parameters(self._analysis)
+        return super().get_params(ctx)
+
+    @property
+    def _analysis(self) -> "type[Analysis]":
+        return registry.find(self.name or "")
+
+    def _call(self, **arguments: Any) -> None:
+        _analyse(self._analysis, **arguments)
+
+
+def _parameters(analysis: "type[Analysis]") -> list[click.Parameter]:
+    def command() -> None:
+        pass
 
     decorators = [_logs(analysis), *map(_option, analysis.options), *_common_options(analysis)]
     for decorate in reversed(decorators):
         command = decorate(command)
-    example = f"Example: idealgas {analysis.key} gas.h5 --plot {analysis.key}.png"
-    return click.command(name=analysis.key, help=analysis.help, epilog=example)(command)
+    return click.command()(command).params
 
 
-def _logs(analysis: "Analysis") -> Callable:
-    if not analysis.several:
+def _logs(analysis: "type[Analysis]") -> Callable:
+    if analysis.combine is None:
         return click.argument("paths", metavar="RUN.h5", callback=lambda _, __, path: (path,))
-    metavar = "RUN.h5|DIR..." if analysis.folders else "RUN.h5..."
+    metavar = "RUN.h5|DIR..." if analysis.restore else "RUN.h5..."
     return click.argument("paths", metavar=metavar, nargs=-1, required=True)
 
 
@@ -95,7 +117,7 @@ def _option(option: "Option") -> Callable:
     )  # fmt: skip
 
 
-def _common_options(analysis: "Analysis") -> Iterator[Callable]:
+def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
     for name, variable, where, default in (
         ("--from", "start", "Start", analysis.start), ("--to", "end", "End", analysis.end),
     ):  # fmt: skip
@@ -107,13 +129,13 @@ def _common_options(analysis: "Analysis") -> Iterator[Callable]:
     yield quiet_option
     words = "Print the rows of the tables as CSV with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
-    if analysis.checked:
+    if analysis.is_checked():
         words = "Exit with code 1 if measurement and theory differ by more than 4 standard errors, 0 without a theory."
         yield click.option("--check", is_flag=True, help=words)
 
 
 def _analyse(
-    analysis: "Analysis",
+    analysis: "type[Analysis]",
     paths: tuple[str, ...],
     start: float | None,
     end: float | None,
@@ -132,7 +154,7 @@ def _analyse(
     try:
         with reading(analysis.reads) as progress:
             results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
-        result = analysis.combine(results)
+        result = analysis.combined(results)
     except NotApplicableError as error:
         if not check or plot or as_csv:
             raise
@@ -142,20 +164,20 @@ def _analyse(
     if plot:
         from idealgas.analysis.core.style import save
 
-        save(analysis.figure(result), plot, force)
+        save(analysis.titled_figure(result), plot, force)
     if as_json:
-        unasked = {"agrees": None} if analysis.checked else {}
+        unasked = {"agrees": None} if analysis.is_checked() else {}
         print_json(result.as_dict() | (verdict.as_dict() if verdict else unasked))
     elif as_csv:
         from idealgas.analysis.core import tables
 
         for sentence in result.premises:
             echo(f"premise: {sentence}", err=True)
-        data(tables.as_csv(analysis.tables(result)), nl=False)
+        data(tables.as_csv(analysis.shown_tables(result)), nl=False)
     else:
-        print_tables(analysis.tables(result))
-        if analysis.in_text:
-            echo(analysis.text(result))
+        print_tables(analysis.shown_tables(result))
+        if text := analysis.text(result):
+            echo(text)
         if verdict:
             echo(f"{verdict}")
     if plot:
@@ -176,7 +198,7 @@ def _print_no_theory(error: NotApplicableError, as_json: bool) -> None:
 
 
 def _results(
-    analysis: "Analysis",
+    analysis: "type[Analysis]",
     path: str,
     start: float | None,
     end: float | None,
@@ -184,11 +206,11 @@ def _results(
     options: dict[str, Any],
 ) -> Iterator[Any]:
     """Yield the result of a log, or the results of all points of a sweep from its folder."""
-    if analysis.folders and os.path.isdir(path):
+    if analysis.restore and os.path.isdir(path):
         from idealgas.sweep.results import stored_results
 
         for label, found, origin in stored_results(path, analysis.key):
-            yield analysis.restore(found, label, origin)
+            yield analysis.restored(found, label, origin)
         return
     with open_log(path) as log:
-        yield analysis.measure(log, start, end, progress, **options)
+        yield analysis.analyse(log, start, end, progress, **options)

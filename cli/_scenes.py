@@ -4,7 +4,7 @@ import tomllib
 from importlib import import_module
 from pathlib import Path
 
-from idealgas.analysis.core.declaration import unknown
+from idealgas.errors import unknown
 
 from ._terminal import written
 

@@ -1,7 +1,7 @@
 """The command `idealgas`: one command for each module here and for each analysis of the registry.
 
 Command NAME is the function NAME of the module NAME, which is imported when the command is called; modules whose name
-starts with an underscore, and this one, are no commands. Commands that analyse a log are made from the declarations of
+starts with an underscore, and this one, are no commands. Commands that analyse a log are made from the classes of
 the analyses.
 """
 
@@ -16,10 +16,9 @@ import click
 
 from idealgas import __version__
 from idealgas.analysis import registry
-from idealgas.analysis.core.declaration import unknown
-from idealgas.errors import UserError
+from idealgas.errors import UserError, unknown
 
-from ._analysis import analysis_command
+from ._analysis import AnalysisCommand
 from ._interrupt import EXIT_CODE
 from ._terminal import echo, readers_may_go
 
@@ -54,7 +53,7 @@ class Commands(click.Group):
         if name not in self.list_commands(ctx):
             return None
         if name in registry.commands():
-            return analysis_command(registry.find(name))
+            return AnalysisCommand(name)
         module = name.replace("-", "_")
         return getattr(import_module(f".{module}", __package__), module)
 

@@ -22,33 +22,11 @@ Lengths, times and masses are in units of the user's own; Boltzmann's constant i
 used, so that `import idealgas` itself is quick.
 """
 
+from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from idealgas._version import __version__
-
-if TYPE_CHECKING:
-    from idealgas.analysis.cooling.measure import cooling
-    from idealgas.analysis.core.statistics import Estimate
-    from idealgas.analysis.effusion.measure import effusion
-    from idealgas.analysis.evolution.measure import evolution
-    from idealgas.analysis.heat_capacity.measure import heat_capacity
-    from idealgas.analysis.histogram.measure import histogram
-    from idealgas.analysis.order.measure import order
-    from idealgas.analysis.pressure.measure import pressure
-    from idealgas.analysis.profile.measure import profile
-    from idealgas.analysis.registry import analyse
-    from idealgas.analysis.relaxation.measure import relaxation
-    from idealgas.analysis.sound.measure import sound
-    from idealgas.analysis.temperature.measure import temperature
-    from idealgas.analysis.transport.measure import transport
-    from idealgas.errors import OutputError, UserError
-    from idealgas.events import EventBatch, Kind
-    from idealgas.log import Log, LogError, LogState, open_log
-    from idealgas.log.summary import Summary
-    from idealgas.run.resume import resume
-    from idealgas.run.simulate import Progress, simulate
-    from idealgas.scene import Scene, SceneError, load_scene, parse_scene
 
 _HOMES = {
     "idealgas.analysis.core.statistics": ("Estimate",),
@@ -63,7 +41,7 @@ _HOMES = {
 }
 """Where the names lie that are no analysis; the analyses are those of the registry."""
 
-__all__ = [
+__all__ = [  # and the names of all analyses
     "Estimate",
     "EventBatch",
     "Kind",
@@ -78,41 +56,37 @@ __all__ = [
     "UserError",
     "__version__",
     "analyse",
-    "cooling",
-    "effusion",
-    "evolution",
-    "heat_capacity",
-    "histogram",
     "load_scene",
     "open_log",
-    "order",
     "parse_scene",
-    "pressure",
-    "profile",
-    "relaxation",
     "resume",
     "simulate",
-    "sound",
-    "temperature",
-    "transport",
 ]
 
-if not TYPE_CHECKING:  # which knows all names from above, so that it can tell those that are wrong
 
-    def __getattr__(name: str) -> Any:
-        """What has one of the names above or that of an analysis, imported at its first use (PEP 562)."""
-        for home, names in _HOMES.items():
-            if name in names:
-                globals()[name] = value = getattr(import_module(home), name)
-                return value
-        from idealgas.analysis import registry
+def __getattr__(name: str) -> Any:
+    """What has one of the names above or that of an analysis, imported at its first use (PEP 562)."""
+    for home, names in _HOMES.items():
+        if name in names:
+            globals()[name] = value = getattr(import_module(home), name)
+            return value
+    from idealgas.analysis import registry
 
-        if name not in registry.NAMES:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return registry.find(name).function
+    if name not in registry.names():
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return _function(name)
 
-    def __dir__() -> list[str]:
-        """All names of the interface, those of analyses as the registry has them."""
-        from idealgas.analysis import registry
 
-        return sorted({*__all__, *registry.NAMES})
+@cache
+def _function(name: str) -> Any:
+    """Function of an analysis, the same one at each use."""
+    from idealgas.analysis import registry
+
+    return registry.find(name).function()
+
+
+def __dir__() -> list[str]:
+    """All names of the interface, those of analyses as the registry has them."""
+    from idealgas.analysis import registry
+
+    return sorted({*__all__, *registry.names()})

@@ -1,6 +1,8 @@
 """Errors that a user can correct, printed as plain lines, never as a traceback; and text made safe to print."""
 
 import re
+from collections.abc import Sequence
+from difflib import get_close_matches
 
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 """Control characters except tabs and line ends, those that change the direction of text, and lone surrogates."""
@@ -27,3 +29,16 @@ class NotApplicableError(UserError):
 def plain(text: str) -> str:
     """The text with control characters written as escapes, as in TOML and JSON, so that a terminal only shows it."""
     return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def unknown(what: str, got: str, allowed: Sequence[str]) -> UserError:
+    """UserError for an unknown name; it suggests the most similar allowed name.
+
+    Args:
+        what: kind of the name.
+        got: the unknown name.
+        allowed: all known names.
+    """
+    close = get_close_matches(got, allowed, n=1)
+    mean = f', did you mean "{close[0]}"?' if close else ""
+    return UserError(f"unknown {what}{mean} (got {got}; allowed {', '.join(allowed)})")

@@ -1,53 +1,64 @@
-"""Registry of all analyses: each line gives a command with `--json` and `--csv`, report sections and a sweep key.
+"""Registry of all analyses: the modules and packages beside this file, each with one subclass of `Analysis`.
 
-NAME is a folder beside this file; `idealgas.analysis.core.declaration` tells what is in it.
+Names and first lines of help are read without importing any analysis.
 """
 
+import tokenize
 from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any
 
-from idealgas.analysis.core.declaration import Analysis, Progress, unknown
+from idealgas.errors import unknown
 
 if TYPE_CHECKING:
+    from idealgas.analysis.core.analysis import Analysis, Progress
     from idealgas.log import Log
 
-NAMES: tuple[str, ...] = (
-    "pressure",
-    "temperature",
-    "evolution",
-    "cooling",
-    "profile",
-    "histogram",
-    "relaxation",
-    "transport",
-    "order",
-    "sound",
-    "heat_capacity",
-    "effusion",
-)
-"""Names of the folders of all analyses, in the order of the report."""
+FOLDER = Path(__file__).parent
+OTHERS = ("core", "info", "registry", "status", "theory")
+"""Modules beside this file that are not analyses."""
 
 
-def analyses() -> tuple[Analysis, ...]:
-    """Declarations of all analyses; the code that computes them is not imported."""
-    return tuple(import_module(f"idealgas.analysis.{name}").ANALYSIS for name in NAMES)
+def names() -> tuple[str, ...]:
+    """Names of all analyses, which are those of their modules, in alphabetical order."""
+    return tuple(sorted(module.name for module in iter_modules([str(FOLDER)]) if module.name not in OTHERS))
 
 
 def commands() -> tuple[str, ...]:
     """Names of the commands of all analyses, also used in the file of a sweep."""
-    return tuple(name.replace("_", "-") for name in NAMES)
+    return tuple(name.replace("_", "-") for name in names())
 
 
-def find(name: str) -> Analysis:
-    """Declaration of the analysis with a name such as "heat_capacity" or "heat-capacity".
+def help_of(name: str) -> str:
+    """Help text of the command of an analysis: the docstring of its module, read without importing it."""
+    from ast import literal_eval
+    from inspect import cleandoc
+
+    path = FOLDER / f"{name}.py"
+    with tokenize.open(path if path.exists() else FOLDER / name / "__init__.py") as file:
+        text = next(token.string for token in tokenize.generate_tokens(file.readline) if token.type == tokenize.STRING)
+    return cleandoc(literal_eval(text))
+
+
+def analyses() -> "tuple[type[Analysis], ...]":
+    """All analyses in the order of the report."""
+    return tuple(sorted(map(find, names()), key=lambda one: (one.position, one.name)))
+
+
+def find(name: str) -> "type[Analysis]":
+    """Analysis with a name such as "heat_capacity" or "heat-capacity".
 
     Raises:
         UserError: for an unknown name; the message lists all known names.
     """
-    folder = name.replace("-", "_")
-    if folder not in NAMES:
+    module = name.replace("-", "_")
+    if module not in names():
         raise unknown("analysis", name, commands())
-    return import_module(f"idealgas.analysis.{folder}").ANALYSIS
+    from idealgas.analysis.core.analysis import FOUND
+
+    import_module(f"idealgas.analysis.{module}")
+    return FOUND[module]
 
 
 def analyse(
@@ -55,7 +66,7 @@ def analyse(
     name: str,
     start: float | None = None,
     end: float | None = None,
-    progress: Progress | None = None,
+    progress: "Progress | None" = None,
     **options: Any,
 ) -> Any:
     """Analyse a log and return the result, a dataclass with `as_dict()`.
@@ -71,4 +82,4 @@ def analyse(
     Raises:
         UserError: if the name or an option is unknown, or if the analysis does not apply to the log.
     """
-    return find(name).measure(log, start, end, progress, **options)
+    return find(name).analyse(log, start, end, progress, **options)

@@ -34,9 +34,9 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
     parts = [(analysis, section) for analysis in registry.analyses() for section in analysis.sections]
     for k, (analysis, section) in enumerate(parts):
         try:
-            result = analysis.combine([analysis.measure(log, **section.options)])
-            tables = tuple(analysis.tables(result))
-            figure, words = analysis.figure(result, titled=False), tuple(analysis.words(result))
+            result = analysis.combined([analysis.analyse(log, **section.options)])
+            tables = tuple(analysis.shown_tables(result))
+            figure, words = analysis.figure(result), tuple(analysis.summary(result))
             found.append(Section(section.title, figure, section.caption, tables, words))
         except DamageError:
             raise

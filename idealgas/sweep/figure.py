@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.declaration import unknown
 from idealgas.analysis.core.style import look, panels
-from idealgas.errors import UserError
+from idealgas.errors import UserError, unknown
 from idealgas.sweep.results import RESULT, result_rows
 
 Row = dict[str, Any]

@@ -101,7 +101,7 @@ def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
         if isinstance(value, bool | int | float):
             yield {**labels, "analysis": "run", "quantity": name, "value": float(value)}
     for analysis, found in point["analyses"].items():
-        premises = {"premises": " ".join(found.get("premises", ()))}
+        premises = {"premises": " ".join(found["premises"])}
         for quantity, estimate in _estimates(found):
             yield {**labels, "analysis": analysis, "quantity": quantity, **estimate, **premises}
 

@@ -1,6 +1,6 @@
-"""A new analysis is one folder and one line of the registry: commands, report and sweeps then have it.
+"""A new analysis is one file: commands, report, sweeps and the Python interface then have it.
 
-The package is copied, and the copy gets both; everything else of it is as it was. Its commands run as for users.
+The package is copied, and the copy gets the file; everything else of it is as it was. Its commands run as for users.
 """
 
 import csv
@@ -15,71 +15,51 @@ from support import ROOT
 
 pytestmark = pytest.mark.slow
 
-FOLDER = {
-    "__init__.py": '''
-        """The fastest disc."""
+MODULE = '''"""Measure the speed of the fastest disc at the end."""
 
-        from idealgas.analysis.core.declaration import Analysis, Option, Section
+from dataclasses import dataclass
 
-        ANALYSIS = Analysis(
-            __name__,
-            help="Measure the speed of the fastest disc at the end.",
-            options=(Option("rank", int, "Which disc, 1 for the fastest.", default=1, least=1, metavar="K"),),
-            sections=(
-                Section("The fastest disc", "Speeds of all discs"),
-                Section("The disc after a thousand", "Speeds of all discs", {"rank": 1000}),
-            ),
-        )
-    ''',
-    "measure.py": '''
-        """The speed of the fastest disc at the end of a log."""
+import numpy as np
 
-        from dataclasses import dataclass
-
-        import numpy as np
-
-        from idealgas.analysis.core.result import Result
-        from idealgas.analysis.core.statistics import Estimate
-        from idealgas.errors import UserError
+from idealgas.analysis.core.analysis import Analysis, Option, Section
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.style import panels
+from idealgas.analysis.core.tables import estimates
+from idealgas.errors import UserError
 
 
-        @dataclass(frozen=True)
-        class FastestDisc(Result):
-            speeds: np.ndarray
-            speed: Estimate
-
-            def as_dict(self):
-                return super().as_dict() | {"speed": self.speed.as_dict()}
+@dataclass(frozen=True)
+class Fastest(Result):
+    speeds: np.ndarray
+    speed: Estimate
 
 
-        def fastest_disc(log, start=None, end=None, progress=None, rank=1):
-            speeds = np.sort(np.hypot(*log.state_at(log.end_time if end is None else end).velocity.T))
-            if rank > len(speeds):
-                raise UserError(f"{log.path}: has {len(speeds)} discs")
-            return FastestDisc(speeds, Estimate(float(speeds[-rank]), 0.0, 1.0))
-    ''',
-    "tables.py": '''
-        """The speed as a table."""
+class FastestDisc(Analysis):
+    results = (Fastest,)
+    options = (Option("rank", int, "Which disc, 1 for the fastest.", default=1, least=1, metavar="K"),)
+    sections = (
+        Section("The fastest disc", "Speeds of all discs"),
+        Section("The disc after a thousand", "Speeds of all discs", {"rank": 1000}),
+    )
 
-        from idealgas.analysis.core.tables import estimates
+    @staticmethod
+    def measure(log, start=None, end=None, progress=None, rank=1):
+        speeds = np.sort(np.hypot(*log.state_at(log.end_time if end is None else end).velocity.T))
+        if rank > len(speeds):
+            raise UserError(f"{log.path}: has {len(speeds)} discs")
+        return Fastest(speeds, Estimate(float(speeds[-rank]), 0.0, 1.0))
 
+    @staticmethod
+    def tables(found):
+        return [estimates("Of one disc", [("speed", found.speed)], ["at the end"])]
 
-        def fastest_disc_tables(found):
-            return [estimates("Of one disc", [("speed", found.speed)], ["at the end"])]
-    ''',
-    "figure.py": '''
-        """All speeds."""
-
-        from idealgas.analysis.core.style import panels
-
-
-        def fastest_disc_figure(found):
-            figure, (ax,) = panels(1)
-            ax.plot(found.speeds)
-            return figure
-    ''',
-}
-LINE = '    "fastest_disc",\n'
+    @staticmethod
+    def figure(found):
+        figure, (ax,) = panels(1)
+        ax.plot(found.speeds)
+        return figure
+'''
 
 SCENE = """
 # without positions few other analyses apply
@@ -99,10 +79,6 @@ values = [1.0, 4.0]
 """
 
 
-def unindented(text):
-    return "\n".join(line.removeprefix("        ") for line in text.splitlines()).strip() + "\n"
-
-
 @pytest.fixture(scope="module")
 def idealgas(tmp_path_factory):
     """The command of a copy of the package that has the analysis, in a folder with a scene and its log."""
@@ -110,18 +86,11 @@ def idealgas(tmp_path_factory):
     ignored = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "idealgas", copy / "idealgas", ignore=ignored)
     shutil.copytree(ROOT / "cli", copy / "idealgas_cli", ignore=ignored)
-    made_up = copy / "idealgas" / "analysis" / "fastest_disc"
-    made_up.mkdir()
-    for name, text in FOLDER.items():
-        (made_up / name).write_text(unindented(text))
-    registry = copy / "idealgas" / "analysis" / "registry.py"
-    last = '    "effusion",\n'
-    assert registry.read_text().count(last) == 1
-    registry.write_text(registry.read_text().replace(last, last + LINE))
+    (copy / "idealgas" / "analysis" / "fastest_disc.py").write_text(MODULE)
 
-    def run(*arguments, code=0):
+    def run(*arguments, code=0, program="from idealgas_cli.main import main; main()"):
         done = subprocess.run(
-            [sys.executable, "-c", "from idealgas_cli.main import main; main()", *map(str, arguments)],
+            [sys.executable, "-c", program, *map(str, arguments)],
             capture_output=True,
             text=True,
             cwd=folder,
@@ -131,6 +100,7 @@ def idealgas(tmp_path_factory):
         assert done.returncode == code, done.stderr
         return done.stdout if code == 0 else done.stderr
 
+    run.python = lambda program: run(program=program)
     run.folder = folder
     (folder / "scene.toml").write_text(SCENE)
     (folder / "sweep.toml").write_text(SWEEP)
@@ -159,6 +129,19 @@ def test_tables_json_csv_and_pictures(idealgas):
     assert "--rank" in idealgas("fastest-disc", "run.h5", "--rank", 0, code=2)
 
 
+def test_python_has_its_function(idealgas):
+    speed = json.loads(idealgas("fastest-disc", "run.h5", "--rank", 2, "--json"))["speed"]["value"]
+    code = """if True:
+        import idealgas
+        with idealgas.open_log("run.h5") as log:
+            found = idealgas.fastest_disc(log, rank=2)
+        print(found.speed.value)
+        print(found)
+    """
+    printed = idealgas.python(code).splitlines()
+    assert (float(printed[0]), printed[1:3]) == (speed, ["at the end", "Of one disc"])
+
+
 def test_the_report_has_its_sections_or_says_why_not(idealgas):
     idealgas("report", "run.h5", "-o", "report.html")
     page = (idealgas.folder / "report.html").read_text(encoding="utf-8")
@@ -178,4 +161,4 @@ def test_a_sweep_asks_for_it(idealgas):
     (idealgas.folder / "wrong.toml").write_text(SWEEP.replace("fastest-disc", "fastest"))
     error = idealgas("sweep", "wrong.toml", "--dry-run", code=2)
     assert error.startswith("wrong.toml:2: sweep.analyses.0: unknown value")
-    assert '"fastest-disc")' in error
+    assert '"fastest-disc", ' in error

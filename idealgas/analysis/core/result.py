@@ -1,8 +1,7 @@
 """What the results of all analyses have in common: premises that do not hold, the run, tables and a picture."""
 
 from dataclasses import dataclass
-from importlib import import_module
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from idealgas.analysis.core.fields import OMITTED, as_dict
 
@@ -38,8 +37,11 @@ class Result:
 
     premises: one sentence for each premise of the numbers that does not hold, or that people should know of; empty if
     none was found. Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from
-    several runs, or if the analysis was not called by `Analysis.measure`. title: name of the run or runs in pictures.
+    several runs, or if the analysis was not called by `Analysis.analyse`. title: name of the run or runs in pictures.
     """
+
+    analysis: ClassVar[Any]
+    """The analysis that the result belongs to, a subclass of `Analysis`."""
 
     premises: tuple[str, ...] = ()
     origin: Annotated[Origin | None, OMITTED] = None
@@ -51,13 +53,17 @@ class Result:
 
     def tables(self) -> "list[Table]":
         """Tables of the result, those that the command of the analysis prints."""
-        declared = self._analysis
-        return declared.tables(self._combined(declared))
+        return self.analysis.shown_tables(self._combined())
 
     def plot(self) -> "Figure":
         """Picture of the result, that of `--plot`: a figure of matplotlib that notebooks show, and `savefig` writes."""
-        declared = self._analysis
-        return declared.figure(self._combined(declared))
+        return self.analysis.titled_figure(self._combined())
+
+    def __str__(self) -> str:
+        """Tables of the result as text."""
+        from idealgas.analysis.core.tables import as_text
+
+        return as_text(self.tables())
 
     def _repr_html_(self) -> str:
         """Tables of the result, as notebooks show what a cell ends with."""
@@ -65,11 +71,6 @@ class Result:
 
         return html_tables(self.tables())
 
-    @property
-    def _analysis(self) -> Any:
-        """Declaration of the analysis in whose folder the class of the result is."""
-        return import_module(type(self).__module__.rpartition(".")[0]).ANALYSIS
-
-    def _combined(self, declared: Any) -> "Result":
-        """The result as tables and picture take it; one that comes from no single run is so already."""
-        return self if self.origin is None else declared.combine([self])
+    def _combined(self) -> "Result":
+        """The result as tables and picture take it; a result without a single origin is combined already."""
+        return self if self.origin is None else self.analysis.combined([self])

@@ -78,7 +78,7 @@ class Estimate:
             math.nan if error is None else error,
             math.inf if samples is None else samples,
             found["theory"],
-            found.get("theory_error") or 0.0,
+            found["theory_error"] or 0.0,
         )
 
     def as_dict(self) -> dict[str, float | None]:

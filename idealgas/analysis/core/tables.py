@@ -114,6 +114,23 @@ def describe(window: "Window") -> str:
     return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"
 
 
+def as_text(tables: Iterable[Table]) -> str:
+    """Tables one below another as plain text, each after its notes: columns aligned, numbers to the right."""
+    lines: list[str] = []
+    for table in tables:
+        lines += table.notes
+        if not (rows := table.shown):
+            continue
+        widths = [max(map(len, column)) for column in zip(table.heads, *rows, strict=True)]
+        left = [all(isinstance(row[k], str) for row in table.rows) for k in range(len(widths))]
+        lines.append(table.title)
+        for cells in (table.heads, *rows):
+            padded = (f"{cell:{'<' if text else '>'}{n}}" for cell, n, text in zip(cells, widths, left, strict=True))
+            lines.append("  ".join(padded).rstrip())
+        lines.append("")
+    return "\n".join(lines).rstrip("\n")
+
+
 def as_csv(tables: Iterable[Table]) -> str:
     """All rows of all tables as one CSV text, whose first line has the headings of all columns.
 

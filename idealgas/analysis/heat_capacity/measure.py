@@ -76,7 +76,7 @@ class Measured(Result):
             {name: Estimate.from_dict(route) for name, route in found["routes"].items()},
             found["theory"],
             found["excess"],
-            found.get("theory_error", 0.0),
+            found["theory_error"],
         )
 
 

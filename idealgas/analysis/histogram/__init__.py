@@ -1,17 +1,18 @@
-"""Distributions of speeds, energies, free flights and waiting times, compared with theory."""
+"""Measure the distribution of a quantity and test it against theory.
 
-from idealgas.analysis.core.declaration import Analysis, Option, Section
+Velocities and energies are weighted with the time that discs spend at them. A wait is the time between successive
+events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
+"""
 
-QUANTITIES = {
-    "speed": "length/time",
-    "vx": "length/time",
-    "vy": "length/time",
-    "energy": "energy",
-    "free-path": "length",
-    "free-time": "time",
-    "wait": "time",
-}
-"""Quantities whose distribution can be measured, with their units."""
+from typing import TYPE_CHECKING, Any
+
+from idealgas.analysis.core.analysis import Analysis, Option, Section
+from idealgas.analysis.histogram.measure import QUANTITIES, Histogram, histogram
+from idealgas.analysis.histogram.tables import histogram_tables
+from idealgas.analysis.histogram.text import histogram_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def _section(title: str, quantity: str) -> Section:
@@ -19,23 +20,30 @@ def _section(title: str, quantity: str) -> Section:
     return Section(title, caption, {"quantity": quantity})
 
 
-ANALYSIS = Analysis(
-    __name__,
-    help="""Measure the distribution of a quantity and test it against theory.
+class HistogramAnalysis(Analysis):
+    """Declaration of the analysis; its docstring for users is that of `histogram`."""
 
-    Velocities and energies are weighted with the time that discs spend at them. A wait is the time between successive
-    events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
-    """,
-    in_text=True,
-    options=(
-        Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),
-    ),
-    sections=(
+    position = 50
+    results = (Histogram,)
+    sections = (
         _section("Speeds", "speed"),
         _section("Velocities along x", "vx"),
         _section("Energies", "energy"),
         _section("Free paths", "free-path"),
         _section("Free times", "free-time"),
         _section("Waits between events", "wait"),
-    ),
-)
+    )
+    options = (
+        Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),
+    )
+
+    measure = staticmethod(histogram)
+    tables = staticmethod(histogram_tables)
+    text = staticmethod(histogram_text)
+
+    @staticmethod
+    def figure(result: Any) -> "Figure":
+        """Picture of the result; matplotlib is imported where it is drawn."""
+        from idealgas.analysis.histogram.figure import histogram_figure
+
+        return histogram_figure(result)

@@ -22,13 +22,23 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
 from idealgas.analysis.core.window import Window, measure
-from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.histogram.laws import premise
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.state import Gas
+
+QUANTITIES = {
+    "speed": "length/time",
+    "vx": "length/time",
+    "vy": "length/time",
+    "energy": "energy",
+    "free-path": "length",
+    "free-time": "time",
+    "wait": "time",
+}
+"""Quantities whose distribution can be measured, with their units."""
 
 BINS = 120
 SAMPLED = 256  # largest number of discs of a species whose velocities are tested

@@ -12,12 +12,14 @@ from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.window import Window, measure
-from idealgas.analysis.profile import BINS
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
+
+BINS = 20
+"""Number of strips unless it is given."""
 
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for an estimate of its temperature."""

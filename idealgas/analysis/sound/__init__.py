@@ -1,13 +1,32 @@
-"""Sound: how fast the longest waves of density run in a periodic box, and how they die out."""
+"""Measure the speed and the damping of sound by the longest waves of density in a periodic box.
 
-from idealgas.analysis.core.declaration import Analysis, Section
+Theory: the speed by the equation of state, the damping by Enskog's viscosities and heat conductivity.
+"""
 
-ANALYSIS = Analysis(
-    __name__,
-    help="""Measure the speed and the damping of sound by the longest waves of density in a periodic box.
+from typing import TYPE_CHECKING, Any
 
-    Theory: the speed by the equation of state, the damping by Enskog's viscosities and heat conductivity.
-    """,
-    sections=(Section("Sound", "Correlation in time of the longest waves of density, hydrodynamics dashed"),),
-    reads="frames",
-)
+from idealgas.analysis.core.analysis import Analysis, Section
+from idealgas.analysis.sound.measure import Sound, sound
+from idealgas.analysis.sound.tables import sound_tables
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class SoundAnalysis(Analysis):
+    """Declaration of the analysis; its docstring for users is that of `sound`."""
+
+    position = 90
+    results = (Sound,)
+    sections = (Section("Sound", "Correlation in time of the longest waves of density, hydrodynamics dashed"),)
+    reads = "frames"
+
+    measure = staticmethod(sound)
+    tables = staticmethod(sound_tables)
+
+    @staticmethod
+    def figure(result: Any) -> "Figure":
+        """Picture of the result; matplotlib is imported where it is drawn."""
+        from idealgas.analysis.sound.figure import sound_figure
+
+        return sound_figure(result)

@@ -1,26 +1,38 @@
-"""Transport: collision rates, free paths, diffusion, viscosities, heat conductivity and pair distribution."""
+"""Measure diffusion, viscosities and heat conductivity, collision rates, free paths and the pair distribution.
 
-from idealgas.analysis.core.declaration import Analysis, Option, Section
+They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, heat conductivity and the
+pressure tensor take a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution
+of free paths. Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over
+Enskog's against the packing fraction.
+"""
 
-ANALYSIS = Analysis(
-    __name__,
-    help="""Measure diffusion, viscosities and heat conductivity, collision rates, free paths and the pair distribution.
+from typing import TYPE_CHECKING, Any
 
-    They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, heat conductivity and the
-    pressure tensor take a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution
-    of free paths. Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over
-    Enskog's against the packing fraction.
-    """,
-    sections=(
+from idealgas.analysis.core.analysis import Analysis, Option, Section
+from idealgas.analysis.transport.combine import Sample, States, combine_transport, restore_transport
+from idealgas.analysis.transport.measure import Transport, transport
+from idealgas.analysis.transport.tables import transport_tables
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class TransportAnalysis(Analysis):
+    """Declaration of the analysis; its docstring for users is that of `transport`."""
+
+    position = 70
+    results = (
+        Transport,
+        States,
+        Sample,
+    )
+    sections = (
         Section(
             "Transport",
             "Velocity correlation, mean square displacement, pair distribution, and transport coefficients over time",
         ),
-    ),
-    several=True,
-    averages=True,
-    folders=True,
-    options=(
+    )
+    options = (
         Option(
             "lag",
             float,
@@ -29,5 +41,17 @@ ANALYSIS = Analysis(
             positive=True,
             metavar="X",
         ),
-    ),
-)
+    )
+    averages = True
+
+    measure = staticmethod(transport)
+    tables = staticmethod(transport_tables)
+    combine = staticmethod(combine_transport)
+    restore = staticmethod(restore_transport)
+
+    @staticmethod
+    def figure(result: Any) -> "Figure":
+        """Picture of the result; matplotlib is imported where it is drawn."""
+        from idealgas.analysis.transport.figure import transport_figure
+
+        return transport_figure(result)

@@ -170,7 +170,6 @@ def test_an_error_of_theory_counts_like_one_of_measurement():
     assert found.deviation == pytest.approx(2.0)
     assert found.times(-2.0).deviation == pytest.approx(-2.0)
     assert Estimate.from_dict(found.as_dict()) == found
-    assert Estimate.from_dict({k: v for k, v in found.as_dict().items() if k != "theory_error"}).theory_error == 0
     verdict = judge([("a", found), ("b", Estimate(1.0, 0.1, 10.0))])
     assert verdict.agrees is True
     assert verdict.judged == ("a",)  # the other has no theory

@@ -24,7 +24,7 @@ from idealgas.scene import parse_scene
 
 def combined(name, *logs):
     analysis = registry.find(name)
-    return analysis.combine([analysis.measure(log) for log in logs])
+    return analysis.combined([analysis.analyse(log) for log in logs])
 
 
 # ── where sentences are shown ──
@@ -34,13 +34,13 @@ def test_a_sentence_is_in_tables_json_and_the_report(made):
     analysis, log = registry.find("pressure"), made(TWO)
     found = combined("pressure", log)
     sentence = only(found, "do not reach all states")
-    assert analysis.tables(found)[0].notes[0] == f"premise: {sentence}"
+    assert analysis.shown_tables(found)[0].notes[0] == f"premise: {sentence}"
     assert sentence in json.loads(json.dumps(found.as_dict()))["premises"]
     shown = [section.tables for section in make_sections(log) if section.title == "Pressure"]
     assert shown[0][0].notes[0] == f"premise: {sentence}"
     fine = combined("pressure", made())
     assert (fine.premises, fine.as_dict()["premises"]) == ((), [])
-    assert not any(note.startswith("premise") for note in analysis.tables(fine)[0].notes)
+    assert not any(note.startswith("premise") for note in analysis.shown_tables(fine)[0].notes)
 
 
 def test_sentences_of_many_logs_have_their_paths_and_are_bounded(made):
@@ -136,13 +136,13 @@ def test_one_log_in_one_picture_twice_is_no_average(made):
 def test_a_sweep_counts_once(made, tmp_path):
     """Points of a sweep know their runs from their scenes, and those stored before have no premises in them."""
     analysis, log = registry.find("heat-capacity"), made()
-    found = analysis.measure(log)
+    found = analysis.analyse(log)
     before = {key: value for key, value in found.as_dict().items() if key != "premises"}
-    point = analysis.restore(before, "a point", premises.origin_of(log.scene, "sweep, point 0"))
+    point = analysis.restored(before, "a point", premises.origin_of(log.scene, "sweep, point 0"))
     assert (point.premises, point.energy) == ((), found.energy)
     with pytest.raises(UserError, match=r"sweep, point 0: the run of .* again"):
-        analysis.combine([found, point])
-    stored = analysis.restore(found.as_dict() | {"premises": ["a sentence."]}, "a point")
+        analysis.combined([found, point])
+    stored = analysis.restored(found.as_dict() | {"premises": ["a sentence."]}, "a point")
     assert stored.premises == ("a sentence.",)
 
 
@@ -190,11 +190,11 @@ def test_no_equation_of_state_of_a_mixture(made):
 
 def test_effusion_of_different_gases_under_one_name(made):
     analysis, log, other = registry.find("effusion"), made(*SLIT), made(*SLIT, "species.gas.count=50")
-    results = [replace(analysis.measure(each), name="base scene") for each in (log, other)]
+    results = [replace(analysis.analyse(each), name="base scene") for each in (log, other)]
     with pytest.raises(UserError, match=r"base scene: different gases under one name \(N = 40 .*; N = 50 .*\)"):
-        analysis.combine(results)
-    third = replace(analysis.measure(made(*SLIT, "scene.seed=12")), name="base scene")
-    assert list(analysis.combine([results[0], third]).groups) == ["base scene"]
+        analysis.combined(results)
+    third = replace(analysis.analyse(made(*SLIT, "scene.seed=12")), name="base scene")
+    assert list(analysis.combined([results[0], third]).groups) == ["base scene"]
 
 
 # ── openings ──
@@ -216,7 +216,7 @@ def test_effusion_takes_a_slit_narrower_than_a_mean_free_path(made):
     assert (run.speed.theory, run.speed.deviation) == (None, None)
     assert run.speed.value > 0
     assert registry.find("effusion").figure(found).axes
-    assert registry.find("effusion").restore(run.as_dict(), "again").expected is None
+    assert registry.find("effusion").restored(run.as_dict(), "again").expected is None
     (narrow,) = combined("effusion", made(*SLIT)).groups.values()
     assert narrow[0].expected is not None
     assert narrow[0].speed.theory_error > 0.0125 * narrow[0].speed.theory

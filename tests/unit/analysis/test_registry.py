@@ -14,7 +14,7 @@ import pytest
 import idealgas
 from idealgas import analysis as package
 from idealgas.analysis import registry
-from idealgas.analysis.core.declaration import Option
+from idealgas.analysis.core.analysis import Option
 from idealgas.analysis.core.html import escape, html_table
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
@@ -44,35 +44,26 @@ TAKES = {"effusion": SLIT, "sound": WAVES, "cooling": ("restitution.normal=0.9",
 every_analysis = pytest.mark.parametrize("analysis", registry.analyses(), ids=lambda analysis: analysis.key)
 
 
-def test_every_folder_that_declares_an_analysis_is_in_the_registry():
-    folders = [module.name for module in iter_modules(package.__path__) if module.ispkg]
-    declared = [name for name in folders if hasattr(import_module(f"{package.__name__}.{name}"), "ANALYSIS")]
-    assert sorted(declared) == sorted(registry.NAMES)
-    assert [analysis.name for analysis in registry.analyses()] == list(registry.NAMES)
+def test_every_module_beside_the_registry_is_an_analysis_or_named_as_another():
+    modules = {module.name for module in iter_modules(package.__path__)}
+    assert modules == {*registry.names(), *registry.OTHERS}
+    assert sorted(analysis.name for analysis in registry.analyses()) == list(registry.names())
+    assert [analysis.position for analysis in registry.analyses()] == sorted({a.position for a in registry.analyses()})
 
 
 @every_analysis
-def test_the_code_of_an_analysis_has_the_names_and_arguments_that_are_declared(analysis):
-    def code(module, function):
-        return getattr(import_module(f"{analysis.package}.{module}"), function)
-
-    taken = list(inspect.signature(code("measure", analysis.name)).parameters)
+def test_an_analysis_takes_the_options_that_it_declares(analysis):
+    taken = list(inspect.signature(analysis.measure).parameters)
     assert taken[0] == "log"
     assert set(taken[1:]) == {"start", "end", "progress", *(option.name for option in analysis.options)}
-    assert callable(code("tables", f"{analysis.name}_tables"))
-    assert callable(code("figure", f"{analysis.name}_figure"))
-    if analysis.several:
-        assert callable(code("combine", f"combine_{analysis.name}"))
-    if analysis.folders:
-        assert callable(code("combine", f"restore_{analysis.name}"))
-    modules = {module.name for module in iter_modules(import_module(analysis.package).__path__)}
-    assert not modules & {name for name, value in vars(import_module(analysis.package)).items() if callable(value)}
+    assert all(kind.analysis is analysis for kind in analysis.results)
+    assert registry.help_of(analysis.name) == inspect.getdoc(import_module(f"{package.__name__}.{analysis.name}"))
 
 
 def test_what_analyses_say_of_themselves_takes_nothing_heavy():
     heavy = ("numpy", "numba", "scipy", "h5py", "matplotlib", "pydantic", "rich")
     program = (
-        "import sys\nfrom idealgas.analysis import registry\nregistry.analyses()\n"
+        "import sys\nfrom idealgas.analysis import registry\nlist(map(registry.help_of, registry.names()))\n"
         f"print(*(name for name in {heavy} if name in sys.modules), end='')"
     )
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
@@ -94,8 +85,8 @@ def test_analyses_by_name(make):
 @pytest.mark.parametrize(
     ("name", "options", "message"),
     [
-        ("presure", {}, r'unknown analysis, did you mean "pressure"\? \(got presure; allowed pressure, temperature, '),
-        ("speeds of light", {}, r"unknown analysis \(got speeds of light; allowed pressure, "),
+        ("presure", {}, r'unknown analysis, did you mean "pressure"\? \(got presure; allowed cooling, effusion, '),
+        ("speeds of light", {}, r"unknown analysis \(got speeds of light; allowed cooling, "),
         ("profile", {"bin": 3}, r'unknown option of profile, did you mean "bins"\? \(got bin; allowed start, end, '),
         ("profile", {"bins": 0}, r"bins: wrong value \(got 0; allowed a whole number >= 1 and <= 1000\)"),
         ("profile", {"bins": 2.5}, "bins: wrong value"),
@@ -118,12 +109,12 @@ def test_an_option_takes_its_default():
 
 @every_analysis
 def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
-    measured = analysis.measure(make(*TAKES.get(analysis.name, ())))
-    result = analysis.combine([measured])
+    measured = analysis.analyse(make(*TAKES.get(analysis.name, ())))
+    result = analysis.combined([measured])
     assert isinstance(measured, Result)
     assert isinstance(result, Result)
     assert isinstance(result.as_dict()["premises"], list)
-    tables = analysis.tables(result)
+    tables = analysis.shown_tables(result)
     assert any(table.rows for table in tables)
     rows = list(csv.DictReader(io.StringIO(as_csv(tables))))
     assert [row["table"] for row in rows] == [table.title for table in tables for _ in table.rows]
@@ -139,13 +130,14 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
 def test_results_show_themselves_in_a_notebook(make, analysis):
     log = make(*TAKES.get(analysis.name, ()))
     result = getattr(idealgas, analysis.name)(log)
-    combined = analysis.combine([analysis.measure(log)])
-    assert result.tables() == combined.tables() == analysis.tables(combined)
-    shown = result._repr_html_()
+    combined = analysis.combined([analysis.analyse(log)])
+    assert result.tables() == combined.tables() == analysis.shown_tables(combined)
+    shown, text = result._repr_html_(), str(result)
     for table in result.tables():
         assert all(escape(note) in shown for note in table.notes)
         if table.rows:
             assert html_table(table) in shown
+            assert all(cell in text for row in table.shown for cell in row)
     figure = result.plot()
     assert len(figure.axes) == len(combined.plot().axes) > 0
     assert figure._repr_png_().startswith(b"\x89PNG")

@@ -31,7 +31,7 @@ def results(tmp_path_factory):
 
 
 def test_states(results):
-    states = ANALYSIS.combine(results).states
+    states = ANALYSIS.combined(results).states
     assert [(state.number, state.runs) for state in states] == [(12, 2), (20, 1)]
     assert list(states[0].coefficients) == ["D", "η", "λ", "ζ"]
     alone = results[1].collective.coefficients["viscosity"].value
@@ -44,20 +44,20 @@ def test_states(results):
 
 def test_what_a_sweep_stores_gives_the_same(results):
     stored = [json.loads(json.dumps(one.as_dict())) for one in results]
-    restored = [ANALYSIS.restore(found, "point", one.origin) for found, one in zip(stored, results, strict=True)]
-    assert ANALYSIS.combine(restored).states == ANALYSIS.combine(results).states
+    restored = [ANALYSIS.restored(found, "point", one.origin) for found, one in zip(stored, results, strict=True)]
+    assert ANALYSIS.combined(restored).states == ANALYSIS.combined(results).states
 
 
 def test_a_single_log_stays_as_it_is(results):
-    assert ANALYSIS.combine(results[:1]) is results[0]
+    assert ANALYSIS.combined(results[:1]) is results[0]
 
 
 def test_tables_and_figures(results):
-    combined = ANALYSIS.combine(results)
+    combined = ANALYSIS.combined(results)
     (table,) = ANALYSIS.tables(combined)
     assert len(table.rows) == 8
     (ax,) = ANALYSIS.figure(combined).axes
     assert {"D", "η", "λ", "ζ", "Enskog's theory"} == {text.get_text() for text in ax.get_legend().get_texts()}
-    assert ANALYSIS.figure(ANALYSIS.combine([results[0], results[2]])).axes[0].get_xlabel().startswith("packing")
+    assert ANALYSIS.figure(ANALYSIS.combined([results[0], results[2]])).axes[0].get_xlabel().startswith("packing")
     closer = [replace(found, packing_fraction=0.3 + 1e-15 * k) for k, found in enumerate(results)]
-    assert ANALYSIS.figure(ANALYSIS.combine(closer)).axes[0].get_xlabel() == "number of discs"
+    assert ANALYSIS.figure(ANALYSIS.combined(closer)).axes[0].get_xlabel() == "number of discs"

@@ -1,0 +1,33 @@
+"""Names of the package; written by tests/write_stub.py."""
+
+from idealgas._version import __version__ as __version__
+from idealgas.analysis.cooling.measure import cooling as cooling
+from idealgas.analysis.core.statistics import Estimate as Estimate
+from idealgas.analysis.effusion.measure import effusion as effusion
+from idealgas.analysis.evolution.measure import evolution as evolution
+from idealgas.analysis.heat_capacity.measure import heat_capacity as heat_capacity
+from idealgas.analysis.histogram.measure import histogram as histogram
+from idealgas.analysis.order.measure import order as order
+from idealgas.analysis.pressure.measure import pressure as pressure
+from idealgas.analysis.profile.measure import profile as profile
+from idealgas.analysis.registry import analyse as analyse
+from idealgas.analysis.relaxation.measure import relaxation as relaxation
+from idealgas.analysis.sound.measure import sound as sound
+from idealgas.analysis.temperature.measure import temperature as temperature
+from idealgas.analysis.transport.measure import transport as transport
+from idealgas.errors import OutputError as OutputError
+from idealgas.errors import UserError as UserError
+from idealgas.events import EventBatch as EventBatch
+from idealgas.events import Kind as Kind
+from idealgas.log import Log as Log
+from idealgas.log import LogError as LogError
+from idealgas.log import LogState as LogState
+from idealgas.log import open_log as open_log
+from idealgas.log.summary import Summary as Summary
+from idealgas.run.resume import resume as resume
+from idealgas.run.simulate import Progress as Progress
+from idealgas.run.simulate import simulate as simulate
+from idealgas.scene import Scene as Scene
+from idealgas.scene import SceneError as SceneError
+from idealgas.scene import load_scene as load_scene
+from idealgas.scene import parse_scene as parse_scene

@@ -1,0 +1,234 @@
+"""Base of all analyses: a subclass has its options, measures a log, and shows its result.
+
+A module or package of `idealgas.analysis` holds one analysis, a subclass of `Analysis`. The first line of its docstring
+is the help of the command `idealgas NAME`. The command with `--json` and `--csv`, the sections of the report, the key
+of a sweep and the function `idealgas.NAME` are made from the class.
+
+Results are dataclasses that inherit `Result`; their fields are the plain values for JSON (`core/fields.py`). A
+condition that a number needs and that does not hold is a sentence in `premises` of the result, which tables, reports
+and JSON show.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import wraps
+from inspect import signature
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from idealgas.analysis.core import premises
+from idealgas.analysis.core.result import Origin, Result
+from idealgas.analysis.core.tables import Table
+from idealgas.errors import UserError, unknown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from idealgas.log import Log
+
+Progress = Callable[[int, int], None]
+"""Function progress(done, total) that an analysis calls while it reads a log: rows or frames read, and their number."""
+
+FOUND: dict[str, type["Analysis"]] = {}
+"""All analyses that have been imported, by name."""
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of an analysis: `--name` on the command line, a keyword argument in Python.
+
+    name: a Python identifier. kind: type of the value, str, int or float. help: text for the command line. default:
+    value if the option is not given. choices: texts that are allowed. least, most: smallest and largest number allowed.
+    positive: whether a number must be greater than 0. metavar: word that stands for the value in the help text.
+    """
+
+    name: str
+    kind: type
+    help: str
+    default: Any = None
+    choices: tuple[str, ...] = ()
+    least: float | None = None
+    most: float | None = None
+    positive: bool = False
+    metavar: str | None = None
+
+    @property
+    def allowed(self) -> str:
+        """Description of the allowed values, for error messages."""
+        if self.choices:
+            return ", ".join(self.choices)
+        words = {int: "a whole number", float: "a number", str: "a text"}[self.kind]
+        bounds = [f">= {self.least:g}"] if self.least is not None else []
+        bounds += [f"<= {self.most:g}"] if self.most is not None else []
+        bounds += ["> 0"] if self.positive else []
+        return " ".join([words, " and ".join(bounds)]).strip()
+
+    def check(self, value: Any) -> None:
+        """Raise UserError if the value is not allowed; the default value is always allowed."""
+        if value is None and self.default is None:
+            return
+        kind = {int: Integral, float: Real, str: str}[self.kind]
+        fits = isinstance(value, kind) and not isinstance(value, bool)
+        if fits and self.kind is not str:
+            fits = (self.least is None or value >= self.least) and (self.most is None or value <= self.most)
+            fits = fits and (value > 0 or not self.positive)
+        if not fits or (self.choices and value not in self.choices):
+            raise UserError(f"{self.name}: wrong value (got {value!r}; allowed {self.allowed})")
+
+
+@dataclass(frozen=True)
+class Section:
+    """One section of the report that an analysis fills.
+
+    title: heading of the section. caption: text below the picture, also read aloud to blind readers. options: values of
+    the options of the analysis for this section.
+    """
+
+    title: str
+    caption: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Analysis:
+    """One analysis. Its class attributes and static methods are what the program makes of it.
+
+    Attributes:
+        name: name of its module, a Python identifier.
+        key: name of the command and key in the file of a sweep, with hyphens instead of underscores.
+        results: classes of its results; those of several logs follow that of one log.
+        sections: sections of the report.
+        options: options besides the start and the end of the window, arguments of `measure`.
+        averages: whether `combine` averages over logs, so that their runs must be independent.
+        start: description of the default start of the window.
+        end: description of the default end of the window.
+        reads: what the progress bar counts, such as events or frames.
+        position: position in the report; analyses without one follow in alphabetical order.
+    """
+
+    name: ClassVar[str]
+    key: ClassVar[str]
+    results: ClassVar[tuple[type[Result], ...]]
+    sections: ClassVar[tuple[Section, ...]] = ()
+    options: ClassVar[tuple[Option, ...]] = ()
+    averages: ClassVar[bool] = False
+    start: ClassVar[str] = "detected equilibrium"
+    end: ClassVar[str] = "the log's end"
+    reads: ClassVar[str] = "events"
+    position: ClassVar[int] = 1000
+
+    measure: ClassVar[Callable[..., Any]]
+    """Function measure(log, start, end, progress, **options): result of one log."""
+
+    tables: ClassVar[Callable[..., list[Table]]]
+    """Function tables(result): tables for the terminal, CSV and the report."""
+
+    figure: ClassVar[Callable[..., "Figure"]]
+    """Function figure(result): picture of the result."""
+
+    combine: ClassVar[Callable[..., Any] | None] = None
+    """Function combine(results): one result of several logs, for tables and figure; None for a single log only."""
+
+    restore: ClassVar[Callable[..., Any] | None] = None
+    """Function restore(found, label): result from the plain values that a sweep stored; None if sweeps are not read."""
+
+    def __init_subclass__(cls) -> None:
+        """Register the analysis under the name of its module."""
+        cls.name = cls.__module__.rpartition(".")[2]
+        cls.key = cls.name.replace("_", "-")
+        FOUND[cls.name] = cls
+        for kind in cls.results:
+            kind.analysis = cls
+
+    @staticmethod
+    def summary(result: Any) -> list[str]:
+        """Sentences on the main findings, for readers of a report."""
+        return []
+
+    @staticmethod
+    def text(result: Any) -> str:
+        """Picture in characters for the terminal; empty if there is none."""
+        return ""
+
+    @classmethod
+    def is_checked(cls) -> bool:
+        """Whether results have a method `check()` that compares measurement and theory."""
+        return all(hasattr(kind, "check") for kind in cls.results)
+
+    @classmethod
+    def analyse(
+        cls,
+        log: "Log",
+        start: float | None = None,
+        end: float | None = None,
+        progress: Progress | None = None,
+        **options: Any,
+    ) -> Any:
+        """Analyse one log between the times `start` and `end` and return the result, a `Result`.
+
+        Raises:
+            UserError: if an option is unknown or its value not allowed, or if the analysis does not apply to the log.
+        """
+        known = {option.name: option for option in cls.options}
+        for name, value in options.items():
+            if name not in known:
+                raise unknown(f"option of {cls.key}", name, ("start", "end", *known))
+            known[name].check(value)
+        values = {name: option.default for name, option in known.items()} | options
+        found = cls.measure(log, start=start, end=end, progress=progress, **values)
+        origin = premises.origin_of(log.scene, str(log.path))
+        return replace(found, premises=(*premises.of_log(log), *found.premises), origin=origin, title=origin.title)
+
+    @classmethod
+    def function(cls) -> Callable[..., Any]:
+        """`analyse` as a function with the arguments and the docstring of `measure`."""
+        arguments = signature(cls.measure)
+
+        @wraps(cls.measure)
+        def function(*given: Any, **named: Any) -> Any:
+            return cls.analyse(**arguments.bind(*given, **named).arguments)
+
+        return function
+
+    @classmethod
+    def combined(cls, results: Sequence[Any]) -> Any:
+        """Combine the results of one or several logs into the one that tables and figure show.
+
+        Raises:
+            UserError: if the analysis averages and a run is given twice, or if the gases cannot be combined.
+        """
+        if cls.combine is None:
+            (result,) = results
+            return result
+        independent = premises.of_averages(results) if cls.averages else ()
+        combined = cls.combine(results)
+        if len(results) == 1 and combined is results[0]:
+            return combined
+        sentences = (*premises.of_several(results), *independent, *combined.premises)
+        return replace(combined, premises=sentences, title=premises.title_of(results))
+
+    @classmethod
+    def restored(cls, found: dict[str, Any], label: str, origin: Origin | None = None) -> Any:
+        """Make a result again from the plain values that a sweep stored.
+
+        Args:
+            found: plain values of the result.
+            label: name of the point.
+            origin: run of the point.
+        """
+        assert cls.restore is not None
+        title = origin.title if origin else label
+        return replace(cls.restore(found, label), premises=tuple(found["premises"]), origin=origin, title=title)
+
+    @classmethod
+    def shown_tables(cls, combined: Any) -> list[Table]:
+        """Tables of a combined result; the first one has a note for each premise that does not hold."""
+        first, *others = cls.tables(combined)
+        notes = (*(f"premise: {sentence}" for sentence in combined.premises), *first.notes)
+        return [replace(first, notes=notes), *others]
+
+    @classmethod
+    def titled_figure(cls, combined: Any) -> "Figure":
+        """Picture of a combined result, with the names of the run and the analysis above it."""
+        from idealgas.analysis.core.style import entitle
+
+        return entitle(cls.figure(combined), f"{combined.title}: {cls.key}")
