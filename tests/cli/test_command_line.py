@@ -147,7 +147,8 @@ def test_completion(shell):
 
 def test_every_analysis_has_json_csv_and_a_picture():
     for name in registry.commands():
-        options = {option for param in main.get_command(None, name).params for option in param.opts}
+        command = main.get_command(None, name)
+        options = {option for param in command.get_params(click.Context(command)) for option in param.opts}
         assert {"--json", "--csv", "--plot", "--quiet"} <= options
 
 
