@@ -51,10 +51,11 @@ class Impacts:
         """
         assert flights.end_position is not None
         block, partner, place = flights.block, flights.partner, flights.end_position
-        given = self._mass.take(flights.disc)[:, None] * (flights.new_velocity - flights.end_velocity)
+        mass, change = self._mass.take(flights.disc), flights.new_velocity - flights.end_velocity
+        given = mass * change[:, 0], mass * change[:, 1]
         radius, virial = self._radius.take(flights.disc), np.zeros(len(block))
         for axis in (axis for axis in range(2) if not self.periodic[axis]):
-            along, width = given[:, axis], self._box[axis]
+            along, width = given[axis], self._box[axis]
             virial += (place[:, axis] - width / 2) * along
             near = (place[:, axis] - radius) / (width - 2.0 * radius)
             low, high = 2 * axis, 2 * axis + 1
@@ -68,18 +69,18 @@ class Impacts:
         walls = block[some] * self.walls + (-1 - partner[some])
         add_to(self.hits, walls)
         for axis in range(2):
-            add_to(self._impulse[axis], walls, -given[some, axis])
+            add_to(self._impulse[axis], walls, -given[axis][some])
 
     def finish(self) -> None:
         """Make the sums known."""
         self.passed_on, self.impulse = self._passed_on.T, np.moveaxis(self._impulse, 0, 2)
 
-    def _add_pairs(self, flights: Flights, given: np.ndarray) -> None:
-        """Add collisions of two discs. given: (n, 2), momentum that each event gives to its disc."""
+    def _add_pairs(self, flights: Flights, given: tuple[np.ndarray, np.ndarray]) -> None:
+        """Add collisions of two discs. given: x and y, (n,), of the momentum that each event gives to its disc."""
         second, apart = contacts(flights, self._box, self.periodic)
         block, species = flights.block[second], self._species
         one, other = species.take(flights.disc[second]), species.take(flights.partner[second])
-        add_to(self.pair_virial, block, (apart * given[second]).sum(axis=1))
+        add_to(self.pair_virial, block, apart[:, 0] * given[0][second] + apart[:, 1] * given[1][second])
         number = self.collisions.shape[1]
         add_to(self.collisions, (block * number + np.minimum(one, other)) * number + np.maximum(one, other))
 
@@ -93,7 +94,7 @@ def contacts(flights: Flights, box: tuple[float, float], periodic: tuple[bool, .
     """
     assert flights.end_position is not None
     second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))
-    apart = flights.end_position[second] - flights.end_position[second - 1]
+    apart = flights.end_position.take(second, axis=0) - flights.end_position.take(second - 1, axis=0)
     for axis in range(2):
         if periodic[axis]:
             apart[:, axis] -= box[axis] * np.rint(apart[:, axis] / box[axis])
