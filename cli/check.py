@@ -49,7 +49,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
-        sharing = {"threads": threads.number, "threads_because": threads.because}
+        sharing = {"threads": threads.number, "threads_because": threads.reason}
         shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
         others = {"lattice": shape, "warning": ROUGH_REST if scene.collapse_risk else None}
         data(json.dumps({"scene": tables, **effects, **sharing, **others, **asdict(expected)}, indent=2))
@@ -68,7 +68,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
     if scene.collapse_risk:
         echo(f"warning: {ROUGH_REST}")
-    echo(f"threads: {threads.number} ({threads.because})")
+    echo(f"threads: {threads.number} ({threads.reason})")
     echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
     echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
 

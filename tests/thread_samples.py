@@ -1,14 +1,20 @@
-"""Gases in tall boxes, whose strips are as low as can be, and their logs by one thread and by several."""
+"""Gases in tall boxes, whose slabs are as thin as possible, and their logs by one thread and by several."""
 
+import time
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import cycle
+from unittest.mock import patch
 
 import numpy as np
 from support import gas_of, record
 
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.parallel.decomposition import _Slab
 from idealgas.engine.parallel.slabs import Tuning
-from idealgas.engine.parallel.subdomain import LEAST_ROWS
+from idealgas.engine.parallel.subdomain import MIN_ROWS
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
 from idealgas.physics.periodic import Periodic
@@ -18,7 +24,7 @@ from idealgas.run.sums import kept_sums
 from idealgas.scene import parse_scene
 from idealgas.state import Gas
 
-EAGER = Tuning(rows=LEAST_ROWS, discs=1, events=1, slice=1000, race=False)
+EAGER = Tuning(min_rows=MIN_ROWS, min_discs=1, min_events=1, max_events=1000, autotune=False)
 SMALLEST_CELLS = 1e-9  # discs a cell
 
 EVERYTHING = """
@@ -95,8 +101,8 @@ def lattice(seed: int) -> tuple[Gas, Effects]:
     return gas_of((width, height), position, velocity, draw.choice([0.25, 0.5])), Effects()
 
 
-def tie_at_a_border() -> tuple[Gas, Effects]:
-    """Discs 1 and 2 are to meet across a border at the time of another contact of disc 1, which diverts it."""
+def tie_at_an_interface() -> tuple[Gas, Effects]:
+    """Discs 1 and 2 are to meet across an interface at the time of another contact of disc 1, which diverts it."""
     discs = np.array(
         [  # x, y, vx, vy, radius, mass
             (19.0, 98.5, 4.0, -2.0, 1.0, 3.0),
@@ -114,10 +120,10 @@ def tie_at_a_border() -> tuple[Gas, Effects]:
     return gas_of((24.0, 194.0), discs[:, :2], discs[:, 2:4], discs[:, 4], discs[:, 5]), Effects()
 
 
-def tie_with_a_disc_that_comes_late() -> tuple[Gas, Effects]:
-    """Discs 0 and 1 hit walls at t = 3; disc 0 comes to the strip of disc 1 at 2.5, held up by much that disc 3 does.
+def tie_with_a_late_migrant() -> tuple[Gas, Effects]:
+    """Discs 0 and 1 hit walls at t = 3; disc 0 migrates to the slab of disc 1 at 2.5, delayed by the events of disc 3.
 
-    Disc 2 merely goes to another cell at 3.5, so that the strip's latest event is one without rows.
+    Disc 2 only crosses into another cell at 3.5, so that the slab's latest event is one without rows.
     """
     row = 24 / 23
     discs = np.array(
@@ -133,7 +139,7 @@ def tie_with_a_disc_that_comes_late() -> tuple[Gas, Effects]:
 
 
 def wind(seed: int) -> tuple[Gas, Effects]:
-    """Columns of discs that fly upwards round a box, all but one without a collision: all go from strip to strip."""
+    """Columns of discs that fly upwards in a periodic box, all but one without a collision: all migrate repeatedly."""
     draw = np.random.default_rng(seed)
     width, height, columns, each = 8.0, 100.0, 7, 20
     x = np.repeat(np.linspace(0.6, 7.4, columns), each)
@@ -156,7 +162,7 @@ def stop_of(draw: np.random.Generator) -> Stop:
 
 
 def log_with(gas: Gas, effects: Effects, stop: Stop, events: int, method: EventDriven) -> list[np.ndarray]:
-    """All that a run says: rows, the state and the sums at its end, and the numbers of events."""
+    """All results of a run: rows, the state and the sums at its end, and the numbers of events."""
     simulation = Simulation(gas, method, effects)
     rows = record(simulation, stop, events=events)
     end, effects = simulation.state()
@@ -166,26 +172,42 @@ def log_with(gas: Gas, effects: Effects, stop: Stop, events: int, method: EventD
     return [*(column for column in rows if column is not None), end.position, end.velocity, *sums, np.array(numbers)]
 
 
-def compare(sample, seed: int, threads: tuple[int, ...] = (2, 3, 4, 7)) -> Counter[str]:
-    """Assert that so many threads give the log of one. sample: makes a gas and its effects anew.
+@contextmanager
+def late_threads(draw: np.random.Generator) -> Iterator[None]:
+    """Threads that begin their part of a slice late, at random, so that others are ahead of them."""
+    run, delays = _Slab.run, cycle(draw.choice([0.0, 0.0, 1e-5, 1e-4, 1e-3], 97).tolist())
 
-    Returns what happened on the way, and how many strips there were.
+    def late(slab: _Slab, *arguments) -> None:
+        time.sleep(next(delays))
+        run(slab, *arguments)
+
+    with patch.object(_Slab, "run", late):
+        yield
+
+
+def compare(sample, seed: int, threads: tuple[int, ...] = (2, 3, 4, 7)) -> Counter[str]:
+    """Assert that several numbers of threads give the log of one thread. sample: makes a new gas and its effects.
+
+    Returns the counts of `Workers`, and how often there were so many slabs.
     """
     draw = np.random.default_rng(seed)
     stop, events = stop_of(draw), int(draw.choice([100, 1000, 10_000]))
     expected = log_with(*sample(), stop, events, EventDriven(SMALLEST_CELLS))
-    facts: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for number in threads:
-        lead, delay = float(draw.choice([0.1, EAGER.lead, 1e9])), int(draw.choice([0, 0, 30, 300]))
-        method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=lead, delay=delay))
-        found = log_with(*sample(), stop, events, method)
+        lead = float(draw.choice([0.1, EAGER.lead, 1e9]))
+        method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=lead))
+        with late_threads(draw):
+            found = log_with(*sample(), stop, events, method)
         assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), (
             seed,
             number,
-            method.crew.facts,
+            method.workers.counts,
         )
         assert method.threads.number == number
-        assert method.crew.facts["error"] == 0  # what a strip's thread raises is lost: one thread does the slice again
-        facts += method.crew.facts
-        facts[f"{number} strips"] += 1
-    return facts
+        assert (
+            method.workers.counts["error"] == 0
+        )  # an error of a slab's thread is dropped: one thread repeats the slice
+        counts += method.workers.counts
+        counts[f"{number} slabs"] += 1
+    return counts

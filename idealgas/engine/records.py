@@ -43,24 +43,24 @@ NO_EXTRA_STATE: Mapping[Column, float] = MappingProxyType({})
 
 
 class Threads(NamedTuple):
-    """How a method's work is shared, which changes nothing of what comes out.
+    """How a method shares its work among threads, without an effect on the result.
 
     Attributes:
         number: number of threads.
-        because: why it is no other.
-        slices: number of pieces of work that several threads shared.
-        given_up: number of those that one thread had to do again.
-        events: those that `advance` is to be asked for at least, so that it can share the work.
-        alone: those that it may be asked for at most, so that one thread does it and leaves cores to others; 0 where
-            there are cores left, or others get none.
+        reason: why there are this many.
+        slices: number of slices of time that several threads shared.
+        aborted: number of these that one thread had to repeat.
+        min_events: smallest number of events per call of `advance` for which the work can be shared.
+        serial_events: largest number of events per call for which one thread works alone, so that another core is
+            free; 0 if a core is free anyway, or none can be.
     """
 
     number: int = 1
-    because: str = "the method has one"
+    reason: str = "the method has one"
     slices: int = 0
-    given_up: int = 0
-    events: int = 1
-    alone: int = 0
+    aborted: int = 0
+    min_events: int = 1
+    serial_events: int = 0
 
 
 ONE_THREAD = Threads()

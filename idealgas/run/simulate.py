@@ -169,11 +169,11 @@ class LoggedRun:
             self._begin_epoch()
         self._slice(0)  # compiles, before the clock starts
         started = time.perf_counter()
-        least = simulation.method.threads.events
+        least = simulation.method.threads.min_events
         slice_events = max(4096, least)
         while not simulation.finished(stop):
             before = time.perf_counter()
-            alone = simulation.method.threads.alone if self._log.behind else 0  # the log needs a core
+            alone = simulation.method.threads.serial_events if self._log.behind else 0  # the log needs a core
             self._slice(alone or slice_events)
             if simulation.paused and self._scene.log.snapshot_every:  # not where time has no more numbers
                 self._snapshot()
@@ -278,9 +278,9 @@ class LoggedRun:
             seconds=seconds,
             compile_seconds=compile_seconds() - self._compiled_before,
             threads=threads.number,
-            threads_because=threads.because,
+            threads_because=threads.reason,
             shared_slices=threads.slices,
-            given_up_slices=threads.given_up,
+            given_up_slices=threads.aborted,
         )
 
     def _progress(self) -> Progress:

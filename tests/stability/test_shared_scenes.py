@@ -1,13 +1,14 @@
-"""Scenes of every kind by several threads, in strips as low as can be: the log of one thread, dataset by dataset."""
+"""Scenes of every kind by several threads, in slabs as low as can be: the log of one thread, dataset by dataset."""
 
+import numpy as np
 import pytest
 from log_compare import differences, scene_of
 from support import ROOT
-from thread_samples import EAGER, SMALLEST_CELLS
+from thread_samples import EAGER, SMALLEST_CELLS, late_threads
 
 from idealgas.bench.bench import bench_scene
 from idealgas.engine.event_driven.method import EventDriven
-from idealgas.engine.parallel.subdomain import LEAST_ROWS
+from idealgas.engine.parallel.subdomain import MIN_ROWS
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
 
@@ -20,24 +21,26 @@ THREADS = (2, 3, 4, 7)
 def is_shared(scene) -> bool:
     """Whether several threads may run a scene at all."""
     rows = scene.box.size[1] / (2.001 * max((kind.radius for kind in scene.species), default=scene.box.size[1]))
-    return scene.run.method == "event_driven" and scene.piston is None and rows >= 2 * LEAST_ROWS
+    return scene.run.method == "event_driven" and scene.piston is None and rows >= 2 * MIN_ROWS
 
 
 SHIPPED = [path.stem for path in sorted((ROOT / "configs").glob("*.toml")) if is_shared(load_scene(path))]
 
 
 @pytest.fixture
-def low_strips(monkeypatch):
-    """Strips as low as can be, whose threads lose time at random."""
+def thin_slabs(monkeypatch):
+    """Slabs as thin as possible, whose threads begin late at random."""
 
     def eager(threads: int) -> EventDriven:
-        return EventDriven(SMALLEST_CELLS, threads, EAGER._replace(delay=100))
+        return EventDriven(SMALLEST_CELLS, threads, EAGER)
 
     monkeypatch.setattr("idealgas.engine.methods.EventDriven", eager)
+    with late_threads(np.random.default_rng(1)):
+        yield
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_shipped_scene_has_the_log_of_one_thread(name, low_strips, tmp_path):
+def test_a_shipped_scene_has_the_log_of_one_thread(name, thin_slabs, tmp_path):
     one = tmp_path / "one.h5"
     simulate(scene_of(name, f"run.events={EVENTS}", "run.threads=1"), one)
     for number in THREADS:

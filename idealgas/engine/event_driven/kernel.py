@@ -1,7 +1,7 @@
 """The loop over the events of the event-driven method.
 
-The disc that predicted last owns a pair's contact; a contact whose partner has had an event since is stale and
-predicted again. One thread may have all discs, or several one strip of the box each, see `turns`.
+A contact belongs to the disc of the pair that predicted it last; if its partner has had an event since, it is stale and
+predicted again. One thread may own all discs, or several threads one slab of the box each, see `synchronization`.
 """
 
 from enum import IntEnum
@@ -23,12 +23,12 @@ from idealgas.engine.event_writer import (
     write_segment_hit,
     write_side_hit,
 )
-from idealgas.engine.parallel.subdomain import OVER
+from idealgas.engine.parallel.subdomain import DONE
 from idealgas.engine.parallel.synchronization import (
-    count_at_one_time,
-    in_own_schedule,
-    leave,
-    next_turn,
+    count_simultaneous,
+    finish,
+    if_owned,
+    next_event,
     push_to_owner,
 )
 from idealgas.engine.records import add_to_counters, reload
@@ -57,22 +57,22 @@ class Repredict(IntEnum):
 
 
 @inline
-def predict(record, ids, state, i, change, now, effects, border):
-    """Predict what has changed of disc i's next events, and enter the earliest of them in the schedule.
+def predict(record, ids, state, i, change, now, effects, subdomain):
+    """Predict disc i's next events again, as far as they may have changed, and schedule the earliest of them.
 
     change: a `Repredict`, or the code of the crossing by which the disc entered its cell.
     """
     predict_contact(record, ids, state, i, change, now, effects)
     if change != Repredict.STALE:
         predict_crossing(record, ids, state, i, now, effects)
-    push_to_owner(record, ids, state, i, border)
+    push_to_owner(record, ids, state, i, subdomain)
     if change > Repredict.STALE:
         offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
 
 
 @njit
 def place(record, ids, position, velocity, cells, tree):
-    """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id, and empty the schedule."""
+    """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id, and clear the scheduler."""
     cells.head[:] = -1
     for i in range(record.shape[0]):
         reload(record[U(i)], U(ids[U(i)]), position, velocity)
@@ -82,11 +82,11 @@ def place(record, ids, position, velocity, cells, tree):
 
 
 @njit
-def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, border):
+def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, subdomain):
     """Process events up to the limits, or until the batch is full; at the start of an epoch, predict all of them first.
 
-    Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
-    no log is kept. counters: (1,) COUNTERS, updated. border: of the strip whose events these are; None for all discs.
+    Returns the number of rows written, and whether all events up to the limit of time have happened. batch: None
+    without a log. counters: (1,) COUNTERS, updated. subdomain: the slab whose events these are; None for all discs.
     """
     events = 0
     collisions = 0
@@ -100,24 +100,26 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         state.unpredicted[0] = False
         predict_piston(record, ids, state, effects.piston, effects.gravity)
         for k in range(record.shape[0]):
-            if in_own_schedule(record, k, border) >= 0:
-                predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, border)
+            if if_owned(record, k, subdomain) >= 0:
+                predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, subdomain)
     time = 0.0
     change = np.int64(Repredict.START)
     i = other = np.int64(-1)
     while True:
         while i >= 0:  # one call for all changes: another would double the machine code
-            predict(record, ids, state, i, change, time, effects, border)
+            predict(record, ids, state, i, change, time, effects, subdomain)
             i, other = other, np.int64(-1)
         if change > Repredict.STALE:
             if change == Repredict.EVENT:
                 events += 1
-                now, events_at_this_time = count_at_one_time(time, now, events_at_this_time, record.shape[0], border)
+                now, events_at_this_time = count_simultaneous(
+                    time, now, events_at_this_time, record.shape[0], subdomain
+                )
             if (events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity):
                 break
-        i = next_turn(record, ids, state, limits.until, border)
+        i = next_event(record, ids, state, limits.until, subdomain)
         if i < 0:
-            reached = i == OVER
+            reached = i == DONE
             break
         prediction = state.prediction[U(i)]
         at_contact = contact_is_next(prediction, ids, i)
@@ -138,7 +140,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             tied = has_other_event(state.tree, state.prediction, i, other, time) and state.tree.tie_time[0] != time
             remove(state.tree, state.prediction, ids, other)
         if tied or not is_resolved(state.tree, time):
-            resolve_ties(state.tree, state.prediction, ids, i, in_own_schedule(record, other, border))
+            resolve_ties(state.tree, state.prediction, ids, i, if_owned(record, other, subdomain))
             change = np.int64(Repredict.STALE)
             i = other = np.int64(-1)
             continue
@@ -176,6 +178,6 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
         change = np.int64(Repredict.EVENT)
-    leave(border, reached)
+    finish(subdomain, reached)
     add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
     return rows, reached

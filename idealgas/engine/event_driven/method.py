@@ -1,6 +1,6 @@
 """The event-driven method: cells find the neighbours, a tournament tree finds the next event.
 
-Every prediction is a pure function of the records involved, so the trajectory does not depend on cells, schedule or
+Every prediction is a pure function of the records involved, so the trajectory does not depend on cells, scheduler or
 batches.
 """
 
@@ -12,20 +12,20 @@ from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
-from idealgas.engine.parallel.decomposition import Crew, Team
-from idealgas.engine.parallel.slabs import FAST, Tuning, share_out
+from idealgas.engine.parallel.decomposition import DomainDecomposition, Workers
+from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, choose_threads
 from idealgas.engine.records import NO_EXTRA_STATE, Discs, Limits, Threads, make_discs
 from idealgas.events import EventBatch
 from idealgas.state import Gas
 
-IN_ANY_ORDER = 4096
-"""Discs that the caches hold: they are not sorted again in memory at each epoch."""
+MAX_UNSORTED = 4096
+"""Number of discs that fit into the caches: they are not sorted in memory again at each epoch."""
 
 
 def expected_threads(gas: Gas, threads: int | None, local: bool) -> Threads:
-    """How the work will be shared; threads: as of `EventDriven`. local: whether discs meet only what is near them."""
+    """How the work will be shared; threads: as in `EventDriven`. local: whether discs collide only with near ones."""
     cells = make_cells(len(gas), gas.box, float(gas.radius.max()), discs_per_cell(gas.packing_fraction))
-    return share_out(threads, cells.rows - 2, len(gas), local)
+    return choose_threads(threads, cells.rows - 2, len(gas), local)
 
 
 class EventDriven:
@@ -38,47 +38,51 @@ class EventDriven:
     _state: EventDrivenState
     _shared: Threads
 
-    def __init__(self, filling: float | None = None, threads: int | None = 1, tuning: Tuning = FAST) -> None:
-        """Set what changes the speed only.
+    def __init__(self, filling: float | None = None, threads: int | None = 1, tuning: Tuning = DEFAULT_TUNING) -> None:
+        """Set parameters that change the speed only.
 
-        filling: mean number of discs per cell, by default chosen by packing fraction. threads: None for as many as are
-        worth it. tuning: of the threads.
+        filling: mean number of discs per cell; None to choose it by the packing fraction. threads: None for as many as
+        are worthwhile. tuning: of the threads.
         """
         self._filling = filling
         self._threads = threads
-        self.crew = Crew(tuning)
-        self._team: Team | None = None
+        self.workers = Workers(tuning)
+        self._decomposition: DomainDecomposition | None = None
         self._walls: tuple[bytes, WallCells] | None = None
         self._radius: np.ndarray | None = None  # of the discs for which there is memory
 
     def __copy__(self) -> "EventDriven":
-        """Another one of its kind, with memory of its own."""
-        other = EventDriven(self._filling, self._threads, self.crew.tuning)
+        """Another method with the same parameters and its own memory."""
+        other = EventDriven(self._filling, self._threads, self.workers.tuning)
         other._walls = self._walls
         return other
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch: put all discs in their cells. Discs and kinds of effects stay the same in a run."""
+        """Begin an epoch: put all discs in their cells. The discs and the set of effects never change in a run."""
         another = self._radius is not gas.radius
         if another:
-            self._make_room(gas, effects)
-        if another or len(gas) > IN_ANY_ORDER:
+            self._allocate(gas, effects)
+        if another or len(gas) > MAX_UNSORTED:
             self._sort(gas)
         self._effects = effects
         self._state = self._state._replace(walls=self._wall_cells(effects))
         position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
         place(self.discs.record, self.discs.id, position, velocity, self._state.cells, self._state.tree)
         self._state.unpredicted[0] = True
-        strips = self._shared.number
-        self._team = Team(self.crew, strips, self.discs, self._state, effects) if strips > 1 else None
+        slabs = self._shared.number
+        self._decomposition = (
+            DomainDecomposition(self.workers, slabs, self.discs, self._state, effects) if slabs > 1 else None
+        )
 
-    def _make_room(self, gas: Gas, effects: Effects) -> None:
-        """Cells and memory for the discs of a run, which never change but in position and velocity."""
+    def _allocate(self, gas: Gas, effects: Effects) -> None:
+        """Allocate cells and memory for the discs of a run, of which only positions and velocities change."""
         self._radius, self._largest_radius = gas.radius, float(gas.radius.max())
         filling = self._filling or discs_per_cell(gas.packing_fraction)
         cells = make_cells(len(gas), gas.box, self._largest_radius, filling)
         self._state = make_state(len(gas), cells, effects)
-        self._shared = share_out(self._threads, cells.rows - 2, len(gas), effects.piston is None, self.crew.tuning)
+        self._shared = choose_threads(
+            self._threads, cells.rows - 2, len(gas), effects.piston is None, self.workers.tuning
+        )
 
     def _sort(self, gas: Gas) -> None:
         """Sort the discs in memory by cell."""
@@ -88,16 +92,16 @@ class EventDriven:
 
     @property
     def threads(self) -> Threads:
-        """How the work of the epoch is shared, and how often that has gone well since the start of the run."""
-        return self._shared._replace(slices=self.crew.facts["slices"], given_up=self.crew.given_up)
+        """How the work is shared, with the numbers of shared and aborted slices of the run so far."""
+        return self._shared._replace(slices=self.workers.counts["slices"], aborted=self.workers.aborted)
 
     @property
     def pending(self) -> bool:
-        """Whether rows of events that have happened are still to be handed on by `advance`."""
-        return self._team is not None and self._team.pending
+        """Whether rows of past events are still to be delivered by `advance`."""
+        return self._decomposition is not None and self._decomposition.pending
 
     def _wall_cells(self, effects: Effects) -> WallCells | None:
-        """Wall segments of each cell: those of the epoch before, unless a gate has opened or closed since."""
+        """Wall segments of each cell, from the previous epoch unless a gate has opened or closed."""
         if effects.segments is None:
             return None
         active = effects.segments.active.tobytes()
@@ -110,8 +114,8 @@ class EventDriven:
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Process events, see `advance_events`."""
-        if self._team is not None:
-            return self._team.advance(limits, epoch_start, batch, counters)
+        if self._decomposition is not None:
+            return self._decomposition.advance(limits, epoch_start, batch, counters)
         record, ids, _ = self.discs
         return advance_events(record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None)
 

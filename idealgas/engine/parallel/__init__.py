@@ -1,1 +1,1 @@
-"""Several threads for one gas: the box is decomposed into slabs, with one log whatever their number."""
+"""Several threads for one gas: domain decomposition into slabs, with the same log for any number of threads."""

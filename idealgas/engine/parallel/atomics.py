@@ -1,6 +1,6 @@
-"""Words of memory that several threads share: loads, stores and exchanges that are seen whole and in order.
+"""Atomic operations on words of memory that several threads share.
 
-A load sees all that its thread had written before it stored what is loaded (acquire and release).
+Loads acquire and stores release: a thread that loads a value also sees all that was written before it was stored.
 """
 
 import platform
@@ -12,16 +12,16 @@ from numba.extending import intrinsic
 from idealgas.jit import CACHE_LINE, inline
 
 LINE = CACHE_LINE // 8
-"""Words of a cache line: no two words that two threads write often are nearer than this."""
+"""Words per cache line: words that different threads write often are at least this far apart."""
 
-PAUSES = 100
-"""Rounds of waiting after which a thread gives up its turn on the processor: another one may need it to go on."""
+SPINS = 100
+"""Rounds of waiting after which a thread yields the processor, which the other thread may need."""
 
 _HINTS = {
     **dict.fromkeys(("x86_64", "AMD64"), ("llvm.x86.sse2.pause", ())),
     **dict.fromkeys(("aarch64", "arm64"), ("llvm.aarch64.hint", (1,))),
 }
-"""What tells a processor that a thread waits: a function of the compiler, and its arguments."""
+"""LLVM intrinsic by which a thread tells the processor that it waits, with its arguments."""
 
 
 def _pointer(context, builder, kind, array, index):
@@ -73,7 +73,7 @@ def add(typingctx, array, index, value):
 
 @intrinsic
 def pause(typingctx):
-    """Tell the processor that this thread waits for a word to change."""
+    """Hint to the processor that this thread waits for a word to change."""
 
     def code(context, builder, signature, arguments):
         if hint := _HINTS.get(platform.machine()):
@@ -86,8 +86,8 @@ def pause(typingctx):
 
 
 @intrinsic
-def give_way(typingctx):
-    """Let another thread have the processor."""
+def yield_cpu(typingctx):
+    """Yield the processor to another thread."""
 
     def code(context, builder, signature, arguments):
         name = "sched_yield"
@@ -102,9 +102,9 @@ def give_way(typingctx):
 
 @inline
 def wait(rounds):
-    """Wait for a moment; return the number of rounds waited, one more than before."""
-    if rounds < PAUSES:
+    """Wait for one round; return `rounds` + 1."""
+    if rounds < SPINS:
         pause()
     else:
-        give_way()
+        yield_cpu()
     return rounds + 1

@@ -1,7 +1,7 @@
-"""Several threads that advance one gas, each the discs of its strip; what comes out is that of one thread, bit for bit.
+"""Domain decomposition: several threads advance one gas, with the same result as one thread, bit for bit.
 
-They work on slices of time. A slice that cannot be shared, as something in it would have happened in another order, is
-given up: all that it changed is set back, and one thread does it again.
+Each thread processes the events of the discs in its slab, in slices of time. If an event of a slice could have happened
+in another order, the slice is aborted: all its changes are rolled back, and one thread repeats it.
 """
 
 import time
@@ -17,115 +17,115 @@ from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import build, make_tree
 from idealgas.engine.event_driven.state import EventDrivenState
-from idealgas.engine.parallel.autotuner import Race
-from idealgas.engine.parallel.merge import Pending, TiedRowsError, order_of
-from idealgas.engine.parallel.slabs import FAST, Tuning, cut, make_borders, reset
-from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Border
+from idealgas.engine.parallel.autotuner import ThreadAutotuner
+from idealgas.engine.parallel.merge import PendingRows, TiedRowsError, time_order
+from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, make_subdomains, reset, slab_edges
+from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Subdomain
 from idealgas.engine.records import COUNTERS, UNLIMITED, Discs, Limits
 from idealgas.events import EventBatch
 from idealgas.jit import aligned
 from idealgas.physics import stress
 from idealgas.physics.periodic import periodic_axes
 
-REASONS = {VIOLATION: "past", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}
-"""Names of the reasons for which a slice is given up."""
+REASONS = {VIOLATION: "causality", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}
+"""Names of the reasons for which a slice is aborted."""
 
 STOP = "stop"
-"""One more reason: the slice went beyond a number of events."""
+"""One more reason: the slice exceeded a number of events."""
 
-SHARE = 0.8
-"""Part of the events up to a limit that a slice is made for: one that comes to more is in vain."""
+SLICE_FRACTION = 0.8
+"""Fraction of the events up to a limit that a slice is planned for: one that exceeds the limit is wasted."""
 
-TRIAL = 2
-"""Times the least events of a slice: as many has one that shows what a way takes, or a number by the disc, if larger.
+TRIAL_FACTOR = 2
+"""Events of a slice that measures a mode, in units of the minimum of a slice, unless the number per disc is larger.
 
-What a slice costs beside its events is by the disc. On a busy machine a shared one may take forty times as long.
+The cost of a slice in addition to its events grows with the discs. On a busy machine a shared slice may take forty
+times as long as a serial one.
 """
 
-TRIED_ALONE, TRIED_SHARED = 0.25, 0.5
-"""Events a disc of such a slice, on one thread and on several."""
+SERIAL_TRIAL, PARALLEL_TRIAL = 0.25, 0.5
+"""Events per disc of such a slice, on one thread and on several."""
 
-FEW = 64
-"""Events that say nothing of a rate."""
+MIN_RATE_EVENTS = 64
+"""Number of events from which a rate is measured."""
 
-PREDICTIONS = 6
-"""Predictions at an epoch's start that take as long as one event."""
+PREDICTIONS_PER_EVENT = 6
+"""Predictions at the start of an epoch that take as long as one event."""
 
-SLOWER = 8
-"""By which a rate is divided that foretold far too many events."""
+RATE_DIVISOR = 8
+"""Divisor of a rate that predicted far too many events."""
 
 
-class Crew:
-    """What threads keep from one epoch to the next.
+class Workers:
+    """Threads, memory and measurements that last for a run.
 
     Attributes:
-        facts: numbers of slices that were shared, of those given up by reason, and of what happened at borders.
-        rate: events and collisions of two discs per time, as in the last slice; None before the first.
-        race: between several threads and one; None where several are always to be taken.
+        counts: numbers of shared slices, of aborted ones by reason, and of migrations and their side effects.
+        rate: events and collisions of two discs per time in the last slice; None before the first.
+        autotuner: choice between several threads and one; None to use several threads always.
     """
 
-    def __init__(self, tuning: Tuning = FAST) -> None:
-        """Have no thread yet."""
+    def __init__(self, tuning: Tuning = DEFAULT_TUNING) -> None:
+        """Begin without threads."""
         self.tuning = tuning
-        self.race = Race() if tuning.race else None
-        self.facts: Counter[str] = Counter()
+        self.autotuner = ThreadAutotuner() if tuning.autotune else None
+        self.counts: Counter[str] = Counter()
         self.rate: tuple[float, float] | None = None
         self._pool: ThreadPoolExecutor | None = None
         self._rows: EventBatch | None = None
 
     @property
-    def given_up(self) -> int:
-        """Number of slices of the run so far that were given up."""
-        return sum(self.facts[why] for why in (*REASONS.values(), STOP))
+    def aborted(self) -> int:
+        """Number of aborted slices of the run so far."""
+        return sum(self.counts[why] for why in (*REASONS.values(), STOP))
 
-    def memory(self, batch: EventBatch | None, strips: int) -> EventBatch | None:
-        """Memory for the rows of all strips, a part for each, with columns as those of a batch; None without a log."""
+    def memory(self, batch: EventBatch | None, slabs: int) -> EventBatch | None:
+        """Memory for the rows of all slabs, an equal part for each, with the columns of a batch; None without a log."""
         if batch is None:
             return None
-        rows = self.tuning.buffer * strips
+        rows = self.tuning.buffer * slabs
         if self._rows is None or len(self._rows.time) != rows:
-            self._rows = EventBatch(*(_longer(column, rows) for column in batch))  # type: ignore[arg-type]
+            self._rows = EventBatch(*(_column_like(column, rows) for column in batch))  # type: ignore[arg-type]
         return self._rows
 
-    def run(self, work: Callable[[int], None], number: int, give_up: Callable[[], None]) -> None:
-        """Call work(0) to work(number - 1) at once, each in a thread of its own, the first in this one."""
-        self._pool = self._pool or ThreadPoolExecutor(number - 1, "strip")
+    def run(self, work: Callable[[int], None], number: int, abort_slice: Callable[[], None]) -> None:
+        """Call work(0) to work(number - 1) in parallel, each in its own thread, the first in this one."""
+        self._pool = self._pool or ThreadPoolExecutor(number - 1, "slab")
         others = [self._pool.submit(work, k) for k in range(1, number)]
         try:
             work(0)
             wait(others)
-        finally:  # Ctrl-C comes to this thread
+        finally:  # Ctrl-C interrupts this thread
             if not all(other.done() for other in others):
-                give_up()
+                abort_slice()
                 wait(others)
         for other in others:
             other.result()
 
 
-class Team:
+class DomainDecomposition:
     """The threads of one epoch."""
 
-    def __init__(self, crew: Crew, strips: int, discs: Discs, state: EventDrivenState, effects: Effects) -> None:
-        """Share the discs of an epoch that begins among a number of strips, at least two."""
-        self._crew, self._discs, self._state, self._effects = crew, discs, state, effects
+    def __init__(self, workers: Workers, slabs: int, discs: Discs, state: EventDrivenState, effects: Effects) -> None:
+        """Decompose the discs of a new epoch into a number of slabs, at least two."""
+        self._workers, self._discs, self._state, self._effects = workers, discs, state, effects
         record, cells = discs.record, state.cells
         fastest = float(np.sqrt((record.vx**2 + record.vy**2).max())) or 1.0
-        self._borders = make_borders(
-            cut(np.bincount(record.row, minlength=cells.rows), strips),
+        self._subdomains = make_subdomains(
+            slab_edges(np.bincount(record.row, minlength=cells.rows), slabs),
             periodic_axes(effects.periodic)[1],
-            crew.tuning.lead * cells.height / fastest,
-            crew.tuning.delay,
+            workers.tuning.lead * cells.height / fastest,
         )
         self._built = True
-        self._pending: Pending | None = None
-        self._arrives = False
-        self._done = 0.0  # local time up to which all has happened, after the last event too
-        self._strips: list[_Strip] = []
+        self._pending: PendingRows | None = None
+        self._reaches_limit = False
+        self._reached = 0.0  # local time up to which all events have happened, not before the last event
+        self._slabs: list[_Slab] = []
         self._rows: EventBatch | None = None
 
     @property
     def pending(self) -> bool:
-        """Whether rows of the last slice are still to be handed on."""
+        """Whether rows of the last slice are still to be delivered."""
         return self._pending is not None and len(self._pending) > 0
 
     def advance(
@@ -134,47 +134,50 @@ class Team:
         """Process events up to the limits, see `advance_events`; rows beyond the batch come with the next calls."""
         if self.pending:
             return self._deliver(batch)
-        goal, race = self._goal(limits, batch, counters[0]), self._crew.race
+        end, autotuner = self._slice_end(limits, batch, counters[0]), self._workers.autotuner
         if limits.events == 0:
-            self._share(0.0, batch, FAILED)  # compiles
-            return self._alone(limits, epoch_start, batch, counters)
-        shared = goal > 0.0 and (race is None or race.shares())
-        started, before = time.perf_counter(), self._work(counters)
-        given_up = self._given_up(goal, limits, epoch_start, batch, counters) if shared else ""
-        if shared and not given_up:
+            self._run_threads(0.0, batch, FAILED)  # compiles
+            return self._run_serial(limits, epoch_start, batch, counters)
+        shared = end > 0.0 and (autotuner is None or autotuner.use_threads())
+        started, before = time.perf_counter(), self._work_done(counters)
+        aborted = self._run_slice(end, limits, epoch_start, batch, counters) if shared else ""
+        if shared and not aborted:
             rows, arrived = self._deliver(batch)
         else:
-            if race is not None and not shared and race.is_trial(shared):
-                limits = limits._replace(events=min(limits.events, self._trial(TRIED_ALONE)))
-            rows, arrived = self._alone(limits, epoch_start, batch, counters)
-        if race is not None and given_up != STOP:  # a rate that rose, as in a lattice that melts, says nothing of speed
-            race.note(shared, self._work(counters) - before, time.perf_counter() - started)
+            if autotuner is not None and not shared and autotuner.is_trial(shared):
+                limits = limits._replace(events=min(limits.events, self._trial_events(SERIAL_TRIAL)))
+            rows, arrived = self._run_serial(limits, epoch_start, batch, counters)
+        if (
+            autotuner is not None and aborted != STOP
+        ):  # a rising rate of events, as in a melting lattice, is not slowness
+            autotuner.note(shared, self._work_done(counters) - before, time.perf_counter() - started)
         return rows, arrived
 
-    def _work(self, counters: np.ndarray) -> int:
-        """What has been done in the epoch: events, and predictions at its start, in the time of as many events."""
+    def _work_done(self, counters: np.ndarray) -> int:
+        """Work done in the epoch: events, and predictions at its start converted to events."""
         predictions = len(self._discs.record) if self._state.unpredicted[0] else 0
-        return int(counters[0]["events"]) - predictions // PREDICTIONS
+        return int(counters[0]["events"]) - predictions // PREDICTIONS_PER_EVENT
 
-    def _goal(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
-        """Local time up to which a slice is to be shared; 0 for none."""
-        if self._crew.rate is None:
+    def _slice_end(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
+        """Local time up to which to share the next slice; 0 if none is worthwhile."""
+        if self._workers.rate is None:
             return 0.0
-        (events, collisions), tuning = self._crew.rate, self._crew.tuning
-        most = float(limits.events if batch is None else min(limits.events, tuning.buffer * len(self._borders) // 2))
+        (events, collisions), tuning = self._workers.rate, self._workers.tuning
+        most = float(limits.events if batch is None else min(limits.events, tuning.buffer * len(self._subdomains) // 2))
         if collisions > 0:
             most = min(most, limits.collisions * events / collisions)
-        if self._crew.race is not None and self._crew.race.is_trial(True):
-            most = min(most, self._trial(TRIED_SHARED))
-        now = max(float(counter["time"]), self._done)
-        until = min(now + SHARE * most / events, limits.until)
-        return until if (until - now) * events >= tuning.events else 0.0
+        if self._workers.autotuner is not None and self._workers.autotuner.is_trial(True):
+            most = min(most, self._trial_events(PARALLEL_TRIAL))
+        now = max(float(counter["time"]), self._reached)
+        until = min(now + SLICE_FRACTION * most / events, limits.until)
+        return until if (until - now) * events >= tuning.min_events else 0.0
 
-    def _trial(self, by_disc: float) -> int:
-        """Events of a slice that shows what a way takes; by_disc: events per disc, unless that comes to few."""
-        return max(TRIAL * self._crew.tuning.events, int(by_disc * len(self._discs.record)), FEW)
+    def _trial_events(self, per_disc: float) -> int:
+        """Events of a slice that measures a mode; per_disc: events per disc."""
+        least = max(TRIAL_FACTOR * self._workers.tuning.min_events, MIN_RATE_EVENTS)
+        return max(least, int(per_disc * len(self._discs.record)))
 
-    def _alone(
+    def _run_serial(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Process events on this thread only."""
@@ -186,96 +189,96 @@ class Team:
         rows, reached = advance_events(
             record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None
         )
-        self._measure(before[0], counters[0], float(counters[0]["time"]))
+        self._measure_rate(before[0], counters[0], float(counters[0]["time"]))
         return rows, reached
 
-    def _measure(self, before: Any, after: Any, time: float) -> None:
-        """Note the rate of events up to a local time."""
+    def _measure_rate(self, before: Any, after: Any, time: float) -> None:
+        """Record the rate of events up to a local time."""
         events, collisions = (int(after[name] - before[name]) for name in ("events", "disc_collisions"))
         length = time - float(before["time"])
-        if events >= FEW and length > 0.0:
-            self._crew.rate = events / length, collisions / length
+        if events >= MIN_RATE_EVENTS and length > 0.0:
+            self._workers.rate = events / length, collisions / length
 
-    def _given_up(
-        self, goal: float, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    def _run_slice(
+        self, end: float, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> str:
-        """Share a slice up to a local time; why that was given up, with all as it was before, or nothing."""
-        facts = self._crew.facts
-        facts["slices"] += 1
+        """Share a slice up to a local time; return why it was aborted and rolled back, or an empty string."""
+        counts = self._workers.counts
+        counts["slices"] += 1
         self._save()
         try:
-            why = self._share(goal, batch, 0)
-            strips, total = self._strips, counters.copy()
-            for strip in strips:
+            why = self._run_threads(end, batch, 0)
+            slabs, total = self._slabs, counters.copy()
+            for slab in slabs:
                 for name in ("events", "disc_collisions", "wall_hits", "kicks"):
-                    total[name] += strip.counters[name]
-            last = max(strips, key=lambda strip: strip.counters[0]["time"]).counters[0]
+                    total[name] += slab.counters[name]
+            last = max(slabs, key=lambda slab: slab.counters[0]["time"]).counters[0]
             done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}
             if not why and (done["events"] >= limits.events or done["disc_collisions"] >= limits.collisions):
                 why = STOP
             if not why and self._rows is not None:
-                order = order_of(self._rows.time, [strip.filled for strip in strips])
-                self._pending = Pending(self._rows, order, epoch_start)
+                order = time_order(self._rows.time, [slab.filled for slab in slabs])
+                self._pending = PendingRows(self._rows, order, epoch_start)
         except TiedRowsError:
             why = REASONS[TIE]
         except BaseException:
-            self._restore()
+            self._roll_back()
             raise
         if why:
-            facts[why] += 1
-            self._restore()
+            counts[why] += 1
+            self._roll_back()
             return why
         self._state.unpredicted[0] = False
-        for strip in strips:
-            strip.add_to(self._effects)
+        for slab in slabs:
+            slab.add_to(self._effects)
         if done["events"]:
             total["time"], total["events_at_this_time"] = last["time"], last["events_at_this_time"]
-        self._measure(counters[0], total[0], goal)
-        if done["events"] < FEW and self._crew.rate is not None:  # the rate was that of busier times
-            self._crew.rate = self._crew.rate[0] / SLOWER, self._crew.rate[1] / SLOWER
-        self._done = goal
+        self._measure_rate(counters[0], total[0], end)
+        if done["events"] < MIN_RATE_EVENTS and self._workers.rate is not None:  # the rate has fallen
+            self._workers.rate = self._workers.rate[0] / RATE_DIVISOR, self._workers.rate[1] / RATE_DIVISOR
+        self._reached = end
         counters[:] = total
-        self._arrives = goal == limits.until
+        self._reaches_limit = end == limits.until
         return ""
 
     def _deliver(self, batch: EventBatch | None) -> tuple[int, bool]:
-        """Hand on what rows there are; the slice is over with the last of them."""
+        """Deliver the rows of a slice, which ends with the last of them."""
         rows = 0
         if batch is not None and self._pending is not None:
             rows = self._pending.fill(batch)
-        return rows, self._arrives and not self.pending
+        return rows, self._reaches_limit and not self.pending
 
-    def _share(self, until: float, batch: EventBatch | None, flag: int) -> str:
-        """Let all threads work up to a local time, with a flag; return why that was given up, or nothing."""
+    def _run_threads(self, until: float, batch: EventBatch | None, flag: int) -> str:
+        """Run all threads up to a local time, from a flag; return why they were aborted, or an empty string."""
         record, ids, _ = self._discs
-        if not self._strips:
-            self._strips = [_Strip(self._state, self._effects, len(record)) for _ in self._borders]
-        self._rows, room = self._crew.memory(batch, len(self._borders)), self._crew.tuning.buffer
-        words, limits = self._borders[0].words, Limits(until, UNLIMITED, UNLIMITED, UNLIMITED)
-        reset(self._borders)
+        if not self._slabs:
+            self._slabs = [_Slab(self._state, self._effects, len(record)) for _ in self._subdomains]
+        self._rows, room = self._workers.memory(batch, len(self._subdomains)), self._workers.tuning.buffer
+        words, limits = self._subdomains[0].words, Limits(until, UNLIMITED, UNLIMITED, UNLIMITED)
+        reset(self._subdomains)
         words[FLAG] = flag
         unpredicted = bool(self._state.unpredicted[0]) and not flag
 
-        def give_up() -> None:
+        def abort_slice() -> None:
             words[FLAG] = words[FLAG] or FAILED
 
         def work(k: int) -> None:
             try:
-                own = self._rows.rows(k * room, (k + 1) * room) if self._rows is not None else None
-                self._strips[k].run(record, ids, limits, own, self._borders[k], unpredicted)
-            except Exception:  # raised by a kernel: one thread will come to it, and raise it again
-                give_up()
+                rows = self._rows.rows(k * room, (k + 1) * room) if self._rows is not None else None
+                self._slabs[k].run(record, ids, limits, rows, self._subdomains[k], unpredicted)
+            except Exception:  # raised by a kernel: it is raised again when one thread repeats the slice
+                abort_slice()
 
         self._built = False
-        self._crew.run(work, len(self._borders), give_up)
-        for border in self._borders:
-            for name in ("posts", "set_back", "while_posting"):
-                self._crew.facts[name] += int(border.own[0][name])
-                border.own[name] = 0
+        self._workers.run(work, len(self._subdomains), abort_slice)
+        for subdomain in self._subdomains:
+            for name in ("migrations", "clock_resets", "crossed_messages"):
+                self._workers.counts[name] += int(subdomain.private[0][name])
+                subdomain.private[name] = 0
         return REASONS.get(int(words[FLAG]), "")
 
-    def _changing(self) -> list[np.ndarray]:
-        """All that events change but sums and schedules, as arrays of bytes."""
+    def _mutable_arrays(self) -> list[np.ndarray]:
+        """All arrays that events change, except sums and schedulers, as bytes."""
         state, effects = self._state, self._effects._replace(flow=None)
         arrays = [self._discs.record, state.prediction, state.cells.head, state.cells.link]
         for effect in effects:
@@ -284,21 +287,21 @@ class Team:
         return [np.ascontiguousarray(array).view(np.uint8) for array in arrays]
 
     def _save(self) -> None:
-        """Keep a copy of all that the slice may change."""
+        """Save a copy of all arrays that the slice may change."""
         if not hasattr(self, "_saved"):
-            self._saved = [np.empty_like(array) for array in self._changing()]
-        for copy, array in zip(self._saved, self._changing(), strict=True):
+            self._saved = [np.empty_like(array) for array in self._mutable_arrays()]
+        for copy, array in zip(self._saved, self._mutable_arrays(), strict=True):
             np.copyto(copy, array)
 
-    def _restore(self) -> None:
-        """Set back all that the slice has changed."""
+    def _roll_back(self) -> None:
+        """Undo all changes of the slice."""
         self._pending = None
-        for copy, array in zip(self._saved, self._changing(), strict=True):
+        for copy, array in zip(self._saved, self._mutable_arrays(), strict=True):
             np.copyto(array, copy)
 
 
-class _Strip:
-    """What one thread has for itself: schedule, scratch memory, sums, counters and the number of its rows."""
+class _Slab:
+    """Scheduler, scratch memory, sums, counters and number of rows of one thread."""
 
     def __init__(self, state: EventDrivenState, effects: Effects, n: int) -> None:
         self._state = state._replace(
@@ -313,18 +316,18 @@ class _Strip:
         self.counters = np.zeros(1, COUNTERS).view(np.recarray)
 
     def run(
-        self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, border: Border, unpredicted: bool
+        self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, subdomain: Subdomain, unpredicted: bool
     ) -> None:
-        """Process the strip's events up to a limit of time.
+        """Process the slab's events up to a limit of time.
 
-        rows: memory for them, with local times; None for none. unpredicted: whether an epoch begins.
+        rows: memory for the events, with local times; None without a log. unpredicted: whether an epoch begins.
         """
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self._effects)
         self._state.unpredicted[0] = unpredicted
-        _build(self._state, record, border.low, border.high)
+        _build(self._state, record, subdomain.low, subdomain.high)
         self.filled, _ = advance_events(
-            record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, border
+            record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, subdomain
         )
         if self._effects.flow is not None:
             stress.flush(self._effects.flow)
@@ -335,9 +338,9 @@ class _Strip:
 
 
 def _build(state: EventDrivenState, record: Any, low: int, high: int) -> None:
-    """Make the schedule that of the discs in some rows, see `build`; empty before anything is predicted."""
+    """Build the scheduler of the discs in the rows from `low` to before `high`; empty if nothing is predicted yet."""
     build(state.tree, state.prediction, record, low, low if state.unpredicted[0] else high)
 
 
-def _longer(column: np.ndarray | None, rows: int) -> np.ndarray | None:
+def _column_like(column: np.ndarray | None, rows: int) -> np.ndarray | None:
     return None if column is None else np.empty((rows, *column.shape[1:]), column.dtype)

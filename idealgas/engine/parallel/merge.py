@@ -1,4 +1,4 @@
-"""Rows of several strips put in the one order of their times, and handed on in batches."""
+"""Merging the rows of several slabs by time, and delivering them in batches."""
 
 from collections.abc import Sequence
 
@@ -11,15 +11,15 @@ U = np.uintp
 
 
 class TiedRowsError(Exception):
-    """Two strips had events at one time."""
+    """Two slabs had simultaneous events, whose order is undefined."""
 
 
-def order_of(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
+def time_order(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
     """Indices of all rows of a slice in order of time.
 
-    time: of the rows, in memory of all strips, as much for each. filled: how many rows each strip has, from the
-    beginning of its part on, in the order in which they happened. A clock that was set back leaves rows out of order.
-    Events of one time must follow each other in one strip, else nothing says which of them came first: TiedRowsError.
+    time: local times, in equal parts of memory for the slabs. filled: number of rows of each slab, from the beginning
+    of its part, in the order in which they happened; they are not sorted if a clock was set back. TiedRowsError if
+    simultaneous rows are not adjacent rows of one slab, as their order is then undefined.
     """
     order, own = np.empty(sum(filled), np.int64), np.empty(len(time), np.int64)
     place, head = np.empty(len(filled), np.int64), np.empty(len(filled))
@@ -30,21 +30,21 @@ def order_of(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
 
 @njit
 def merge(time, filled, own, place, head, order):
-    """Put indices of the rows of all strips in order, see `order_of`; return whether their times tell it.
+    """Merge the rows of all slabs into `order`, see `time_order`; return False if their order is undefined.
 
-    filled: (strips,) i8. own: as many i8 as times, overwritten with each strip's rows in order. place: (strips,) i8,
-    and head: (strips,) f8, overwritten with each strip's next one of these, and its time.
+    filled: (slabs,) i8. own: i8, as many as times, overwritten with each slab's sorted rows. place: (slabs,) i8 and
+    head: (slabs,) f8, overwritten with the position in `own` of each slab's next row, and its time.
     """
-    strips = filled.shape[0]
-    room = time.shape[0] // strips
-    for k in range(strips):
+    slabs = filled.shape[0]
+    room = time.shape[0] // slabs
+    for k in range(slabs):
         place[U(k)] = k * room
-        put_in_order(time, k * room, k * room + filled[U(k)], own)
+        insertion_sort(time, k * room, k * room + filled[U(k)], own)
         head[U(k)] = time[U(own[U(k * room)])] if filled[U(k)] > 0 else np.inf
     before = -1
     for n in range(order.shape[0]):
         k = 0
-        for other in range(1, strips):
+        for other in range(1, slabs):
             k = other if head[U(other)] < head[U(k)] else k
         row = own[U(place[U(k)])]
         if before >= 0 and time[U(row)] == time[U(before)] and (row != before + 1 or row % room == 0):
@@ -57,8 +57,8 @@ def merge(time, filled, own, place, head, order):
 
 
 @inline
-def put_in_order(time, start, stop, own):
-    """Put the rows `start` to before `stop` in order of time: by insertion, as nearly all are."""
+def insertion_sort(time, start, stop, own):
+    """Sort the rows from `start` to before `stop` by time; insertion is fast as nearly all are in order."""
     for row in range(start, stop):
         at = row
         while at > start and time[U(own[U(at - 1)])] > time[U(row)]:
@@ -68,16 +68,16 @@ def put_in_order(time, start, stop, own):
 
 
 @inline
-def take_numbers(to, rows, order):
-    """Fill a column of numbers with those of the rows in an order, where the batch has it."""
+def gather_scalars(to, rows, order):
+    """Copy a scalar column of the rows in an order, if the batch has it."""
     if to is not None:
         for k in range(order.shape[0]):
             to[U(k)] = rows[U(order[U(k)])]
 
 
 @inline
-def take_pairs(to, rows, order):
-    """Fill a column of two components with those of the rows in an order, where the batch has it."""
+def gather_vectors(to, rows, order):
+    """Copy a column of two components of the rows in an order, if the batch has it."""
     if to is not None:
         for k in range(order.shape[0]):
             to[U(k), 0] = rows[U(order[U(k)]), 0]
@@ -85,42 +85,42 @@ def take_pairs(to, rows, order):
 
 
 @njit
-def take_rows(rows, order, epoch_start, batch):
-    """Fill a batch with rows in an order; their times are local ones of an epoch that starts at a time."""
+def gather_rows(rows, order, epoch_start, batch):
+    """Copy rows with local times into a batch in an order; epoch_start: time."""
     for k in range(order.shape[0]):
         batch.time[U(k)] = epoch_start + rows.time[U(order[U(k)])]
-    take_numbers(batch.disc, rows.disc, order)
-    take_numbers(batch.partner, rows.partner, order)
-    take_numbers(batch.kind, rows.kind, order)
-    take_pairs(batch.position, rows.position, order)
-    take_pairs(batch.velocity, rows.velocity, order)
-    take_numbers(batch.angular_velocity, rows.angular_velocity, order)
-    take_pairs(batch.image, rows.image, order)
+    gather_scalars(batch.disc, rows.disc, order)
+    gather_scalars(batch.partner, rows.partner, order)
+    gather_scalars(batch.kind, rows.kind, order)
+    gather_vectors(batch.position, rows.position, order)
+    gather_vectors(batch.velocity, rows.velocity, order)
+    gather_scalars(batch.angular_velocity, rows.angular_velocity, order)
+    gather_vectors(batch.image, rows.image, order)
 
 
-class Pending:
-    """Rows that are still to be handed on."""
+class PendingRows:
+    """Rows that are still to be delivered."""
 
     def __init__(self, rows: EventBatch, order: np.ndarray, epoch_start: float) -> None:
-        """Take rows in an order; their times are local ones of an epoch that starts at a time."""
+        """Begin with rows with local times, and their order; epoch_start: time."""
         self._rows, self._order, self._epoch_start = rows, order, epoch_start
         self._next = 0
 
     def __len__(self) -> int:
-        """Number of rows that are left."""
+        """Number of remaining rows."""
         return len(self._order) - self._next
 
     def fill(self, batch: EventBatch) -> int:
-        """Fill a batch as a kernel does: both rows of a pair or none; return the number of rows."""
+        """Fill a batch, with both rows of a pair or neither; return the number of rows."""
         start = self._next
         stop = min(start + len(batch.time) - 1, len(self._order))
         if stop < len(self._order) and self._is_second(self._order[stop]):
             stop += 1
         self._next = stop
-        take_rows(self._rows, self._order[start:stop], self._epoch_start, batch)
+        gather_rows(self._rows, self._order[start:stop], self._epoch_start, batch)
         return stop - start
 
     def _is_second(self, row: int) -> bool:
-        """Whether a row is the second one of a pair, that of the larger id."""
+        """Whether a row is the second of a pair, that of the larger id."""
         disc, partner, kind = (int(column[row]) for column in (self._rows.disc, self._rows.partner, self._rows.kind))
         return kind == Kind.DISC and partner < disc

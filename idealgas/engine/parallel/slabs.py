@@ -1,4 +1,4 @@
-"""Strips of rows of cells, one for each thread: how many, where they are cut, and what their threads share."""
+"""Decomposition of the box into slabs of rows of cells, one per thread, and the memory that the threads share."""
 
 import os
 from typing import NamedTuple
@@ -9,46 +9,44 @@ import numpy as np
 from idealgas.engine.parallel.atomics import LINE
 from idealgas.engine.parallel.subdomain import (
     ACTIVE,
+    BEFORE_ALL,
     FLAG,
-    LATE,
-    LEAST_ROWS,
-    OWN,
-    ZONE,
-    Border,
+    HALO,
+    MIN_ROWS,
+    PRIVATE,
+    Subdomain,
     clock_word,
     lines,
     lock_word,
-    mail_word,
+    message_word,
 )
 from idealgas.engine.records import Threads
 from idealgas.jit import aligned
 
 
 class Tuning(NamedTuple):
-    """What makes threads fast, and changes nothing else.
+    """Parameters of the threads that change their speed and nothing else.
 
     Attributes:
-        rows: least rows of a strip.
-        discs: least discs of a strip.
-        events: least events of a slice that several threads share.
-        slice: events of a slice that are enough, however many discs there are: as many as take some seconds.
-        buffer: rows of events that a strip has room for.
-        lead: rows that the fastest disc may cross in the time by which events inside a strip are ahead of others.
-        race: whether one thread goes on alone while that is faster, as on a busy machine.
-        delay: strip k waits for long at one event in `delay * (k + 1)`, for tests; 0 for never.
+        min_rows: smallest number of rows of a slab.
+        min_discs: smallest number of discs of a slab.
+        min_events: smallest number of events of a slice that several threads share.
+        max_events: events of a slice that are enough, however many discs there are: as many as take some seconds.
+        buffer: rows of events that a slab has memory for.
+        lead: rows that the fastest disc may cross in the time by which interior events are ahead of others.
+        autotune: whether one thread continues alone while that is faster, as on a busy machine.
     """
 
-    rows: int = 32
-    discs: int = 5_000
-    events: int = 20_000
-    slice: int = 1 << 21
+    min_rows: int = 32
+    min_discs: int = 5_000
+    min_events: int = 20_000
+    max_events: int = 1 << 21
     buffer: int = 1 << 18
     lead: float = 1.5
-    race: bool = True
-    delay: int = 0
+    autotune: bool = True
 
 
-FAST = Tuning()
+DEFAULT_TUNING = Tuning()
 
 
 def cores() -> int:
@@ -56,11 +54,10 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tuning = FAST) -> Threads:
-    """How n discs in so many rows of cells are shared.
+def choose_threads(threads: int | None, rows: int, n: int, local: bool, tuning: Tuning = DEFAULT_TUNING) -> Threads:
+    """Number of threads that share n discs in a number of rows of cells.
 
-    threads: as many as asked for, None for as many as are worth it. local: whether discs
-    meet only what is near them.
+    threads: as requested; None for as many as are worthwhile. local: whether discs collide only with what is near them.
     """
     if numba.config.DISABLE_JIT:
         return Threads(1, "nothing is compiled")
@@ -68,78 +65,76 @@ def share_out(threads: int | None, rows: int, n: int, local: bool, tuning: Tunin
         return Threads(1, "every disc may meet the piston")
     if threads is None:
         limits = {
-            n // tuning.discs: f"each has at least {tuning.discs} discs",
-            rows // tuning.rows: f"each has at least {tuning.rows} rows of cells",
+            n // tuning.min_discs: f"each has at least {tuning.min_discs} discs",
+            rows // tuning.min_rows: f"each has at least {tuning.min_rows} rows of cells",
             cores(): "as many as there are cores",
         }
     else:
         limits = {
-            max(rows // LEAST_ROWS, 1): f"each has at least {LEAST_ROWS} rows of cells",
+            max(rows // MIN_ROWS, 1): f"each has at least {MIN_ROWS} rows of cells",
             threads: "as run.threads says",
         }
     number = min(limits)
-    worth = max(2 * tuning.events, min(4 * n, tuning.slice))  # all discs are copied before
+    worthwhile = max(2 * tuning.min_events, min(4 * n, tuning.max_events))  # a slice begins with a copy of all discs
     if number <= 1:
         return Threads(1, limits[number])
-    return Threads(number, limits[number], events=worth, alone=tuning.events // 2 if number >= cores() else 0)
+    serial = tuning.min_events // 2 if number >= cores() else 0
+    return Threads(number, limits[number], min_events=worthwhile, serial_events=serial)
 
 
-def cut(discs_in_row: np.ndarray, strips: int) -> list[int]:
-    """First rows of the strips, and the row after the last: equal shares of the discs, at least LEAST_ROWS rows each.
+def slab_edges(discs_in_row: np.ndarray, slabs: int) -> list[int]:
+    """First rows of the slabs, and the row after the last: equal shares of the discs, at least MIN_ROWS rows each.
 
     discs_in_row: (R,) by row of cells, ring included.
     """
     last = len(discs_in_row) - 1
     share = np.cumsum(discs_in_row) / max(discs_in_row.sum(), 1)
-    edges = [1, *(int(np.searchsorted(share, k / strips)) + 1 for k in range(1, strips)), last]
-    for k in range(1, strips):
-        edges[k] = max(edges[k], edges[k - 1] + LEAST_ROWS)
-    for k in range(strips - 1, 0, -1):
-        edges[k] = min(edges[k], edges[k + 1] - LEAST_ROWS)
+    edges = [1, *(int(np.searchsorted(share, k / slabs)) + 1 for k in range(1, slabs)), last]
+    for k in range(1, slabs):
+        edges[k] = max(edges[k], edges[k - 1] + MIN_ROWS)
+    for k in range(slabs - 1, 0, -1):
+        edges[k] = min(edges[k], edges[k + 1] - MIN_ROWS)
     return edges
 
 
-def make_borders(edges: list[int], ring: bool, lead: float, delay: int) -> list[Border]:
-    """The strips between the edges; ring: the last one and the first are neighbours. lead: time."""
-    strips = len(edges) - 1
-    words = aligned(lines(strips) * LINE, np.dtype("i8"))
-    borders = []
-    for k in range(strips):
-        own = aligned(1, OWN)
-        own.draw = k + 1
-        below, above = ring or k > 0, ring or k < strips - 1
-        borders.append(
-            Border(
-                me=k,
-                strips=strips,
+def make_subdomains(edges: list[int], ring: bool, lead: float) -> list[Subdomain]:
+    """The slabs between the edges; ring: whether the last one and the first are neighbours. lead: time."""
+    slabs = len(edges) - 1
+    words = aligned(lines(slabs) * LINE, np.dtype("i8"))
+    subdomains = []
+    for k in range(slabs):
+        below, above = ring or k > 0, ring or k < slabs - 1
+        subdomains.append(
+            Subdomain(
+                rank=k,
+                slabs=slabs,
                 low=edges[k],
                 high=edges[k + 1],
-                inside=(edges[k] + ZONE * below, edges[k + 1] - ZONE * above),
+                interior=(edges[k] + HALO * below, edges[k + 1] - HALO * above),
                 below=k if below else -1,
-                above=(k + 1) % strips if above else -1,
-                under=(k - 1) % strips,
-                over=(k + 1) % strips,
+                above=(k + 1) % slabs if above else -1,
+                rank_below=(k - 1) % slabs,
+                rank_above=(k + 1) % slabs,
                 lead=lead,
-                delay=delay * (k + 1),
-                own=own,
+                private=aligned(1, PRIVATE),
                 words=words,
                 times=words.view(np.float64),
             )
         )
-    return borders
+    return subdomains
 
 
-def reset(borders: list[Border]) -> None:
-    """Prepare the strips for a slice, in which nothing has happened yet."""
-    b = borders[0]
-    b.words[FLAG], b.words[ACTIVE] = 0, len(borders)
-    for k in range(len(borders)):
-        b.times[clock_word(k)] = b.times[clock_word(k) + 1] = b.times[lock_word(b, k) + 1] = LATE
-        b.words[lock_word(b, k)] = 0
-        b.words[mail_word(b, k, 0)] = b.words[mail_word(b, k, 1)] = -1
-    for border in borders:
-        own = border.own
-        for name in OWN.names or ():
-            if OWN[name] == np.float64:
-                own[name] = LATE
-        own["at_once"] = own["held"] = own["idle"] = own["posted"] = 0
+def reset(subdomains: list[Subdomain]) -> None:
+    """Prepare the subdomains for a slice, before its first event."""
+    sub = subdomains[0]
+    sub.words[FLAG], sub.words[ACTIVE] = 0, len(subdomains)
+    for k in range(len(subdomains)):
+        sub.times[clock_word(k)] = sub.times[clock_word(k) + 1] = sub.times[lock_word(sub, k) + 1] = BEFORE_ALL
+        sub.words[lock_word(sub, k)] = 0
+        sub.words[message_word(sub, k, 0)] = sub.words[message_word(sub, k, 1)] = -1
+    for subdomain in subdomains:
+        private = subdomain.private
+        for name in PRIVATE.names or ():
+            if PRIVATE[name] == np.float64:
+                private[name] = BEFORE_ALL
+        private["simultaneous"] = private["locked"] = private["idle"] = private["unchecked"] = 0

@@ -8,7 +8,7 @@ import pytest
 from log_compare import differences
 from support import ROOT
 
-from idealgas.engine.parallel.autotuner import Race
+from idealgas.engine.parallel.autotuner import ThreadAutotuner
 from idealgas.initial.build import make_gas
 from idealgas.log import LogWriter, open_log
 from idealgas.run.effects import make_effects
@@ -48,7 +48,7 @@ def test_a_shipped_scene_conserves_what_it_should(shipped_scene, tmp_path):
 def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
     """It leaves a core to the log; what the log holds is the same."""
     monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 2)
-    monkeypatch.setattr(Race, "shares", lambda race: True)
+    monkeypatch.setattr(ThreadAutotuner, "use_threads", lambda autotuner: True)
     scene = load_scene(CONFIGS / "dilute.toml", ["run.events=200_000", "run.threads=2"])
     paths = [tmp_path / "behind.h5", tmp_path / "never.h5"]
     for path, behind in zip(paths, (True, False), strict=True):

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.interpreted
 
 @njit
 def enter(tree, predictions, ids, i):
-    """The next disc after disc i's event was entered in place of another, found as the kernel and `absorb` do it."""
+    """The next disc after disc i's event was entered in place of another, found as the kernel and `receive` do it."""
     before = tree.time[next_disc(tree)]
     update(tree, predictions, ids, i)
     first = next_disc(tree)

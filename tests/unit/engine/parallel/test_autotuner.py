@@ -1,67 +1,69 @@
-"""The race between several threads and one: the faster way is taken, and the other one tried again at times."""
+"""The choice between several threads and one: the faster mode is used, and the other one tried again now and then."""
 
 import time
 
 from thread_samples import EAGER, SMALLEST_CELLS, log_with, tall_scene
 
 from idealgas.engine.event_driven.method import EventDriven
-from idealgas.engine.parallel.autotuner import Race
-from idealgas.engine.parallel.decomposition import STOP, Team
+from idealgas.engine.parallel.autotuner import ThreadAutotuner
+from idealgas.engine.parallel.decomposition import STOP, DomainDecomposition
 from idealgas.engine.simulation import Stop
 
 
 def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
     now = [0.0]
     monkeypatch.setattr("time.perf_counter", lambda: now[0])
-    race = Race()
-    assert not race.shares()
-    race.note(False, 100, 1.0)
-    assert race.shares()
-    race.note(True, 100, 3.0)
-    assert not race.shares()
+    autotuner = ThreadAutotuner()
+    assert not autotuner.use_threads()
+    autotuner.note(False, 100, 1.0)
+    assert autotuner.use_threads()
+    autotuner.note(True, 100, 3.0)
+    assert not autotuner.use_threads()
     now[0] = 100.0
-    assert race.shares()
-    race.note(True, 100, 0.5)
-    assert race.shares()
+    assert autotuner.use_threads()
+    autotuner.note(True, 100, 0.5)
+    assert autotuner.use_threads()
 
 
 def test_a_way_that_gets_slow_is_not_tried_again_at_once(monkeypatch):
     """As when other work begins on the machine."""
     now = [0.0]
     monkeypatch.setattr("time.perf_counter", lambda: now[0])
-    race = Race()
-    race.note(False, 100, 1.0)
-    race.note(True, 100, 0.5)
+    autotuner = ThreadAutotuner()
+    autotuner.note(False, 100, 1.0)
+    autotuner.note(True, 100, 0.5)
     now[0] = 5.0
-    assert race.shares()
-    race.note(True, 100, 40.0)
-    assert not race.shares()
-    assert race.is_trial(True)
+    assert autotuner.use_threads()
+    autotuner.note(True, 100, 40.0)
+    assert not autotuner.use_threads()
+    assert autotuner.is_trial(True)
     now[0] = 5.0 + 20 * 40.0
-    assert race.shares()
+    assert autotuner.use_threads()
 
 
 def test_the_first_shared_slice_is_a_short_one(monkeypatch):
-    foretold = {True: [], False: []}
+    planned = {True: [], False: []}
 
-    def shared(team, goal, limits, epoch_start, batch, counters):
-        foretold[team._crew.race.open].append((goal - counters[0].time) * team._crew.rate[0])
+    def shared(decomposition, end, limits, epoch_start, batch, counters):
+        planned[decomposition._workers.autotuner.undecided].append(
+            (end - counters[0].time) * decomposition._workers.rate[0]
+        )
         return "tie"  # done again by one thread, and noted as what the threads took
 
-    monkeypatch.setattr(Team, "_given_up", shared)
-    monkeypatch.setattr(Race, "shares", lambda race: True)
+    monkeypatch.setattr(DomainDecomposition, "_run_slice", shared)
+    monkeypatch.setattr(ThreadAutotuner, "use_threads", lambda autotuner: True)
     monkeypatch.setattr("time.perf_counter", lambda: 0.0)  # both ways are as fast: only the first slice is a trial
-    method = EventDriven(SMALLEST_CELLS, 2, EAGER._replace(race=True, events=20))
+    method = EventDriven(SMALLEST_CELLS, 2, EAGER._replace(autotune=True, min_events=20))
     gas, effects = tall_scene("plain", 1)
     log_with(gas, effects, Stop(events=5000), 300, method)
-    assert len(foretold[True]) == 1
-    assert foretold[True][0] <= max(40, len(gas)) < min(foretold[False])
+    assert len(planned[True]) == 1
+    assert planned[True][0] <= max(40, len(gas)) < min(planned[False])
 
 
-def test_slices_beyond_the_events_foretold_do_not_keep_threads_from_sharing(monkeypatch):
+def test_slices_beyond_the_planned_events_do_not_keep_threads_from_sharing(monkeypatch):
     """They come where the rate rises, as in a lattice that melts, and take their time in vain."""
     tried = []
-    monkeypatch.setattr(Team, "_given_up", lambda *given: tried.append(time.sleep(0.01)) or STOP)
-    method = EventDriven(1e-9, 3, EAGER._replace(race=True))
+    monkeypatch.setattr(DomainDecomposition, "_run_slice", lambda *given: tried.append(time.sleep(0.01)) or STOP)
+    method = EventDriven(1e-9, 3, EAGER._replace(autotune=True))
     log_with(*tall_scene("plain", 3), Stop(events=5000), 300, method)
     assert len(tried) > 10

@@ -1,11 +1,11 @@
-"""Rows of several strips are put in the one order of their times, and handed on in batches."""
+"""Rows of several slabs are merged by time and delivered in batches."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas.engine.parallel.merge import Pending, TiedRowsError, order_of
+from idealgas.engine.parallel.merge import PendingRows, TiedRowsError, time_order
 from idealgas.events import Kind, empty_batch
 
 pytestmark = pytest.mark.interpreted
@@ -17,42 +17,42 @@ def rows_of(times, discs):
     return batch
 
 
-def order_of_strips(times, room=4):
+def order_of_slabs(times, room=4):
     memory = np.full(room * len(times), -1.0)
     for k, part in enumerate(times):
         memory[k * room : k * room + len(part)] = part
-    return order_of(memory, [len(part) for part in times]).tolist()
+    return time_order(memory, [len(part) for part in times]).tolist()
 
 
 def test_rows_are_merged_by_time():
-    assert order_of_strips([[1.0, 3.0, 3.0, 2.5], [0.5, 4.0]]) == [4, 0, 3, 1, 2, 5]
-    assert order_of_strips([[], [2.0, 5.0], [3.0]]) == [4, 8, 5]
-    assert order_of_strips([[], []]) == []
+    assert order_of_slabs([[1.0, 3.0, 3.0, 2.5], [0.5, 4.0]]) == [4, 0, 3, 1, 2, 5]
+    assert order_of_slabs([[], [2.0, 5.0], [3.0]]) == [4, 8, 5]
+    assert order_of_slabs([[], []]) == []
 
 
 @given(st.permutations(range(30)), st.lists(st.integers(0, 30), min_size=1, max_size=5))
 def test_rows_of_any_order_are_merged_by_time(times, cuts):
     parts = np.split(np.array(times, float), sorted(cuts))
     first = np.concatenate([np.arange(len(part)) + 30 * k for k, part in enumerate(parts)])
-    assert order_of_strips(parts, room=30) == first[np.argsort(times)].tolist()
+    assert order_of_slabs(parts, room=30) == first[np.argsort(times)].tolist()
 
 
 @pytest.mark.parametrize("times", [([1.0, 2.0], [2.0]), ([2.0], [2.0, 3.0]), ([2.0, 3.0, 2.0], [1.0])])
 @pytest.mark.parametrize("room", [3, 4])
 def test_rows_of_one_time_that_nobody_has_put_in_order_are_not_merged(times, room):
     with pytest.raises(TiedRowsError):
-        order_of_strips(times, room)
+        order_of_slabs(times, room)
 
 
-def test_rows_of_one_time_in_two_strips_are_tied_where_one_begins_as_the_other_ends():
+def test_rows_of_one_time_in_two_slabs_are_tied_where_one_begins_as_the_other_ends():
     with pytest.raises(TiedRowsError):
-        order_of_strips([[1.0, 2.0], [2.0, 3.0]], room=2)
+        order_of_slabs([[1.0, 2.0], [2.0, 3.0]], room=2)
 
 
 def test_rows_are_handed_on_as_batches_have_room_and_pairs_stay_together():
     rows = rows_of([3.0, 3.0, 1.0, 2.0, 2.0], [1, 3, 7, 1, 2])
     rows.partner[:], rows.kind[:] = [3, 1, -1, 2, 1], [Kind.DISC, Kind.DISC, Kind.WALL, Kind.DISC, Kind.DISC]
-    pending, sizes, discs = Pending(rows, np.array([2, 3, 4, 0, 1]), 100.0), [], []
+    pending, sizes, discs = PendingRows(rows, np.array([2, 3, 4, 0, 1]), 100.0), [], []
     while len(pending):
         batch = empty_batch(3)
         sizes.append(pending.fill(batch))

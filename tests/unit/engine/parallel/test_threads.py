@@ -1,4 +1,4 @@
-"""Several threads write the log of one, bit for bit, whatever they meet at the borders of their strips."""
+"""Several threads write the log of one thread, bit for bit, whatever happens at the interfaces of their slabs."""
 
 from collections import Counter
 from itertools import cycle
@@ -17,14 +17,14 @@ from thread_samples import (
     lattice,
     log_with,
     tall_scene,
-    tie_at_a_border,
-    tie_with_a_disc_that_comes_late,
+    tie_at_an_interface,
+    tie_with_a_late_migrant,
     wind,
 )
 
 from idealgas.engine.event_driven.method import EventDriven
-from idealgas.engine.parallel.autotuner import Race
-from idealgas.engine.parallel.decomposition import Crew, Team, _Strip
+from idealgas.engine.parallel.autotuner import ThreadAutotuner
+from idealgas.engine.parallel.decomposition import DomainDecomposition, Workers, _Slab
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.run.resume import resume
@@ -52,9 +52,9 @@ PLAIN_SEEDS, LATTICE_SEEDS = range(8), range(10)
 
 @pytest.mark.slow
 def test_gases_have_the_log_of_one_thread():
-    facts = sum((compare(lambda s=seed: tall_scene("plain", s), seed) for seed in PLAIN_SEEDS), Counter())
-    assert facts["7 strips"] == len(PLAIN_SEEDS)
-    assert facts["posts"] > 1000
+    counts = sum((compare(lambda s=seed: tall_scene("plain", s), seed) for seed in PLAIN_SEEDS), Counter())
+    assert counts["7 slabs"] == len(PLAIN_SEEDS)
+    assert counts["migrations"] > 1000
 
 
 @pytest.mark.slow
@@ -62,13 +62,13 @@ def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
     """Slices by one thread and by several follow each other, as now the one way is faster and now the other."""
     monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 3)
     ways = cycle((True, False))
-    monkeypatch.setattr(Race, "shares", lambda race: next(ways))
-    stop, method = Stop(events=5000), EventDriven(1e-9, None, EAGER._replace(race=True))
+    monkeypatch.setattr(ThreadAutotuner, "use_threads", lambda autotuner: next(ways))
+    stop, method = Stop(events=5000), EventDriven(1e-9, None, EAGER._replace(autotune=True))
     found = log_with(*tall_scene("plain", 3), stop, 300, method)
     expected = log_with(*tall_scene("plain", 3), stop, 300, EventDriven())
     assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
     assert method.threads[:2] == (3, "as many as there are cores")
-    assert method.threads.slices - method.threads.given_up > 2
+    assert method.threads.slices - method.threads.aborted > 2
 
 
 @pytest.mark.slow
@@ -92,9 +92,9 @@ def test_a_run_may_go_on_without_a_log():
 
 @pytest.mark.slow
 def test_lattices_have_the_log_of_one_thread():
-    facts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
-    assert facts["tie"] > 0
-    assert facts["slices"] > 2 * facts["tie"]
+    counts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
+    assert counts["tie"] > 0
+    assert counts["slices"] > 2 * counts["tie"]
 
 
 @pytest.mark.slow
@@ -106,59 +106,59 @@ def test_a_disc_that_comes_over_has_its_turn_among_events_of_one_time():
 @pytest.mark.parametrize("until", [3.9, 4.1, 4.4])
 def test_a_disc_of_another_strip_is_not_in_the_schedule_after_events_of_one_time(until):
     stop = Stop(time=until)
-    expected = log_with(*tie_at_a_border(), stop, UNLIMITED, EventDriven())
+    expected = log_with(*tie_at_an_interface(), stop, UNLIMITED, EventDriven())
     method = EventDriven(1e-3, 2, EAGER)
-    method.crew.rate = 1000.0, 500.0  # all is one slice
-    found = log_with(*tie_at_a_border(), stop, UNLIMITED, method)
+    method.workers.rate = 1000.0, 500.0  # all is one slice
+    found = log_with(*tie_at_an_interface(), stop, UNLIMITED, method)
     assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
-    assert (method.threads.slices, method.threads.given_up) == (1, 0)
+    assert (method.threads.slices, method.threads.aborted) == (1, 0)
 
 
 @pytest.mark.slow
 def test_a_disc_that_comes_late_has_its_turn_among_events_of_one_time():
-    """Which strip is ahead is chance: on most of 20 runs the rows were side by side in the wrong order."""
+    """Which slab is ahead is random: in most of 20 runs the rows would be adjacent in the wrong order."""
     stop, ties = Stop(time=6.0), 0
-    expected = log_with(*tie_with_a_disc_that_comes_late(), stop, UNLIMITED, EventDriven(SMALLEST_CELLS))
+    expected = log_with(*tie_with_a_late_migrant(), stop, UNLIMITED, EventDriven(SMALLEST_CELLS))
     for _ in range(20):
         method = EventDriven(SMALLEST_CELLS, 2, EAGER)
-        method.crew.rate = 1000.0, 500.0  # all is one slice
-        found = log_with(*tie_with_a_disc_that_comes_late(), stop, UNLIMITED, method)
+        method.workers.rate = 1000.0, 500.0  # all is one slice
+        found = log_with(*tie_with_a_late_migrant(), stop, UNLIMITED, method)
         assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
-        ties += method.crew.facts["tie"]
+        ties += method.workers.counts["tie"]
     assert ties > 0
 
 
 @pytest.mark.slow
-def test_strips_begin_an_epoch_without_a_thread_that_does_it_alone(monkeypatch):
+def test_slabs_begin_an_epoch_in_parallel(monkeypatch):
     gas, effects = tall_scene("plain", 2)
     simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
     while simulation.epoch < 1:
         simulation.advance(Stop(), None, 500)
         if simulation.epoch_over:
             simulation.next_epoch()
-    monkeypatch.setattr(Team, "_alone", None)
+    monkeypatch.setattr(DomainDecomposition, "_run_serial", None)
     simulation.advance(Stop(), None, 500)
     assert simulation.counters.events > simulation.totals.events
 
 
 @pytest.mark.slow
 def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
-    """The others wait at their borders for one that is not there, and see that the work is given up."""
+    """The other threads wait at their interfaces for a missing one, and notice that the slice is aborted."""
     stop, sample = Stop(events=3000), lambda: tall_scene("plain", 3)
     expected = log_with(*sample(), stop, 1000, EventDriven())
-    run, calls = _Strip.run, []
+    run, calls = _Slab.run, []
 
-    def fail(self, record, ids, limits, batch, border, unpredicted):
-        calls.append(border.me)
-        if border.me == 1 and len(calls) % 2:
+    def fail(self, record, ids, limits, batch, subdomain, unpredicted):
+        calls.append(subdomain.rank)
+        if subdomain.rank == 1 and len(calls) % 2:
             raise MemoryError
-        run(self, record, ids, limits, batch, border, unpredicted)
+        run(self, record, ids, limits, batch, subdomain, unpredicted)
 
-    monkeypatch.setattr(_Strip, "run", fail)
+    monkeypatch.setattr(_Slab, "run", fail)
     method = EventDriven(1e-9, 3, EAGER)
     found = log_with(*sample(), stop, 1000, method)
     assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
-    assert 0 < method.crew.facts["error"] <= method.threads.given_up
+    assert 0 < method.workers.counts["error"] <= method.threads.aborted
 
 
 @pytest.mark.slow
@@ -168,17 +168,17 @@ def test_an_interrupt_sets_all_back_and_ends_the_threads(monkeypatch):
     batch = batch_for(simulation, 65_536)
     simulation.advance(Stop(), batch, 500)
     before = simulation.state()[0]
-    run = Crew.run
+    run = Workers.run
 
-    def interrupted(self, work, number, give_up):
+    def interrupted(self, work, number, abort_slice):
         def stopped(k):
             if k == 0:
                 raise KeyboardInterrupt
             work(k)
 
-        run(self, stopped, number, give_up)
+        run(self, stopped, number, abort_slice)
 
-    monkeypatch.setattr(Crew, "run", interrupted)
+    monkeypatch.setattr(Workers, "run", interrupted)
     with pytest.raises(KeyboardInterrupt):
         simulation.advance(Stop(), batch, 500)
     assert np.array_equal(simulation.state()[0].position, before.position)
@@ -204,8 +204,8 @@ def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
 
 @pytest.mark.slow
 def test_everything_at_once_has_the_log_of_one_thread():
-    facts = sum((compare(lambda s=seed: tall_scene("everything", s), seed, (3, 7)) for seed in range(1)), Counter())
-    assert facts["posts"] > 100
+    counts = sum((compare(lambda s=seed: tall_scene("everything", s), seed, (3, 7)) for seed in range(1)), Counter())
+    assert counts["migrations"] > 100
 
 
 @pytest.mark.long
@@ -220,10 +220,10 @@ def test_many_gases_have_the_log_of_one_thread(effects):
         total += compare(lambda: tall_scene(effects, seed), seed)
 
     for _ in range(5):  # once in a while no thread is late enough in forty gases to change another's past
-        if not total["past"]:
+        if not total["causality"]:
             run()
     print(effects, dict(total))
-    assert total["past"] > 0
+    assert total["causality"] > 0
 
 
 @pytest.mark.long
@@ -246,6 +246,6 @@ def test_discs_that_go_from_strip_to_strip_all_the_time_have_the_log_of_one_thre
             found = log_with(*wind(seed), stop, 100, method)
             assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), (seed, number)
             assert method.threads.number == number
-            total += method.crew.facts
+            total += method.workers.counts
     print(dict(total))
-    assert min(total[name] for name in ("past", "set_back", "while_posting")) >= 100
+    assert min(total[name] for name in ("causality", "clock_resets", "crossed_messages")) >= 100
