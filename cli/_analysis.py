@@ -27,11 +27,9 @@ def log_argument(command: Callable) -> Callable:
 
 
 def open_log(path: str) -> "Log":
-    """Open a log for reading, after a trial; print one line if it was not closed."""
+    """Open a log for reading; print one line if it was not closed."""
     from idealgas import log
-    from idealgas.log.trial import try_reading
 
-    try_reading(path)
     opened = log.open_log(path)
     if opened.unclosed:
         state = "is being written" if opened.live else "was not closed (crash?); continue it with `idealgas resume`"

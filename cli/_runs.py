@@ -52,10 +52,7 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
     if summary.trials:
         rows |= {"trials": f"{summary.trials:,}", "  accepted": f"{summary.disc_collisions / summary.trials:.4f}"}
     rows["simulated time"] = f"{summary.end_time:.6g}"
-    if summary.energy_drift is None:
-        rows["energy change (not conserved)"] = f"{summary.energy_change:.6g}"
-    else:
-        rows["energy drift"] = f"{summary.energy_drift:.1e}"
+    rows["energy drift"] = f"{summary.energy_drift:.1e}"
     rows["deepest overlap"] = f"{summary.deepest_overlap:.1e} diameters"
     rows["wall time"] = f"{summary.seconds:.2f} s"
     if summary.compile_seconds > 1:

@@ -18,8 +18,6 @@ def recover(path: str, output: str | None, force: bool) -> None:
     The commands of idealgas do not need this: they read such a log without it.
     """
     from idealgas.log import recover as close
-    from idealgas.log.trial import try_reading
 
-    try_reading(path)
     rows = close(path, output, force)
     echo(f"{output or path}: {rows:,} event rows kept")

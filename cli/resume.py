@@ -28,12 +28,10 @@ def resume(path: str, as_json: bool, **ends: Any) -> None:
     """
     from functools import partial
 
-    from idealgas.log.trial import try_reading
     from idealgas.run.resume import resume as go_on
 
     from ._runs import run_with_progress
 
-    try_reading(path)
     overrides = [f"run.{rule}={'' if value is None else value}" for rule, value in ends.items()]
     given = any(value is not None for value in ends.values())
     run_with_progress(partial(go_on, path, overrides if given else ()), path, as_json, from_start=False)

@@ -19,18 +19,8 @@ from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
-TRAJECTORY = 6
-"""Version of the trajectory, raised by hand whenever a scene's log comes out differently than it did."""
-
-GOES_ON = frozenset({3, 4, 5, TRAJECTORY})
-"""Versions of logs that are gone on with as they began.
-
-Since version 4 a scene may have other defaults: the contact duration under a constant force, and a Monte Carlo v_ref
-that rises. A log of version 3 has its contact duration in its scene, and its v_ref stays as it is. Version 5 differs
-for time steps of rare lengths, of which one was left out between epochs, in the overlaps of time-driven runs, and where
-a disc would go round a periodic box thousands of times in an epoch. In version 6 sums have other units where spins have
-far more energy than the motion.
-"""
+TRAJECTORY = 1
+"""Version of the trajectory, to be raised by hand whenever a change of the program changes the log of a scene."""
 
 
 class Method(Protocol):

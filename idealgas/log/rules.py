@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from idealgas.events import BATH, EVENT_COLUMNS, IMAGE, TRIALS, VELOCITY, Column
+from idealgas.events import BATH, EVENT_COLUMNS, IMAGE, TRIALS, VELOCITY, Column, Kind
 from idealgas.log.components import components
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.schema import (
@@ -26,7 +26,6 @@ from idealgas.log.schema import (
     SAMPLE_COLUMNS,
     SUMMARY_COLUMNS,
     Wall,
-    kinds,
 )
 from idealgas.sides import SIDES, side_ends
 
@@ -55,14 +54,12 @@ Range = tuple[float, float]
 class Rules:
     """The rules for one log."""
 
-    def __init__(
-        self, box: tuple[float, float], discs: int, species: int, walls: int, complete: bool, kicks: bool = False
-    ) -> None:
+    def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int, kicks: bool = False) -> None:
         """box: width and height, length. discs, species, walls: how many there are.
 
-        complete: whether the run ended. kicks: whether a heat bath kicks discs.
+        kicks: whether a heat bath kicks discs.
         """
-        self._complete, self._kicks = complete, kicks
+        self._kicks = kicks
         self.in_steps: Callable[[], bool] = lambda: False
         """Whether discs move in steps of time; asked only where one is beyond the box."""
         self._box = box
@@ -71,7 +68,7 @@ class Rules:
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
-            "kind": (0, max(kinds(kicks))),
+            "kind": (0, max(kind for kind in Kind if kicks or kind != Kind.KICK)),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
@@ -196,12 +193,7 @@ class Rules:
             _check_range(data, -MOST, MOST, start)
 
     def _check_order(self, path: str, data: np.ndarray, start: int, in_order: bool) -> None:
-        """Rows of a chunk, unless they are known to be in order, and against the chunks that were read before.
-
-        Runs that were interrupted once took their last sample with the time of the last event, after a later one.
-        """
-        if path.startswith("observables/") and not self._complete and not len(data := data[:-1]):
-            return
+        """Rows of a chunk, unless they are known to be in order, and against the chunks that were read before."""
         if not in_order and (falls := data[1:] < data[:-1]).any():
             raise ValueError(f"decreases in row {start + 1 + int(falls.argmax())}")
         starts, edges = self._edges.setdefault(path, ([], []))

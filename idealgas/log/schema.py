@@ -24,8 +24,8 @@ from idealgas.sides import SIDES, side_ends
 from idealgas.state import Gas
 
 FORMAT = "idealgas log"
-BEFORE_KICKS, VERSION = 1, 2
-"""Versions of the format: that of a log in which no disc is kicked, which programs of before read, and the last one."""
+VERSION = 1
+"""Version of the format, to be raised when a reader of the previous one would misread a log."""
 H5MD_VERSION = (1, 1)
 FILE_OPTIONS: dict = {"libver": ("v110", "v110")}
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
@@ -48,6 +48,8 @@ SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
 """Shared by all observables, whose step is the number of epochs, and by all that snapshots have of a disc."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
 """Texts of each run that wrote into the log."""
+KICKS = "kicks"
+"""Column of checkpoints, a number of events, that a log has if a heat bath kicks its discs."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """One row for each thing that a run tells of itself at its end; the values are JSON."""
 DISC_COLUMNS = (
@@ -82,11 +84,6 @@ COMMAND_SIZE = 1024
 """Bytes by which the text of a scene may grow as its run gets a new end, and of a command."""
 
 
-def kinds(kicks: bool) -> tuple[Kind, ...]:
-    """Kinds of events that a log may have. kicks: whether a heat bath kicks discs."""
-    return tuple(kind for kind in Kind if kicks or kind != Kind.KICK)
-
-
 def box_walls(box: tuple[float, float]) -> list[Wall]:
     """The four sides of the box."""
     return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
@@ -97,7 +94,7 @@ class LogLayout:
     """What a log has room for, and what a disc flies in, as both are known before the run.
 
     walls: wall k of the events. boundary: of each axis, "none" or "periodic". gravity: acceleration between events,
-    length/time². kicks: whether a heat bath kicks discs. disc_columns: (N,) further constants and start values.
+    length/time². disc_columns: (N,) further constants and start values.
     event_columns: of an event's row; without any no events are kept. checkpoint_arrays, checkpoint_values: what a
     checkpoint has of each disc, and of the whole. observables: of a sample. snapshot_arrays: what a snapshot has of
     each disc; without any there are none. most_rows: how many event rows the run may have, if that is less than a full
@@ -107,7 +104,6 @@ class LogLayout:
     walls: Sequence[Wall]
     boundary: tuple[str, str] = ("none", "none")
     gravity: tuple[float, float] = (0.0, 0.0)
-    kicks: bool = False
     disc_columns: Mapping[Column, np.ndarray] = field(default_factory=dict)
     event_columns: Sequence[Column] = PLAIN_COLUMNS
     checkpoint_arrays: Sequence[Column] = CHECKPOINT_ARRAYS
@@ -124,7 +120,7 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
     set_attributes(
         file.id,
         format=np.bytes_(FORMAT),
-        format_version=VERSION if layout.kicks else BEFORE_KICKS,
+        format_version=VERSION,
         seed=np.bytes_(str(seed)),  # a seed may have more than 64 bits
         created=np.bytes_(datetime.now(UTC).isoformat(timespec="seconds")),
     )
@@ -157,7 +153,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
     def add(path: str, column: Column, rows: int) -> None:
         dtype: Any = column.dtype
         if path == "events/kind":
-            dtype = h5py.enum_dtype({kind.name: kind.value for kind in kinds(layout.kicks)}, basetype="u1")
+            dtype = h5py.enum_dtype({kind.name: kind.value for kind in Kind}, basetype="u1")
         elif path.startswith("runs/"):
             dtype = h5py.string_dtype("utf-8", text_sizes[column.name])
         objects.column(path, dtype, (rows, *column.shape), column.unit)

@@ -131,11 +131,11 @@ class Source:
         return self._read(lambda: gate.attribute(open_object(self._file, name), attribute), f"{name}: ")
 
     def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int]:
-        """Those of some attributes of a group that it has; each is a text or a whole number."""
+        """Attributes of a group; each is a text or a whole number."""
 
         def read() -> dict[str, str | int]:
             group = open_object(self._file, name)
-            return {key: gate.value(group, key) for key in wanted if h5py.h5a.exists(group, key.encode())}
+            return {key: gate.value(group, key) for key in wanted}
 
         return self._read(read, f"{name}: ")
 
@@ -154,11 +154,8 @@ class Source:
         if not h5py.h5a.exists(root, b"format") or gate.value(root, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")
         version = gate.value(root, "format_version")
-        if not isinstance(version, int) or version < 1:
-            raise LogError(f"{self.path}: of format {version} (allowed 1 to {schema.VERSION})")
-        if version > schema.VERSION:
-            raise LogError(f"{self.path}: of format {version}; this version of idealgas reads up to {schema.VERSION}")
-        self.kicks = version > schema.BEFORE_KICKS
+        if version != schema.VERSION:
+            raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
         size = self.path.stat().st_size
         if marked and size < self.commit.file_size:
@@ -167,6 +164,7 @@ class Source:
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
+        self.kicks = schema.KICKS in self.names("checkpoints")
         self.rules = self._rules(size)
 
     def _rules(self, size: int) -> Rules:
@@ -176,7 +174,7 @@ class Source:
         check_sizes(*counts, size)
         box = self._column_at("box")
         size_of_box = box_of(box.whole(0) if box.chunk == (2,) else np.empty(0))
-        rules = Rules(size_of_box, *counts, self.commit.complete, self.kicks)
+        rules = Rules(size_of_box, *counts, self.kicks)
         for table, names in self._names.items():
             columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
             rules.check_table(columns, self.rows(table), size)

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Self
 
 
@@ -18,7 +18,7 @@ class Summary:
 
     energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston, with
     what collisions lost and less what walls and a heat bath gave, relative to the largest of these: rounding errors
-    only. None where collisions lose energy in a log of before, which has no account of that.
+    only.
     deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
     in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
     the overlap is that of all collisions, each of which has one.
@@ -34,26 +34,25 @@ class Summary:
     events: int
     disc_collisions: int
     wall_hits: int
+    kicks: int
     trials: int
     rows: int
     epochs: int
     energy_change: float
-    energy_drift: float | None
+    energy_drift: float
     deepest_overlap: float
     farthest_outside: float
     seconds: float
     compile_seconds: float
-    threads: int = 1
-    threads_because: str = ""
-    shared_slices: int = 0
-    given_up_slices: int = 0
-    kicks: int = 0
+    threads: int
+    threads_because: str
+    shared_slices: int
+    given_up_slices: int
 
     @classmethod
     def of(cls, found: Mapping[str, Any]) -> Self:
-        """From the fields that a log has; `found` raises its own error for one that has to be there."""
-        wanted = (field for field in fields(cls) if field.name in found or field.default is MISSING)
-        return cls(**{field.name: found[field.name] for field in wanted})
+        """Make a summary from the fields that a log has; `found` raises its own error for a missing one."""
+        return cls(**{field.name: found[field.name] for field in fields(cls)})
 
     def as_dict(self) -> dict[str, Any]:
         """The fields by name, ready for JSON."""

@@ -5,7 +5,7 @@ and any number of runs in which they are added give the same bits.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -139,28 +139,12 @@ def stored(sums: np.ndarray) -> np.ndarray:
 
 
 def restore(sums: np.ndarray, entry: np.ndarray) -> None:
-    """Set sums to what `stored` gave, units included; or to floats (n,), rounded to their own units.
-
-    Raises SumRangeError where that is more than a sum may be.
-    """
-    if entry.dtype.kind == "f":
-        exponents = [k for _, k in _numbers(sums)]
-        numbers: Iterable[int] = [_units(value, k) for value, k in zip(entry.tolist(), exponents, strict=True)]
-    else:
-        high, low, exponents = entry.T.tolist()
-        numbers = [(upper << WORD) + lower for upper, lower in zip(high, low, strict=True)]
-    for one, number, k in zip(sums, numbers, exponents, strict=True):
+    """Set sums to what `stored` gave, units included. Raises SumRangeError where that is more than a sum may be."""
+    for one, (high, low, k) in zip(sums, entry.tolist(), strict=True):
+        number = (high << WORD) + low
         if abs(number >> 64) > 2 * FULL or abs(k) > FARTHEST:
             raise SumRangeError("a sum is too large, or its unit")
         one["high"], one["low"], one["per_unit"] = number >> 64, number & (1 << 64) - 1, math.ldexp(1.0, -k)
-
-
-def _units(value: float, k: int) -> int:
-    """A value in units 2^k, rounded to a whole number."""
-    number, exponent = math.frexp(value)
-    if exponent - k > 128:
-        raise SumRangeError("a sum is too large, or its unit")
-    return round(math.ldexp(number, exponent - k))
 
 
 def _numbers(sums: np.ndarray) -> list[tuple[int, int]]:

@@ -53,8 +53,3 @@ def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
             given -= float(by_wall[wall : wall + 1].sum())
             lost += float(losses[1 + wall : 2 + wall].sum())
     return Energy(gas.kinetic_energy, **parts, given=given, lost=lost)
-
-
-def is_conserved(effects: Effects) -> bool:
-    """Whether the balance is conserved: nothing is lost in collisions, or all of it is recorded."""
-    return effects.dissipated is not None or not any(effect.loses_energy(state) for effect, state in present(effects))

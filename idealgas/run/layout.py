@@ -37,7 +37,6 @@ def layout_of(
         walls=[Wall(wall.name, wall.start, wall.end) for wall in number_walls(scene)],
         boundary=(x, y),
         gravity=scene.properties.acceleration,
-        kicks=scene.properties.bath is not None,
         disc_columns=bundle.disc_constants(effects),
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
@@ -77,13 +76,13 @@ def whole_state(effects: Effects) -> Values:
     return bundle.whole_state(effects) | kept_sums(effects)
 
 
-def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> tuple[Gas, Effects]:
-    """The gas and the effects at a checkpoint, of which the state is written into these. gas: any of the same discs."""
+def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
+    """The gas at a checkpoint; the effects get the state that they had. gas: any of the same discs."""
     bundle.restore_effects(effects, checkpoint.arrays, checkpoint.values)
-    effects = restore_sums(effects, checkpoint.arrays)
     arrays = checkpoint.arrays
+    restore_sums(effects, arrays)
     gas = replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
-    return gas, effects
+    return gas
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 from idealgas.effects.bundle import Effects
 from idealgas.engine.monte_carlo import V_REF
-from idealgas.engine.simulation import GOES_ON, TRAJECTORY, Simulation, Stop, Totals
+from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
 from idealgas.events import empty_batch
 from idealgas.jit import compile_seconds
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
@@ -70,7 +70,7 @@ def resume(
 
 
 def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
-    if (made_with := log.attributes.get("trajectory")) not in GOES_ON:
+    if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     before = log.scene
@@ -109,17 +109,17 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     start = log.discs
     effects = make_effects(scene, start)
     v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
-    method = method_of(scene, start, v_ref, rises=V_REF.name in log.observables)
+    method = method_of(scene, start, v_ref)
     _check_columns(log, layout_of(scene, start, effects, method.without_positions, method.extra_state))
     if checkpoint is None:
         return Simulation(start, method, effects)
-    gas, effects = _restored(log, effects, checkpoint)
+    gas = _restored(log, effects, checkpoint)
     done = Totals(**{column.name: int(checkpoint.values[column.name]) for column in totals(effects)})
     return Simulation(gas, method, effects, checkpoint.time, checkpoint.epoch, done)
 
 
-def _restored(log: Log, effects: Effects, checkpoint: Checkpoint) -> tuple[Gas, Effects]:
-    """The gas and the effects at a checkpoint, of which the state is written into these."""
+def _restored(log: Log, effects: Effects, checkpoint: Checkpoint) -> Gas:
+    """The gas at a checkpoint; the effects get the state that they had."""
     try:
         return restore(log.discs, effects, checkpoint)
     except SumRangeError as error:
@@ -130,9 +130,8 @@ def _check_columns(log: Log, layout: LogLayout) -> None:
     """DamageError where the log keeps something that a run of its scene does not keep, or not like this."""
     discs = len(log.discs)
     arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.checkpoint_arrays]
-    observables = list(layout.observables)
-    kept = [*observables, *CHECKPOINT_COLUMNS, *arrays, *layout.checkpoint_values]  # before, sums as samples have them
-    for table, columns in {"checkpoints": kept, "observables": observables}.items():
+    kept = [*CHECKPOINT_COLUMNS, *arrays, *layout.checkpoint_values]
+    for table, columns in {"checkpoints": kept, "observables": layout.observables}.items():
         known = {column.name: (column.dtype, column.shape) for column in columns}
         for column in log.stored(table):
             if known.get(column.name) != (column.dtype, column.shape):
@@ -158,11 +157,12 @@ def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> No
 
 
 def _history_of(log: Log, last: Checkpoint | None, scene: Scene) -> RunHistory:
+    effects = make_effects(scene, log.discs)
     if last is None:
-        return RunHistory(energy_of(log.discs, make_effects(scene, log.discs)))
-    gas, effects = _restored(log, make_effects(scene, log.discs), log.checkpoints[0])
+        return RunHistory(energy_of(log.discs, effects))
+    gas = _restored(log, effects, log.checkpoints[0])
     deepest = {}
-    for name in {"overlap", "outside"} & log.observables.keys():
+    for name in ("overlap", "outside"):
         times, values = log.observables[name]
         if not (so_far := values[times <= last.time]).size:
             raise DamageError(log.path, f"observables/{name}: no sample up to the last checkpoint")

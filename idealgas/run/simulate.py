@@ -21,10 +21,9 @@ from idealgas.jit import compile_seconds
 from idealgas.log import LogWriter
 from idealgas.log.summary import Summary
 from idealgas.run.effects import make_effects
-from idealgas.run.energy import Energy, energy_of, is_conserved
+from idealgas.run.energy import Energy, energy_of
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
 from idealgas.run.stall import StallDetector
-from idealgas.run.sums import kept_before
 from idealgas.scene import Run, Scene
 from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
@@ -61,10 +60,10 @@ def stop_of(scene: Scene, n: int) -> Stop:
     return stop
 
 
-def method_of(scene: Scene, start: Gas, v_ref: float | None = None, rises: bool = True) -> Method:
+def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
     """The method a scene calls for; start: its discs at time 0.
 
-    v_ref: what that of the scene has been raised to, length/time. rises: whether a default v_ref may be raised.
+    v_ref: what that of the scene has been raised to, length/time.
     """
     run = scene.run
     return make_method(
@@ -74,7 +73,7 @@ def method_of(scene: Scene, start: Gas, v_ref: float | None = None, rises: bool 
         v_ref=v_ref or reference_speed(run, float(np.hypot(*start.velocity.T).max())),
         seed=scene.scene.seed,
         one_sided=run.impact == "one_sided",
-        rises=rises and run.v_ref is None,
+        rises=run.v_ref is None,
         threads=_threads(run),
     )
 
@@ -243,9 +242,8 @@ class LoggedRun:
     def _checkpoint(self) -> None:
         """Store the state at the start of an epoch."""
         simulation = self._simulation
-        effects = simulation.effects
-        state = by_name(disc_state(simulation.gas, effects, simulation.method.without_positions))
-        whole = kept_before(effects) | by_name(whole_state(effects)) | by_name(simulation.method.extra_state)
+        state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.without_positions))
+        whole = by_name(whole_state(simulation.effects)) | by_name(simulation.method.extra_state)
         self._log.checkpoint(simulation.time, simulation.epoch, state, simulation.totals._asdict() | whole)
 
     def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:
@@ -272,7 +270,7 @@ class LoggedRun:
             rows=totals.events + totals.disc_collisions,
             epochs=simulation.epoch + 1,
             energy_change=end.gas - start.gas,
-            energy_drift=drift if is_conserved(simulation.effects) else None,
+            energy_drift=drift,
             deepest_overlap=self._overlap,
             farthest_outside=self._outside,
             seconds=seconds,

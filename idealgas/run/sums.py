@@ -117,11 +117,6 @@ def kept_sums(effects: Effects) -> Values:
     return exact | {column: counts.copy() for column, counts in _counts(effects)}
 
 
-def kept_before(effects: Effects) -> dict[str, np.ndarray]:
-    """What a checkpoint in a log of before keeps of the sums: what walls gave, rounded to floats."""
-    return {} if effects.wall_energy is None else {"wall_energy": values(effects.wall_energy)}
-
-
 def observed_sums(effects: Effects) -> Values:
     """What a sample tells: the sums rounded to floats."""
     rounded = {column: _shaped(values(sums), column) for column, sums in _sums(effects)}
@@ -135,17 +130,9 @@ def _shaped(found: np.ndarray, column: Column) -> np.ndarray:
     return found.reshape(column.shape)
 
 
-def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> Effects:
-    """Give the sums what a checkpoint kept of them; the effects without those of which it kept nothing.
-
-    entries: by name. A log of before has what walls gave as floats, which go on rounded to the sum's units, and nothing
-    of what collisions lose.
-    """
+def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> None:
+    """Give the sums the values of a checkpoint, by name."""
     for column, sums in _sums(effects):
-        if (entry := entries.get(_kept(column, sums).name, entries.get(column.name))) is not None:
-            restore(sums, entry)
-        else:
-            effects = effects._replace(dissipated=None)
+        restore(sums, entries[_kept(column, sums).name])
     for column, counts in _counts(effects):
         counts[:] = entries[column.name]
-    return effects

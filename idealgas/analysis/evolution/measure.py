@@ -33,8 +33,8 @@ class Evolution(Result):
     samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall, and
     a heat bath, gave since the start, (P,), by name. piston: (P,), its coordinate, length; None without one.
     balance: (P,), change since the start of the energy of discs and piston minus the energy from outside, relative to
-    the largest part of the energy. Only inelastic collisions change the balance, in logs of before, which have no
-    account of them. dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
+    the largest part of the energy: rounding only. dissipated: energy lost since the start, (P,), in collisions of two
+    discs and at walls, by name.
     pressure: mechanical pressure on walls in bins of time; None without events or hits of walls. rest: mean place of a
     piston with a mass once it is steady, length; None without one, or if it is not steady by the end.
     """

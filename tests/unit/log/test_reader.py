@@ -214,7 +214,7 @@ def test_a_newer_format(tmp_path):
     path = write_log(tmp_path / "run.h5", 10)
     with h5py.File(path, "r+", libver=("v110", "v110")) as file:
         file.attrs["format_version"] = 9
-    with pytest.raises(LogError, match="of format 9; this version of idealgas reads up to 2"):
+    with pytest.raises(LogError, match="has format 9; this version of idealgas reads format 1"):
         open_log(path)
 
 

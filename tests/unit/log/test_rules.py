@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from crafted import craft, put, read_path, refused, swap
 from log_compare import scene_of
-from log_samples import write_log
+from log_samples import BATH_VALUES, write_log
 
 from idealgas.events import BATH, Kind
 from idealgas.log import LogError, open_log
@@ -206,20 +206,13 @@ NOT_OF_PARTNER = "events/kind: not that of its partner in row 17"
 )
 def test_kicks(tmp_path, partner, kind, expected):
     """A kick has the heat bath as its partner; what a log without kicks may say of it is in VALUES."""
-    path = craft(write_log(tmp_path / "run.h5", STOP, kicks=True), kicked(partner, kind))
+    path = craft(write_log(tmp_path / "run.h5", STOP, checkpoint_values=BATH_VALUES), kicked(partner, kind))
     if expected:
         assert re.search(expected, refused(path))
     else:
         with open_log(path) as log:
             (rows,) = log.chunks()
-            assert log.attributes["format_version"] == 2
         assert (rows.partner[17], rows.kind[17]) == (BATH, Kind.KICK)
-
-
-def test_a_log_without_kicks_is_read_by_programs_of_before(sound):
-    with h5py.File(sound) as file:
-        assert file.attrs["format_version"] == 1
-        assert sorted(h5py.check_enum_dtype(file["events/kind"].dtype)) == ["DISC", "PISTON", "WALL", "WALL_END"]
 
 
 @pytest.mark.parametrize(
@@ -271,10 +264,6 @@ SCENES = {
         scene_text(b"[run]", b"[thermostat]\ntemperature = 1\nrate = 1\n[run]"),
         "a heat bath .got kinds of events without kicks",
     ),
-    "no heat bath": (
-        lambda file: file.attrs.create("format_version", 2),
-        "no heat bath .got kinds of events with kicks",
-    ),
     "species": (texts("discs/species_name", 0, b"x"), "species"),
 }  # fmt: skip
 
@@ -289,6 +278,15 @@ def test_scenes(run, tmp_path, case):
     assert message.startswith(f"{path}: damaged: runs/scene: ")
     assert "\n" not in message
     assert re.search(expected, message), message
+
+
+def test_a_scene_without_its_heat_bath(tmp_path):
+    path = tmp_path / "run.h5"
+    simulate(scene_of("thermostat", "run.events=100"), path)
+    craft(path, scene_text(b"[thermostat]\ntemperature = 1.0\nrate = 0.2\n", b""))
+    with open_log(path) as log, pytest.raises(LogError) as caught:
+        _ = log.scene
+    assert "no heat bath (got kinds of events with kicks)" in str(caught.value)
 
 
 def test_pairs(run, tmp_path):

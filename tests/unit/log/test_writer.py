@@ -26,11 +26,11 @@ from idealgas.events import (
     SPINS,
     VELOCITY,
     EventBatch,
+    Kind,
     event_columns,
 )
 from idealgas.log import LogLayout, LogWriter, box_walls, open_log
 from idealgas.log.hdf5.table import Table
-from idealgas.log.schema import kinds
 
 
 @pytest.mark.parametrize("compression", ["gzip", "none"])
@@ -106,7 +106,7 @@ def test_plain_h5py_reads_it(tmp_path):
     with h5py.File(path) as file:
         for name in EventBatch._fields[:6]:
             assert np.array_equal(file["events"][name][:], getattr(expected, name))
-        assert h5py.check_enum_dtype(file["events/kind"].dtype) == {kind.name: kind.value for kind in kinds(False)}
+        assert h5py.check_enum_dtype(file["events/kind"].dtype) == {kind.name: kind.value for kind in Kind}
         assert file["events/velocity"].attrs["unit"] == b"length/time"
         assert file["runs/scene"].asstr()[0].startswith("[scene]")
         assert list(file["walls/name"]) == [b"left", b"right", b"bottom", b"top"]

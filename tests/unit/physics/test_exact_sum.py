@@ -142,16 +142,7 @@ def test_a_sum_never_wraps():
             add_each(sums[0], np.array([sign * 2.0**99]))
 
 
-def test_a_sum_of_floats_goes_on():
-    """As checkpoints of before have it: rounded to the unit, which later terms have too."""
-    sums = make_sums([1.0, 1.0])
-    restore(sums, np.array([0.1, -3e20]))
-    assert whole(sums) == [round(Fraction(0.1) * 2**52), -3 * 10**20 * 2**52]
-    add_each(sums[0], np.array([0.2]))
-    assert values(sums)[0] == pytest.approx(0.3, rel=1e-15)
-
-
-@pytest.mark.parametrize("entry", [[1e300], [-1e50], [[1, 2, 1001]], [[1, 2, -(2**62)]]])
+@pytest.mark.parametrize("entry", [[[1, 2, 1001]], [[1, 2, -(2**62)]]])
 def test_what_is_beyond_all_sums_is_not_restored(entry):
     with pytest.raises(SumRangeError, match="too large"):
         restore(make_sums([1.0]), np.array(entry))

@@ -9,10 +9,8 @@ from log_compare import differences
 from support import ROOT
 
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
-from idealgas.initial.build import make_gas
 from idealgas.log import LogWriter, open_log
-from idealgas.run.effects import make_effects
-from idealgas.run.energy import Energy, is_conserved
+from idealgas.run.energy import Energy
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
 
@@ -146,28 +144,6 @@ def test_what_is_lost_at_walls_is_accounted_for(override, tmp_path):
         assert log.observables["wall_energy"][1][-1].sum() == pytest.approx(summary.energy_change, rel=1e-12)
     assert summary.energy_change < -0.1
     assert abs(summary.energy_drift) < 1e-12
-
-
-@pytest.mark.parametrize(
-    ("overrides", "conserved"),
-    [
-        ((), True),
-        (("rotation.roughness=1",), True),
-        (("rotation.roughness=0",), False),
-        (("rotation.wall_roughness=0",), False),
-        (("restitution.normal=0.8",), False),
-        (("restitution.wall=0.8",), False),
-        (("restitution.wall=0.8", "piston={ position = 8, velocity = 0.1 }"), False),
-        (("restitution.wall=0.8", "piston={ position = 8, mass = 3, pressure = 5 }"), False),
-        (("piston={ position = 8, mass = 3, pressure = 5 }",), True),
-    ],
-)
-def test_energy_is_called_conserved_where_all_of_it_is_accounted_for(overrides, conserved):
-    """It always is, unless losses are not recorded."""
-    scene = parse_scene(GAS, overrides=[*overrides, "run.until=5"])
-    effects = make_effects(scene, make_gas(scene))
-    assert is_conserved(effects)
-    assert is_conserved(effects._replace(dissipated=None)) == conserved
 
 
 def test_the_balance_of_energy():
