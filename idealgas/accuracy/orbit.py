@@ -29,7 +29,7 @@ MOST_PERIODS = 200  # length of a run; an orbit that is not broken by then never
 AGREEMENT = 1e-9  # largest deviation of the start of a scene from the orbit, relative to the box
 
 LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4
-DANCE = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
+PARTNERS = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
 """Partners (discs or sides) that each disc meets in one period, in order."""
 
 
@@ -159,14 +159,14 @@ def survival(box: tuple[float, float], radius: float, precision: str) -> float:
     orbit = three_disc_orbit(box, radius)
     gas = orbit_gas(orbit, box, radius)
     simulation = Simulation(gas, PreciseBruteForce(precision, columns_at(orbit, gas, precision)))
-    most = MOST_PERIODS * sum(map(len, DANCE))
+    most = MOST_PERIODS * sum(map(len, PARTNERS))
     batch = empty_batch(most + 2)
     rows = batch.rows(0, simulation.advance(Stop(time=MOST_PERIODS * float(orbit.period)), batch))
     first = math.inf
-    for disc, dance in enumerate(DANCE):
+    for disc, partners in enumerate(PARTNERS):
         own = rows.disc == disc
         partner = rows.partner[own]
-        strange = np.flatnonzero(partner != np.resize(dance, len(partner)))
+        strange = np.flatnonzero(partner != np.resize(partners, len(partner)))
         if len(strange):
             first = min(first, float(rows.time[own][strange[0]]))
     return first

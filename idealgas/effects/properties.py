@@ -36,8 +36,8 @@ class Properties:
 
     True unless an effect changes it, and true of a scene if it is true with every effect in it:
 
-    uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: between two events a disc flies
-    along a straight line. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
+    uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: discs fly along straight
+    lines between events. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
     fixed_walls: all walls stay where they are. allows_monte_carlo: it has a meaning for discs without positions.
     allows_time_steps: the time-driven method can simulate it. is_scalable: the box may grow or shrink around the gas,
     as nothing in it has a fixed position. local: what happens to a disc depends only on what is near it, so that each

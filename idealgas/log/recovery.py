@@ -1,4 +1,4 @@
-"""Opening a log for writing again: after its writer died, or to continue it from a checkpoint."""
+"""Opening a log for writing again: after a crash, or to continue it from a checkpoint."""
 
 import os
 import shutil
@@ -17,7 +17,7 @@ from idealgas.log.schema import FILE_OPTIONS
 
 
 def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None, force: bool = False) -> int:
-    """Make a log whose writer died open normally, in place or as a copy `output`; returns the event rows kept.
+    """Close a log that was not closed, in place or as a copy `output`; returns the event rows kept.
 
     A log that was closed stays as it is. Another log under the name of the copy is replaced only with `force`. Raises
     LogError if the file is damaged, OutputError if its writer lives or the copy cannot be written.

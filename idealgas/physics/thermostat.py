@@ -1,4 +1,4 @@
-"""Andersen's thermostat: at random times a heat bath kicks a disc, which gets a velocity of a gas at its temperature.
+"""Andersen's thermostat: at random times a disc gets a velocity of a gas at the temperature of a heat bath.
 
 The kicks of a disc are a Poisson process that depends on nothing else, so that the gas becomes canonical at any rate:
 Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed, the disc's id and the
