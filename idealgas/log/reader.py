@@ -89,7 +89,7 @@ def _rows(columns: tuple[str, ...]) -> Any:
 class Log(LogHeader):
     """The log of a run, open for reading; a context manager that closes the file. `open_log` makes it.
 
-    path: the file. complete: whether the run came to its end. unclosed: whether it was not closed, after a crash or by a writer still at work
+    path: the file. complete: whether the run came to its end. unclosed: whether it was not closed, or is still written
     (`live` tells which). has_events: whether the run kept its events. box: (Lx, Ly), length; the origin is its lower
     left corner. periodic: whether the box is periodic along x and along y. gravity: (gx, gy), length/time².
     start_time: 0. len(log): number of event rows, two for a collision of two discs and one for any other event.

@@ -176,8 +176,8 @@ def mean_of_flux(
 
     What flows through the boundary of a gas has come through its bulk, or its store has changed: the two series differ
     by the rate at which a bounded quantity of the gas changes, such as its momentum. This rate fluctuates much, back
-    and forth with the sound in the box for as long as that lasts, and nearly cancels in the mean. So the error is that of the
-    bulk and that of the change of the store between two instants.
+    and forth with the sound in the box for as long as that lasts, and nearly cancels in the mean. So the error is that
+    of the bulk and that of the change of the store between two instants.
 
     flux, bulk: (n,), both series. stored: variance of the store, in units of (flux x samples)², if a law gives it.
     """
