@@ -44,15 +44,16 @@ _KEPT = 5  # cache folders that are kept however old they are
 _LIFETIME = 24 * 3600  # seconds since its last use after which another one is removed
 
 
-def sources() -> list[Path]:
+def sources() -> dict[Path, bytes]:
     """Source files that determine the machine code: laws, effects, engine, and others that import this module."""
-    return [
-        path
-        for path in sorted(_PACKAGE.rglob("*.py"))
+    files = {path: path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))}
+    return {
+        path: source
+        for path, source in files.items()
         if path.parent == _PACKAGE
         or path.relative_to(_PACKAGE).parts[0] in ("physics", "effects", "engine")
-        or b"idealgas.jit" in path.read_bytes()
-    ]
+        or b"idealgas.jit" in source
+    }
 
 
 @cache
@@ -62,8 +63,8 @@ def cache_folder() -> Path:
     It is in NUMBA_CACHE_DIR if that is set, else in `idealgas` in the user's cache folder.
     """
     digest = hashlib.sha256(f"{sys.version} {numba.__version__} {llvmlite.__version__} {np.__version__}".encode())
-    for path in sources():
-        digest.update(f"{path.relative_to(_PACKAGE)} {path.stat().st_size} ".encode() + path.read_bytes())
+    for path, source in sources().items():
+        digest.update(f"{path.relative_to(_PACKAGE)} {len(source)} ".encode() + source)
     users = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     base = Path(numba.config.CACHE_DIR or os.path.join(users, "idealgas"))
     folder = base / f"idealgas-{digest.hexdigest()[:16]}"
