@@ -90,13 +90,13 @@ class Commands(click.Group):
             return super().make_context(*args, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; print a UserError as one line and exit with its code."""
+        """Run a command; print a UserError as one line, with options instead of arguments, and exit with its code."""
         try:
             _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
             with readers_may_go():
                 return super().invoke(ctx)
         except UserError as error:
-            echo(str(error), err=True)
+            echo(str(error).replace("force=True", "--force"), err=True)
             ctx.exit(error.exit_code)
         except KeyboardInterrupt:
             echo("interrupted", err=True)

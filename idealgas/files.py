@@ -75,14 +75,14 @@ def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool
     if stat.S_ISDIR(found.st_mode):
         raise OutputError(f"{path}: is a folder")
     if not stat.S_ISREG(found.st_mode):
-        raise OutputError(f"{path}: is no regular file")
+        raise OutputError(f"{path}: is not a regular file")
     if any(os.path.samestat(found, there) for there in map(_stat, inputs) if there):
-        raise OutputError(f"{path}: is an input too: another name is needed for the output")
+        raise OutputError(f"{path}: output would overwrite the input")
     if not force:
-        raise OutputError(f"{path}: already exists (use --force to overwrite)")
+        raise OutputError(f"{path}: already exists (use force=True to overwrite)")
     if found.st_size and not is_of_kind(path, kind):
         what = "log" if kind == LOG else f"{kind} file"
-        raise OutputError(f"{path}: is no {what} of idealgas: --force replaces no other files")
+        raise OutputError(f"{path}: is not a {what} of idealgas, so force=True does not overwrite it")
 
 
 def is_of_kind(path: Path, kind: str) -> bool:
@@ -91,8 +91,8 @@ def is_of_kind(path: Path, kind: str) -> bool:
         return bool(re.match(_BEGINNINGS[kind], file.read(HEAD), re.DOTALL))
 
 
-def told_kind(head: bytes) -> str:
-    """What a file is, in words, by its first bytes, and which command reads such files."""
+def describe_file_type(head: bytes) -> str:
+    """Type of a file by its first bytes, and the command that reads such files."""
     if re.match(_HDF5, head):
         return "an HDF5 file (`idealgas info` reads logs)"
     if b"\0" in head:
@@ -185,7 +185,7 @@ def storage_error(path: Path, error: Exception) -> OutputError:
     if number is None and (found := re.search(r"errno = (\d+)", str(error))):
         number = int(found[1])
     if number == errno.EEXIST:
-        return OutputError(f"{path}: already exists (use --force to overwrite)")
+        return OutputError(f"{path}: already exists (use force=True to overwrite)")
     if number in (errno.EAGAIN, errno.EWOULDBLOCK):
         return OutputError(f"{path}: another process has this file open")
     reason = os.strerror(number) if number else str(error).splitlines()[0]

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 from idealgas.events import Column
-from idealgas.files import HEAD, is_locked, open_regular, told_kind
+from idealgas.files import HEAD, describe_file_type, is_locked, open_regular
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5 import safe_hdf5 as gate
@@ -147,7 +147,7 @@ class Source:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
         if marked is None:
             with open_regular(self.path) as file:
-                raise LogError(f"{self.path}: not a log of idealgas, but {told_kind(file.read(HEAD))}")
+                raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(file.read(HEAD))}")
         self.unclosed = marked
         self._file = h5py.File(Unmarked(self.path) if marked else self.path, "r")
         root = open_object(self._file, "/")

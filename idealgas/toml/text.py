@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from idealgas.files import HEAD, told_kind
+from idealgas.files import HEAD, describe_file_type
 from idealgas.toml.messages import SceneError
 
 
@@ -17,7 +17,7 @@ def read_text(path: str | PathLike[str]) -> str:
         return raw.decode()
     except UnicodeDecodeError as error:
         if b"\0" in raw[:HEAD]:
-            raise SceneError([f"{path}: no TOML text, but {told_kind(raw[:HEAD])}"]) from None
+            raise SceneError([f"{path}: not TOML text, but {describe_file_type(raw[:HEAD])}"]) from None
         line = raw.count(b"\n", 0, error.start) + 1
         raise SceneError([f"{path}:{line}: not UTF-8 text (got byte 0x{raw[error.start]:02x})"]) from None
     except (OSError, ValueError) as error:

@@ -74,7 +74,7 @@ def test_a_file_of_another_kind_is_named(log):
     """The line says what the file is, and which command reads such files."""
     info, check = called("info", "scene.toml", folder=log.parent), called("check", "run.h5", folder=log.parent)
     assert info.stderr == "scene.toml: not a log of idealgas, but a text (`idealgas check` reads scenes)\n"
-    assert check.stderr == "run.h5: no TOML text, but an HDF5 file (`idealgas info` reads logs)\n"
+    assert check.stderr == "run.h5: not TOML text, but an HDF5 file (`idealgas info` reads logs)\n"
     assert (info.returncode, check.returncode) == (2, 2)
 
 

@@ -85,7 +85,7 @@ def test_shipped_scenes(shipped_scene, tmp_path):
         assert summary["energy_change"] < 0
 
 
-NO_LOG = "is no log of idealgas: --force replaces no other files"
+NO_LOG = "is not a log of idealgas, so --force does not overwrite it"
 
 
 def test_an_existing_output_is_refused_and_left_alone(tmp_path):
@@ -109,7 +109,7 @@ def test_a_scene_is_not_replaced_by_its_log(tmp_path):
     for name in (scene.name, "link.h5"):
         result = called("run", scene.name, "-o", name, "--force", folder=tmp_path)
         assert (result.returncode, result.stdout) == (2, "")
-        assert result.stderr == f"{name}: is an input too: another name is needed for the output\n"
+        assert result.stderr == f"{name}: output would overwrite the input\n"
     assert scene.read_bytes() == Path(CORNER).read_bytes()
 
 

@@ -54,14 +54,24 @@ run.collisions_per_disc = 40
 """
 
 
+GATE = """
+box.size = [12, 8]
+species = [{ name = "gas", count = 40, radius = 0.05, temperature = 1, region = [0, 0, 4, 8] }]
+wall = [{ from = [4, 0], to = [4, 3] }, { from = [4, 3], to = [4, 5], opens_at = 1.0 }, { from = [4, 5], to = [4, 8] }]
+run.until = 20
+"""
+
+
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of logs of many kinds of gas, by name: old ones, one of waves, and one that cools."""
+    """Paths of logs by name: one of each kind, one of sound waves, one that cools, and one with a gate."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
-        (folder / packed.name.removesuffix(".xz")).write_bytes(lzma.decompress(packed.read_bytes()))
+        name = packed.name.removesuffix(".xz").partition("-")[2]  # without the version of the format
+        (folder / name).write_bytes(lzma.decompress(packed.read_bytes()))
     idealgas.simulate(idealgas.parse_scene(WAVES), folder / "waves.h5")
     idealgas.simulate(idealgas.parse_scene(GRAINS), folder / "grains.h5")
+    idealgas.simulate(idealgas.parse_scene(GATE), folder / "gate.h5")
     return {path.stem: path for path in sorted(folder.glob("*.h5"))}
 
 

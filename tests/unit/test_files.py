@@ -35,9 +35,9 @@ def test_only_files_of_the_same_kind_are_replaced(tmp_path):
     scene.write_text("[box]")
     page.write_text("<!doctype html><title>mine</title>")
     empty.touch()
-    assert refused(scene) == "already exists (use --force to overwrite)"
-    assert refused(scene, force=True) == "is no log of idealgas: --force replaces no other files"
-    assert refused(page, ".html", force=True) == "is no .html file of idealgas: --force replaces no other files"
+    assert refused(scene) == "already exists (use force=True to overwrite)"
+    assert refused(scene, force=True) == "is not a log of idealgas, so force=True does not overwrite it"
+    assert refused(page, ".html", force=True) == "is not a .html file of idealgas, so force=True does not overwrite it"
     check_output(empty, LOG, force=True)
     assert (scene.read_text(), page.read_text()) == ("[box]", "<!doctype html><title>mine</title>")
 
@@ -48,8 +48,8 @@ def test_what_is_no_regular_file_is_left_alone(tmp_path):
     listening.bind(str(tmp_path / "socket"))
     listening.close()
     for name in ("fifo", "socket"):
-        assert refused(tmp_path / name, force=True) == "is no regular file"
-    assert refused("/dev/null", force=True) == "is no regular file"
+        assert refused(tmp_path / name, force=True) == "is not a regular file"
+    assert refused("/dev/null", force=True) == "is not a regular file"
     (tmp_path / "page.html").mkdir()
     assert refused(tmp_path / "page.html", ".html", force=True) == "is a folder"
     assert refused(tmp_path / "none" / "run.h5") == f"no folder {tmp_path}/none"
@@ -61,7 +61,7 @@ def test_an_input_is_no_output(tmp_path, link):
     new_writer(source).close()
     link(source, name)
     output = name if name.exists() else source
-    assert "is an input too" in refused(output, force=True, inputs=[source])
+    assert "output would overwrite the input" in refused(output, force=True, inputs=[source])
     check_output(tmp_path / "third.h5", LOG, inputs=[source, tmp_path / "none.toml"])
 
 

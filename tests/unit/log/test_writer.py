@@ -223,7 +223,7 @@ def test_an_existing_file_stays(tmp_path):
     path = tmp_path / "run.h5"
     write_log(path, 20)
     before = path.read_bytes()
-    with pytest.raises(OutputError, match=r"already exists \(use --force to overwrite\)") as caught:
+    with pytest.raises(OutputError, match=r"already exists \(use force=True to overwrite\)") as caught:
         new_writer(path)
     assert caught.value.exit_code == 2
     assert path.read_bytes() == before

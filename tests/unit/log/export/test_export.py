@@ -195,7 +195,7 @@ def test_an_existing_file_stays(log, tmp_path):
     (tmp_path / "run.csv").write_text("precious")
     with pytest.raises(OutputError, match="already exists"):
         export(log, "csv", tmp_path / "run.csv")
-    with pytest.raises(OutputError, match=r"run\.csv: is no \.csv file of idealgas"):
+    with pytest.raises(OutputError, match=r"run\.csv: is not a \.csv file of idealgas"):
         export(log, "csv", tmp_path / "run.csv", force=True)
     assert (tmp_path / "run.csv").read_text() == "precious"
 
