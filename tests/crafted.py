@@ -1,6 +1,7 @@
-"""Crafted logs: sound ones changed by h5py, with check sums made anew, so that only the gate can refuse them."""
+"""Crafted logs: sound ones changed by h5py, with correct checksums, so that only the values are wrong."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -10,13 +11,35 @@ from isal import isal_zlib
 
 from idealgas.log import Log, LogError, open_log
 from idealgas.log.hdf5.commit import Commit, table_of
+from idealgas.log.hdf5.superblock import clear_consistency_flags, has_consistency_flags, lookup3
+from idealgas.log.schema import FILE_OPTIONS
 
 Edit = Callable[[h5py.File], object]
+
+WRITING_SWMR = 0b101
+"""File consistency flags of a file that a writer has open in SWMR mode."""
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[h5py.File]:
+    """A log, open for changes; one that was not closed is in that state again afterwards."""
+    unclosed = has_consistency_flags(path)
+    if unclosed:
+        clear_consistency_flags(path)
+    with h5py.File(path, "r+", **FILE_OPTIONS) as file:
+        yield file
+    if unclosed:
+        with path.open("r+b") as raw:
+            block = bytearray(raw.read(48))
+            block[11] = WRITING_SWMR
+            block[-4:] = lookup3(bytes(block[:-4])).to_bytes(4, "little")
+            raw.seek(0)
+            raw.write(block)
 
 
 def craft(path: Path, edit: Edit, rows: dict[str, int] | None = None) -> Path:
     """Change a log in place, and make its commit record fit. rows: of tables, if the record is to have others."""
-    with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+    with opened(path) as file:
         record = Commit.read(file)
         edit(file)
         if "commit" in file and isinstance(file.get("commit", getlink=True), h5py.HardLink):
@@ -25,7 +48,7 @@ def craft(path: Path, edit: Edit, rows: dict[str, int] | None = None) -> Path:
 
 
 def seal(file: h5py.File, record: Commit) -> None:
-    """Write the commit record with right check sums, wherever they can be made."""
+    """Write the commit record with correct checksums, wherever they can be computed."""
     tails = {}
     for path in (name.decode() for name in file["commit"].attrs["datasets"].tolist()):
         link = file.get(path, getlink=True)
@@ -35,7 +58,7 @@ def seal(file: h5py.File, record: Commit) -> None:
     for sequence in (1, 2):
         try:
             record._replace(sequence=record.sequence + sequence, tails=tails).write(file["commit"].id)
-        except (ValueError, OSError):  # there is no such record any more
+        except (ValueError, OSError):  # the record has another shape or type
             return
 
 

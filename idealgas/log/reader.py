@@ -54,10 +54,10 @@ from idealgas.log.dataframes import (
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flights import FlightReader, Flights
 from idealgas.log.header import LogHeader
+from idealgas.log.log_file import ATTEMPTS, PAUSE, LogFile, Table
 from idealgas.log.pairs import check_pairs
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.schema import SUMMARY_COLUMNS
-from idealgas.log.source import ATTEMPTS, PAUSE, Entries, Source
 from idealgas.log.summary import parse_summary
 
 if TYPE_CHECKING:
@@ -72,12 +72,12 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
     """
     for _ in range(ATTEMPTS):
         try:
-            return Log(Source(Path(path)))
+            return Log(LogFile(Path(path)))
         except LogError:
             if not os.path.exists(path) or not is_locked(Path(path)):
                 raise
             sleep(PAUSE)  # a run that resumes the log may have truncated the rows that the record named
-    return Log(Source(Path(path)))
+    return Log(LogFile(Path(path)))
 
 
 @cache
@@ -100,12 +100,12 @@ class Log(LogHeader):
 
     start_time = 0.0
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, file: LogFile) -> None:
         try:
-            super().__init__(source)
+            super().__init__(file)
             self._update()
         except LogError:
-            source.close()
+            file.close()
             raise
 
     @property
@@ -115,19 +115,19 @@ class Log(LogHeader):
 
     def refresh(self) -> None:
         """Take in what the run has stored since the log was opened or last refreshed."""
-        self._source.refresh()
+        self._file.refresh()
         self._update()
 
     def _update(self) -> None:
-        self.commit = self._source.commit
+        self.commit = self._file.commit
         self.complete = self.commit.complete
         self.has_events = "events" in self.commit.rows
         self._rows = self.commit.rows.get("events", 0)
-        self._block = self._source.chunk_rows("events/time") if self.has_events else 1
+        self._block = self._file.chunk_rows("events/time") if self.has_events else 1
         if self._rows:
             start = (self._rows - 1) // self._block * self._block
-            last = {name: self._source.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
-            self._source.checked(partial(check_pairs, last, start))
+            last = {name: self._file.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
+            self._file.checked(partial(check_pairs, last, start))
             if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair, whose second did not get here
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
@@ -136,7 +136,7 @@ class Log(LogHeader):
 
     def close(self) -> None:
         """Close the file."""
-        self._source.close()
+        self._file.close()
 
     def __enter__(self) -> Self:
         return self
@@ -150,9 +150,9 @@ class Log(LogHeader):
     @cached_property
     def checkpoints(self) -> Checkpoints:
         """States at the starts of epochs, from which the run can be resumed; read when they are indexed."""
-        found = Checkpoints(self._source, len(self), self._check_checkpoint)
-        if self.complete and len(found) < self._source.rows("checkpoints"):
-            row = self._source.column("checkpoints/row")[-1]
+        found = Checkpoints(self._file, len(self), self._check_checkpoint)
+        if self.complete and len(found) < self._file.rows("checkpoints"):
+            row = self._file.column("checkpoints/row")[-1]
             raise DamageError(self.path, f"checkpoints/row: {row} (allowed up to {len(self)}, all events)")
         return found
 
@@ -174,28 +174,28 @@ class Log(LogHeader):
         collision_flow, wall_virial, face_push, face_drag, face_hits and, in mixtures, pair_collisions; with
         `log.heat_flow` kinetic_heat_flow and collision_heat_flow.
         """
-        names = [name.partition("/")[0] for name in self._source.names("observables") if name.endswith("/value")]
-        times = next((name for name in self._source.names("observables") if name.endswith("/time")), "")
+        names = [name.partition("/")[0] for name in self._file.names("observables") if name.endswith("/value")]
+        times = next((name for name in self._file.names("observables") if name.endswith("/time")), "")
         found = {
-            name: (self._source.column(f"observables/{times}"), self._source.column(f"observables/{name}/value"))
+            name: (self._file.column(f"observables/{times}"), self._file.column(f"observables/{name}/value"))
             for name in names
         }
-        return Entries(self.path, "observables", found)
+        return Table(self.path, "observables", found)
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
         """(S,) times of the snapshots asked for by `log.snapshot_every`; they lie in the file as H5MD."""
-        times = next((name for name in self._source.names("particles") if name.endswith("/time")), None)
-        return self._source.column(f"particles/{times}") if times else np.empty(0)
+        times = next((name for name in self._file.names("particles") if name.endswith("/time")), None)
+        return self._file.column(f"particles/{times}") if times else np.empty(0)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The fields of the run's `Summary` by name; empty if the run did not come to its end."""
-        names, values = (self._source.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
-        found = self._source.checked(lambda: parse_summary(names, values), "summary/value")
+        names, values = (self._file.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
+        found = self._file.checked(lambda: parse_summary(names, values), "summary/value")
         if self.has_events and found.get("rows", len(self)) != len(self):
             raise DamageError(self.path, f"summary/value: {found['rows']} rows (events: {len(self)})")
-        return Entries(self.path, "summary", found)
+        return Table(self.path, "summary", found)
 
     @cached_property
     def end_time(self) -> float:
@@ -213,12 +213,12 @@ class Log(LogHeader):
     @property
     def has_positions(self) -> bool:
         """Whether the discs have positions: not in the Monte Carlo method, whose states have nan for them."""
-        return "position" in self._source.names("checkpoints")
+        return "position" in self._file.names("checkpoints")
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of the event columns, those of `EventBatch` that this log has; empty if events were not kept."""
-        return tuple(self._source.names("events"))
+        return tuple(self._file.names("events"))
 
     @overload
     def chunks(self, columns: None = None, start: int = 0, stop: int | None = None) -> Iterator[EventBatch]: ...
@@ -236,8 +236,8 @@ class Log(LogHeader):
             raise LogError(f"{self.path}: its events have no {' and no '.join(missing)} ({self.scene.run.method})")
         stop = len(self) if stop is None else min(stop, len(self))
         for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
-            rows = {name: self._source.chunk(f"events/{name}", first) for name in names}
-            self._source.checked(partial(check_pairs, rows, first))
+            rows = {name: self._file.chunk(f"events/{name}", first) for name in names}
+            self._file.checked(partial(check_pairs, rows, first))
             some = slice(max(start - first, 0), stop - first)
             yield block(**{name: column[some] for name, column in rows.items()})
 
@@ -320,7 +320,7 @@ class Log(LogHeader):
                 replay, base = self._replay(nearest), nearest
             for block in self.chunks(("time", "disc", *replay.state), replay.row, self.row_at(time, "right")):
                 replay.follow(block)
-            yield self._source.checked(partial(replay.at, time), f"the state at time {time:g}")
+            yield self._file.checked(partial(replay.at, time), f"the state at time {time:g}")
 
     def to_pandas(
         self,
@@ -365,15 +365,15 @@ class Log(LogHeader):
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
         """The discs at the start, as a checkpoint has them."""
-        kept = self._source.names("checkpoints")
+        kept = self._file.names("checkpoints")
         arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
         if not self.has_positions:
             arrays["position"] = np.full_like(self.discs.position, np.nan)
         if "image" in kept:
             arrays["image"] = np.zeros((len(self.discs), 2), np.int32)
         if "angular_velocity" in kept:
-            arrays["angular_velocity"] = self._source.fixed("discs/angular_velocity")
+            arrays["angular_velocity"] = self._file.fixed("discs/angular_velocity")
         return arrays
 
     def _times(self, first: int) -> np.ndarray:
-        return self._source.chunk("events/time", first)[: len(self) - first]
+        return self._file.chunk("events/time", first)[: len(self) - first]

@@ -10,8 +10,8 @@ import h5py
 from idealgas.files import LOG, lock, storage_error, written
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.superblock import Unmarked, abandon, clear_mark, is_marked
-from idealgas.log.hdf5.table import Table, commit_tables, open_tables
+from idealgas.log.hdf5.superblock import ClearedFile, abandon, clear_consistency_flags, has_consistency_flags
+from idealgas.log.hdf5.table_writer import TableWriter, commit_tables, open_tables
 from idealgas.log.reader import Log, open_log
 from idealgas.log.schema import FILE_OPTIONS
 
@@ -53,13 +53,13 @@ def _check(log: Log, keep: Mapping[str, int]) -> None:
     if log.live:
         return  # it cannot be gone on with anyway, and its writer may be at work on these very bytes
     try:
-        with h5py.File(Unmarked(log.path) if log.unclosed else log.path, "r") as file:
+        with h5py.File(ClearedFile(log.path) if log.unclosed else log.path, "r") as file:
             open_tables(file, Commit.read(file), keep)
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise DamageError(log.path, reason(error)) from error
 
 
-def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, Table], int]:
+def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, TableWriter], int]:
     """A log to resume after one of its checkpoints, or from its start: file, tables, number of its last commit."""
     path = Path(path)
     with open_log(path) as log:
@@ -80,14 +80,14 @@ def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.F
     return _cut(path, keep)
 
 
-def _cut(path: Path, keep: Mapping[str, int]) -> tuple[h5py.File, dict[str, Table], int]:
+def _cut(path: Path, keep: Mapping[str, int]) -> tuple[h5py.File, dict[str, TableWriter], int]:
     """Open for appending after the first `keep` rows of each table; what came after them is gone.
 
     The record says so first: at any moment from then on, the rows kept are there.
     """
     try:
-        if is_marked(path):
-            clear_mark(path)
+        if has_consistency_flags(path):
+            clear_consistency_flags(path)
         file = h5py.File(path, "r+", **FILE_OPTIONS)
     except (OSError, ValueError) as error:
         raise storage_error(path, error) from error

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple, overload
 
 import numpy as np
 
+from idealgas.log.log_file import LogFile, Table
 from idealgas.log.schema import CHECKPOINT_COLUMNS
-from idealgas.log.source import Entries, Source
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
@@ -52,12 +52,12 @@ class Checkpoint(NamedTuple):
 class Checkpoints(Sequence[Checkpoint]):
     """The checkpoints of a log up to event row `rows`, read when asked for."""
 
-    def __init__(self, source: Source, rows: int, check: Callable[[float, int], None]) -> None:
+    def __init__(self, file: LogFile, rows: int, check: Callable[[float, int], None]) -> None:
         """check: raises LogError where a time and a row cannot be those of one checkpoint."""
-        self._source, self._check = source, check
-        self.times = source.column("checkpoints/time")
-        self.rows = source.column("checkpoints/row")
-        if source.rows("events"):
+        self._file, self._check = file, check
+        self.times = file.column("checkpoints/time")
+        self.rows = file.column("checkpoints/row")
+        if file.rows("events"):
             valid = int(self.rows.searchsorted(rows, "right"))
             self.times, self.rows = self.times[:valid], self.rows[:valid]
 
@@ -72,18 +72,18 @@ class Checkpoints(Sequence[Checkpoint]):
         if isinstance(index, slice):
             return [self[i] for i in range(len(self))[index]]
         row = range(len(self))[index]
-        entries = {name: self._entry(name, row) for name in self._source.names("checkpoints")}
+        entries = {name: self._entry(name, row) for name in self._file.names("checkpoints")}
         time, at, epoch = (entries.pop(column.name).item() for column in CHECKPOINT_COLUMNS)
         self._check(time, at)
         arrays = {name: entry for name, entry in entries.items() if entry.ndim}
         values = {name: entry.item() for name, entry in entries.items() if not entry.ndim}
-        path = self._source.path
-        return Checkpoint(time, at, epoch, Entries(path, "checkpoints", arrays), Entries(path, "checkpoints", values))
+        path = self._file.path
+        return Checkpoint(time, at, epoch, Table(path, "checkpoints", arrays), Table(path, "checkpoints", values))
 
     def _entry(self, name: str, row: int) -> np.ndarray:
         path = f"checkpoints/{name}"
-        some = self._source.chunk_rows(path)
-        return self._source.chunk(path, row // some * some)[row % some]
+        some = self._file.chunk_rows(path)
+        return self._file.chunk(path, row // some * some)[row % some]
 
 
 class Replay:

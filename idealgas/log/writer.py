@@ -20,7 +20,7 @@ from idealgas.files import LOG, beside, check_output, give_name, lock, storage_e
 from idealgas.log import schema
 from idealgas.log.hdf5.commit import Commit
 from idealgas.log.hdf5.superblock import abandon
-from idealgas.log.hdf5.table import Table, commit_tables, open_tables
+from idealgas.log.hdf5.table_writer import TableWriter, commit_tables, open_tables
 from idealgas.log.schema import LogLayout
 from idealgas.state import Gas
 
@@ -32,7 +32,7 @@ FLUSH_SECONDS = 1.0
 class _Rows(NamedTuple):
     """Rows `start` to `stop` of the data for a table, on their way to the thread; `buffer` goes back to the pool."""
 
-    table: Table
+    table: TableWriter
     start: int
     stop: int
     data: list[np.ndarray]
@@ -121,7 +121,7 @@ class LogWriter:
             writer._put(_Rows(runs, 0, 1, _texts(runs, scene_text, command)))
         return writer
 
-    def _start(self, path: Path, file: h5py.File, tables: dict[str, Table], sequence: int, fsync: bool) -> None:
+    def _start(self, path: Path, file: h5py.File, tables: dict[str, TableWriter], sequence: int, fsync: bool) -> None:
         self.path, self._file, self._tables, self._sequence, self._fsync = path, file, tables, sequence, fsync
         self._events = tables.get("events")
         self._flushed = self.rows = self._events.stored if self._events else 0
@@ -277,7 +277,7 @@ class LogWriter:
         self._due = math.inf if tails else time.monotonic() + FLUSH_SECONDS
 
 
-def _texts(runs: Table, scene_text: str, command: str) -> list[np.ndarray]:
+def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:
     """A row of `runs`. A command may be cut off, a scene not."""
     scene_size, command_size = (column.dtype.itemsize for column in runs.columns.values())
     scene, cut = scene_text.encode(), command.encode()[:command_size].decode(errors="ignore").encode()

@@ -23,25 +23,25 @@ _FAR = 1 << 50
 _MASK = 0xFFFFFFFF
 
 
-def is_marked(path: Path) -> bool | None:
+def has_consistency_flags(path: Path) -> bool | None:
     """Whether a writer has left its mark; None if this is not an HDF5 file of version 3."""
     with open_regular(path) as file:
         block = file.read(_SIZE)
     return block[11] != 0 if len(block) == _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
-def clear_mark(path: Path) -> None:
+def clear_consistency_flags(path: Path) -> None:
     """Take a dead writer's mark off. Raises ValueError where it is damaged, OSError where the writer lives."""
     with path.open("r+b") as file:
         lock(file)
         end = -(-os.fstat(file.fileno()).st_size // _PAGE) * _PAGE
-        block = _unmarked(file.read(_SIZE), end)
+        block = _cleared(file.read(_SIZE), end)
         file.truncate(end)
         file.seek(0)
         file.write(block)
 
 
-class Unmarked(io.RawIOBase):
+class ClearedFile(io.RawIOBase):
     """A file to read as if its writer had closed it.
 
     HDF5's own way, SWMR, retries indefinitely where a byte is damaged. The file seems to end far away, since a
@@ -53,7 +53,7 @@ class Unmarked(io.RawIOBase):
         self._file = open_regular(path)
         self._place = 0
         try:
-            self._head = _unmarked(self._file.read(_SIZE), _FAR)
+            self._head = _cleared(self._file.read(_SIZE), _FAR)
         except ValueError:
             self._file.close()
             raise
@@ -106,7 +106,7 @@ def abandon(file: h5py.File) -> None:
         file.close()
 
 
-def _unmarked(block: bytes, end: int) -> bytes:
+def _cleared(block: bytes, end: int) -> bytes:
     """The superblock of a file that was closed and has `end` bytes.
 
     What a dead writer's superblock says of the end is as old as its last flush; all that it wrote lies before the end.

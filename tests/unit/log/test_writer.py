@@ -30,7 +30,7 @@ from idealgas.events import (
     event_columns,
 )
 from idealgas.log import LogLayout, LogWriter, box_walls, open_log
-from idealgas.log.hdf5.table import Table
+from idealgas.log.hdf5.table_writer import TableWriter
 
 
 @pytest.mark.parametrize("compression", ["gzip", "none"])
@@ -181,9 +181,9 @@ def test_what_is_handed_over_may_change_afterwards(tmp_path):
 
 def test_a_log_is_behind_while_batches_are_to_be_stored(tmp_path, monkeypatch):
     goes_on = threading.Event()
-    append = Table.append
+    append = TableWriter.append
     with new_writer(tmp_path / "run.h5") as writer:
-        monkeypatch.setattr(Table, "append", lambda *given: goes_on.wait() and append(*given))
+        monkeypatch.setattr(TableWriter, "append", lambda *given: goes_on.wait() and append(*given))
         write_rows(writer, 300, sizes=(300,))
         assert not writer.behind
         write_rows(writer, 600, sizes=(300,))

@@ -3,7 +3,7 @@
 import h5py
 import pytest
 
-from idealgas.log.hdf5.superblock import clear_mark, is_marked, lookup3
+from idealgas.log.hdf5.superblock import clear_consistency_flags, has_consistency_flags, lookup3
 
 
 def test_lookup3_gives_its_authors_examples():
@@ -24,16 +24,16 @@ def test_checksum_is_that_of_hdf5(file):
 
 
 def test_a_mark_is_seen_and_cleared(file):
-    assert is_marked(file) is False
+    assert has_consistency_flags(file) is False
     block = bytearray(file.read_bytes())
     block[11] = 5
     block[44:48] = lookup3(bytes(block[:44])).to_bytes(4, "little")
     file.write_bytes(block)
-    assert is_marked(file) is True
+    assert has_consistency_flags(file) is True
     with pytest.raises(OSError, match="already open for write"):
         h5py.File(file)
-    clear_mark(file)
-    assert is_marked(file) is False
+    clear_consistency_flags(file)
+    assert has_consistency_flags(file) is False
     with h5py.File(file) as opened:
         assert opened["x"][0] == 1.0
 
@@ -43,11 +43,11 @@ def test_a_damaged_superblock_is_left_alone(file):
     block[30] ^= 1
     file.write_bytes(block)
     with pytest.raises(ValueError, match="checksum"):
-        clear_mark(file)
+        clear_consistency_flags(file)
     assert file.read_bytes() == block
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89HDF\r\n\x1a\n", b"x" * 1000], ids=["empty", "short", "other"])
 def test_other_files_are_no_hdf5(tmp_path, content):
     (tmp_path / "some.h5").write_bytes(content)
-    assert is_marked(tmp_path / "some.h5") is None
+    assert has_consistency_flags(tmp_path / "some.h5") is None

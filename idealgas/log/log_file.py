@@ -19,7 +19,7 @@ from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
 from idealgas.log.hdf5.safe_hdf5 import open_dataset, open_object
-from idealgas.log.hdf5.superblock import Unmarked, is_marked
+from idealgas.log.hdf5.superblock import ClearedFile, has_consistency_flags
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
 _KEPT = 8
@@ -31,7 +31,7 @@ PAUSE = 0.02  # seconds
 Result = TypeVar("Result")
 
 
-class Entries(dict[str, Any]):
+class Table(dict[str, Any]):
     """What a table of a log has, by name; LogError for what it lacks."""
 
     def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
@@ -42,7 +42,7 @@ class Entries(dict[str, Any]):
         raise DamageError(self._path, f"{self._table}: has no {name}")
 
 
-class Source:
+class LogFile:
     """An HDF5 file that is a log, open for reading; its writer may have died or be alive."""
 
     def __init__(self, path: Path) -> None:
@@ -142,14 +142,14 @@ class Source:
     def _open(self) -> None:
         self.close()
         try:
-            marked = is_marked(self.path)
+            marked = has_consistency_flags(self.path)
         except OSError as error:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
         if marked is None:
             with open_regular(self.path) as file:
                 raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(file.read(HEAD))}")
         self.unclosed = marked
-        self._file = h5py.File(Unmarked(self.path) if marked else self.path, "r")
+        self._file = h5py.File(ClearedFile(self.path) if marked else self.path, "r")
         root = open_object(self._file, "/")
         if not h5py.h5a.exists(root, b"format") or gate.value(root, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")

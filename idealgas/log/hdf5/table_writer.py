@@ -14,7 +14,7 @@ from idealgas.log.hdf5.commit import DATASET, Commit, table_of
 from idealgas.log.hdf5.safe_hdf5 import open_dataset
 
 
-class Table:
+class TableWriter:
     """Columns of one row count that grow together: rows of any number in, whole chunks out.
 
     whole: rows in full chunks. fill: rows of the growing chunk. tail: those of them that are in the file.
@@ -109,7 +109,7 @@ def _named(path: str) -> Iterator[None]:
         raise ValueError(f"{path}: {error.args[0] if error.args else error}") from error
 
 
-def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, Table]:
+def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, TableWriter]:
     """The tables of a file, ready to grow after the first `keep` rows of each.
 
     To be called before SWMR mode, in which HDF5 retries indefinitely where an index is damaged.
@@ -120,10 +120,10 @@ def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dic
         with _named(path):
             columns[table_of(path)][path] = column = StoredColumn(open_dataset(file, path), encoder)
             column.id.get_num_chunks()  # reads the whole index
-    return {name: Table(columns[name], commit, rows) for name, rows in keep.items()}
+    return {name: TableWriter(columns[name], commit, rows) for name, rows in keep.items()}
 
 
-def commit_tables(file: h5py.File, tables: Mapping[str, Table], sequence: int, fsync: bool = False) -> None:
+def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, fsync: bool = False) -> None:
     """Flush the file, and then let the commit record say what it holds."""
     descriptor = file.id.get_vfd_handle()
     file.flush()
