@@ -1,4 +1,4 @@
-"""The event log: one HDF5 file that survives its writer, and the exact state of the gas at any time from it."""
+"""The event log: one crash-safe HDF5 file, and the exact state of the gas at any time from it."""
 
 from idealgas.events import Column
 from idealgas.log.errors import DamageError, LogError

@@ -1,4 +1,4 @@
-"""The scene of a log against its arrays: it is to be the scene that they are of."""
+"""Consistency of the scene of a log with its arrays."""
 
 from collections.abc import Collection, Sequence
 
@@ -19,12 +19,21 @@ def check_scene(
     periodic: tuple[bool, ...],
     gravity: tuple[float, float],
     kicks: bool,
-    kept: Collection[str],
+    columns: Collection[str],
 ) -> None:
-    """Raise ValueError where a scene has other discs, walls or effects than a log.
+    """Check that a scene has the discs, walls and effects of a log.
 
-    periodic: of the box, along x and along y. kicks: whether a heat bath kicks discs. kept: names of the columns of
-    events, and of what checkpoints have of each disc.
+    Args:
+        scene: scene of the log.
+        gas: discs at the start.
+        walls: walls of the log.
+        periodic: whether the box is periodic along x and along y.
+        gravity: acceleration, length/time².
+        kicks: whether a heat bath kicks discs.
+        columns: names of the columns of events and checkpoints.
+
+    Raises:
+        ValueError: if something differs.
     """
     if scene.box.size != gas.box:
         raise ValueError(f"a box of {scene.box.size} (box: {gas.box})")
@@ -51,5 +60,5 @@ def check_scene(
         IMAGES: any(scene.properties.periodic),
     }
     for column in event_columns(*has):
-        if column.when and has[column.when] != (column.name in kept):
+        if column.when and has[column.when] != (column.name in columns):
             raise ValueError(f"{'with' if has[column.when] else 'without'} {column.when} (got other columns)")

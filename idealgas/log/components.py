@@ -1,4 +1,4 @@
-"""Names of the components of what a log has more than one number of."""
+"""Names of the components of event columns and observables."""
 
 from collections.abc import Mapping, Sequence
 
@@ -12,11 +12,11 @@ VECTORS: dict[str, Sequence[str]] = {
     **{name: (f"{name}_x", f"{name}_y") for name in ("kinetic_heat_flow", "collision_heat_flow")},
     "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
 }
-"""Those that all logs have in common."""
+"""Component names that do not depend on the walls."""
 
 
 def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
-    """Components of events and observables, in a log whose walls have these names."""
+    """Component names of event columns and observables. walls: names of the walls of a log."""
     faces = {name: [f"{name}_{face}" for face in face_names(walls)] for name in ("face_push", "face_drag", "face_hits")}
     given = [f"wall_energy_{name}" for name in walls]
     lost = [f"dissipated_energy_{name}" for name in ("discs", *walls)]

@@ -1,4 +1,4 @@
-"""What is wrong with a log, said in one line."""
+"""Errors of a log, each with a message of one line."""
 
 import re
 from pathlib import Path
@@ -7,21 +7,21 @@ from idealgas.errors import UserError
 
 
 class LogError(UserError):
-    """A log cannot be read, or does not have what is asked for."""
+    """A log cannot be read, or lacks the requested data."""
 
 
 class DamageError(LogError):
-    """The bytes of a log, or what they say, are not those of a log: no result may be made of it."""
+    """A log has damaged bytes or invalid values, so that no result may be computed from it."""
 
     def __init__(self, path: Path, what: str) -> None:
         super().__init__(f"{path}: damaged: {what}")
 
 
 def reason(error: Exception) -> str:
-    """Why a reading failed, in one line; HDF5 says it in parentheses."""
+    """Reason of a failed read, in one line; HDF5 has it in parentheses."""
     if isinstance(error, UnicodeDecodeError):
         return "not UTF-8 text"
-    told = isinstance(error, OSError) and error.strerror
-    text = str(told or (error.args[0] if error.args else error)).splitlines()[0]
+    system = isinstance(error, OSError) and error.strerror
+    text = str(system or (error.args[0] if error.args else error)).splitlines()[0]
     inner = re.search(r"\((.*)\)$", text)
     return inner[1] if inner and isinstance(error, OSError | RuntimeError | KeyError) else text

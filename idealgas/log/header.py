@@ -1,4 +1,4 @@
-"""What a log holds from before its run: scene, box, discs and walls, and what made it."""
+"""The header of a log, written before the run: scene, box, discs, walls, and versions of the programs."""
 
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class LogHeader:
-    """The part of a `Log` that is written before its run begins; `Log` says what the attributes are."""
+    """The part of a `Log` that is written before its run; the attributes are described there."""
 
     def __init__(self, file: LogFile) -> None:
         self._file = file
@@ -33,33 +33,33 @@ class LogHeader:
 
     @cached_property
     def runs(self) -> list[tuple[str, str]]:
-        """Scene (TOML, all defaults filled in) and command of every run that wrote into the log, in order.
+        """Scene (TOML with all defaults) and command of the run, and of each run that resumed it, in order.
 
-        The first one is the run that made it, the others went on with it; their scenes differ only in where they end.
+        The scenes differ only in their ends.
         """
         return list(zip(*(self._file.texts(f"runs/{column.name}") for column in RUN_COLUMNS), strict=True))
 
     @property
     def scene_text(self) -> str:
-        """Scene of the last run as TOML, with all defaults filled in."""
+        """Scene of the last run, as TOML with all defaults."""
         return self.runs[-1][0]
 
     @cached_property
     def scene(self) -> "Scene":
-        """Scene of the last run, with all defaults filled in."""
+        """Scene of the last run, with all defaults."""
         from idealgas.log.check_consistency import check_scene
         from idealgas.scene import Scene, parse_scene
 
         def read() -> Scene:
             scene = parse_scene(self.scene_text, "scene")
-            kept = {*self._file.names("events"), *self._file.names("checkpoints")}
-            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._file.kicks, kept)
+            columns = {*self._file.names("events"), *self._file.names("checkpoints")}
+            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._file.kicks, columns)
             return scene
 
         return self._file.checked(read, "runs/scene")
 
     def _in_steps(self) -> bool:
-        """Whether discs move in steps of time; not known where the scene is damaged."""
+        """Whether discs move in time steps; False if the scene is damaged."""
         try:
             return self.scene.run.dt is not None
         except LogError:
@@ -72,28 +72,28 @@ class LogHeader:
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """Facts about the file by name: format, format_version, seed, created (UTC), and versions of what made it.
+        """Attributes of the file by name: format, format_version, seed, created (UTC), and versions.
 
-        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5; `trajectory` is the version of
-        the laws of motion: a log is resumed only by a program with the same one.
+        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5, and `trajectory`, that of the laws
+        of motion: only a program with the same one resumes the log.
         """
         return self._file.attributes("/", ROOT_ATTRIBUTES) | self._file.attributes("versions", VERSIONS)
 
     @cached_property
     def discs(self) -> Gas:
-        """The discs at the start of the run: constants of each disc, and position and velocity at time 0."""
+        """Discs at the start of the run: constants of each disc, and position and velocity at time 0."""
         columns = {column.name: self._file.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         names = tuple(self._file.texts("discs/species_name"))
         self._file.checked(lambda: check_species(columns["species"], names), "discs/species")
         return Gas(box=self.box, species_names=names, **columns)
 
     def stored(self, table: str) -> list[Column]:
-        """Columns of a table, as they are in the file: names, types and shapes of an entry."""
+        """Columns of a table as they are in the file: name, type and shape of an entry."""
         return self._file.stored(table)
 
     @cached_property
     def inertia(self) -> np.ndarray | None:
-        """(N,) moment of inertia of each disc, mass length²; None where discs do not spin."""
+        """(N,) moment of inertia of each disc, mass length²; None without rotation."""
         spins = "angular_velocity" in self._file.names("checkpoints")
         return self._file.fixed("discs/inertia") if spins else None
 

@@ -1,4 +1,4 @@
-"""The file under a log being read: how it is opened, and its columns by chunks. Every failure is a LogError."""
+"""The HDF5 file of a log, open for reading, with its columns in chunks. Every failure is a LogError."""
 
 import math
 import time
@@ -14,7 +14,7 @@ from idealgas.events import Column
 from idealgas.files import HEAD, describe_file_type, is_locked, open_regular
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
-from idealgas.log.hdf5 import safe_hdf5 as gate
+from idealgas.log.hdf5 import safe_hdf5
 from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
@@ -22,17 +22,20 @@ from idealgas.log.hdf5.safe_hdf5 import open_dataset, open_object
 from idealgas.log.hdf5.superblock import ClearedFile, has_consistency_flags
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
-_KEPT = 8
-"""Chunks of events that are kept; apart from them, twice as many small ones of other tables, each of many columns."""
-_SMALL = 2**20  # bytes
+_CACHED = 8
+"""Number of chunks of events in the cache, and half the number of small chunks of other tables."""
+_SMALL = 2**20
+"""Largest size of a small chunk, bytes."""
 ATTEMPTS = 10
-PAUSE = 0.02  # seconds
+"""Number of attempts to read a file while a writer may be changing the same bytes."""
+PAUSE = 0.02
+"""Time between these attempts, s."""
 
 Result = TypeVar("Result")
 
 
 class Table(dict[str, Any]):
-    """What a table of a log has, by name; LogError for what it lacks."""
+    """Entries of a table of a log, by name; a missing one raises DamageError."""
 
     def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
         super().__init__(entries)
@@ -43,13 +46,21 @@ class Table(dict[str, Any]):
 
 
 class LogFile:
-    """An HDF5 file that is a log, open for reading; its writer may have died or be alive."""
+    """The HDF5 file of a log, open for reading, also while it is written and after its writer was killed.
+
+    Attributes:
+        path: path of the file.
+        unclosed: whether the file consistency flags are set: it is being written, or its writer was killed.
+        commit: newest commit record.
+        kicks: whether a heat bath kicks discs.
+        rules: rules for the values of this log.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: Any = None
-        self._events = lru_cache(_KEPT)(self._chunk)
-        self._others = lru_cache(2 * _KEPT)(self._chunk)
+        self._events = lru_cache(_CACHED)(self._chunk)
+        self._others = lru_cache(2 * _CACHED)(self._chunk)
         keep_freed_memory()
         try:
             self._read(self._open)
@@ -58,7 +69,7 @@ class LogFile:
             raise
 
     def refresh(self) -> None:
-        """See what the writer has committed meanwhile."""
+        """Read what the writer has committed since."""
         self._read(self._open)
         self._events.cache_clear()
         self._others.cache_clear()
@@ -70,7 +81,7 @@ class LogFile:
             self._file = None
 
     def rows(self, table: str) -> int:
-        """Rows committed, 0 for a missing table."""
+        """Number of committed rows, 0 for a missing table."""
         return self.commit.rows.get(table, 0)
 
     def names(self, table: str) -> list[str]:
@@ -78,7 +89,7 @@ class LogFile:
         return self._names.get(table, [])
 
     def stored(self, table: str) -> list[Column]:
-        """Columns of a table, as they are in the file; of elements only their values."""
+        """Columns of a table as they are in the file: name, type and shape of an entry. Of H5MD elements only the values."""
         found = ((name, self._columns[f"{table}/{name}"]) for name in self.names(table))
         paths = ((name.removesuffix("/value").rpartition("/")[2], name, column) for name, column in found)
         return [
@@ -88,11 +99,11 @@ class LogFile:
         ]
 
     def chunk_rows(self, path: str) -> int:
-        """Rows of a chunk of a column."""
+        """Number of rows in a chunk of a column."""
         return self._columns[path].chunk[0]
 
     def chunk(self, path: str, start: int) -> np.ndarray:
-        """Rows of a column from `start` on, where a chunk begins, to the chunk's end or the last row; read-only."""
+        """Committed rows of the chunk of a column that begins at row `start`; read-only."""
         if table_of(path) == "events":
             return self._events(path, start)
         column = self._columns[path]
@@ -100,13 +111,13 @@ class LogFile:
         return self._others(path, start) if small else self._chunk(path, start)
 
     def column(self, path: str) -> np.ndarray:
-        """All rows of a column of a short table."""
+        """All committed rows of a column of a short table."""
         column = self._columns[path]
         parts = [self.chunk(path, start) for start in range(0, self.rows(table_of(path)), column.chunk[0])]
         return np.concatenate(parts) if parts else np.empty((0, *column.chunk[1:]), column.dtype)
 
     def fixed(self, name: str) -> np.ndarray:
-        """A dataset that was stored before the run."""
+        """Values of a dataset that was stored before the run."""
 
         def read() -> np.ndarray:
             column = StoredColumn(open_dataset(self._file, name))
@@ -118,48 +129,48 @@ class LogFile:
         return self._read(read, f"{name}: ")
 
     def texts(self, name: str) -> list[str]:
-        """A dataset of strings: one that was stored before the run, or a column of a table."""
+        """Texts of a dataset that was stored before the run, or of a column of a table."""
         texts = (self.column(name) if name in self._columns else self.fixed(name)).tolist()
         return self.checked(lambda: [text.decode() for text in texts], name)
 
     def checked(self, action: Callable[[], Result], what: str = "") -> Result:
-        """Do what raises ValueError where data break a rule. what: the data's name, if the error does not say it."""
+        """Result of an action that raises ValueError for invalid data. what: name of the data, if the error lacks it."""
         return self._read(action, what and f"{what}: ")
 
     def attribute(self, name: str, attribute: str) -> np.ndarray:
-        """One attribute of a dataset or group."""
-        return self._read(lambda: gate.attribute(open_object(self._file, name), attribute), f"{name}: ")
+        """Value of an attribute of a dataset or group."""
+        return self._read(lambda: safe_hdf5.attribute(open_object(self._file, name), attribute), f"{name}: ")
 
     def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int]:
-        """Attributes of a group; each is a text or a whole number."""
+        """Attributes of a group by name, each a text or an integer."""
 
         def read() -> dict[str, str | int]:
             group = open_object(self._file, name)
-            return {key: gate.value(group, key) for key in wanted}
+            return {key: safe_hdf5.value(group, key) for key in wanted}
 
         return self._read(read, f"{name}: ")
 
     def _open(self) -> None:
         self.close()
         try:
-            marked = has_consistency_flags(self.path)
+            flags = has_consistency_flags(self.path)
         except OSError as error:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
-        if marked is None:
+        if flags is None:
             with open_regular(self.path) as file:
                 raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(file.read(HEAD))}")
-        self.unclosed = marked
-        self._file = h5py.File(ClearedFile(self.path) if marked else self.path, "r")
+        self.unclosed = flags
+        self._file = h5py.File(ClearedFile(self.path) if flags else self.path, "r")
         root = open_object(self._file, "/")
-        if not h5py.h5a.exists(root, b"format") or gate.value(root, "format") != schema.FORMAT:
+        if not h5py.h5a.exists(root, b"format") or safe_hdf5.value(root, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")
-        version = gate.value(root, "format_version")
+        version = safe_hdf5.value(root, "format_version")
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
         size = self.path.stat().st_size
-        if marked and size < self.commit.file_size:
-            raise DamageError(self.path, f"truncated, {size} bytes of {self.commit.file_size}")
+        if flags and size < self.commit.file_size:
+            raise DamageError(self.path, f"truncated: {size:,} of {self.commit.file_size:,} bytes")
         self._columns = {path: self._column_at(path) for path in self.commit.tails}
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
@@ -168,7 +179,7 @@ class LogFile:
         self.rules = self._rules(size)
 
     def _rules(self, size: int) -> Rules:
-        """The rules for this log, which its tables keep; size: of the file, bytes."""
+        """Rules for the values of this log, after a check of its tables. size: of the file, bytes."""
         discs, species, walls = (self._column_at(name) for name in ("discs/id", "discs/species_name", "walls/name"))
         counts = (discs.extent, species.extent, walls.extent)
         check_sizes(*counts, size)
@@ -202,7 +213,7 @@ class LogFile:
         return data
 
     def _read(self, action: Callable[[], Result], what: str = "") -> Result:
-        """Do it, and again a few times if it fails while a living writer may be at work on these very bytes."""
+        """Result of an action, repeated a few times while it fails and a writer may be changing the same bytes."""
         attempt = 1
         while True:
             try:

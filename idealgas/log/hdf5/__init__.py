@@ -1,1 +1,1 @@
-"""The HDF5 file beneath a log: chunks, tables, the commit record, and the mark of a writer at work."""
+"""The HDF5 file of a log: chunks, tables, the commit record, and the file consistency flags."""

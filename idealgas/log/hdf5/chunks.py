@@ -1,8 +1,8 @@
-"""A chunk's bytes: HDF5's filter pipeline (shuffle, deflate, fletcher32), each way, at the speed of memory.
+"""Bytes of a chunk: HDF5's filter pipeline (shuffle, deflate, fletcher32) in both directions, at the speed of memory.
 
-HDF5 lets a chunk skip filters of its dataset's pipeline, by the bits of its filter mask. Whole chunks of a compressed
-dataset are shuffled and deflated (a zlib stream carries its own Adler-32); a chunk that is still growing is stored
-plain with its fletcher32, so that it keeps its size and its place in the file.
+A chunk may skip filters of its dataset's pipeline, by the bits of its filter mask. Full chunks of a compressed dataset
+are shuffled and deflated (a zlib stream has its own Adler-32). A chunk that is still growing is stored uncompressed
+with its fletcher32, so that it keeps its size and its position in the file.
 """
 
 import struct
@@ -14,30 +14,30 @@ from idealgas.jit import inline, njit
 
 SHUFFLE, DEFLATE, FLETCHER32 = 1, 2, 4
 COMPRESSED, PLAIN = FLETCHER32, SHUFFLE | DEFLATE
-"""Filter masks of the two ways a chunk of a compressed dataset is stored: the bits name what was left out."""
+"""Filter masks of the chunks of a compressed dataset; the bits are the filters that are skipped."""
 
 _STORED_BLOCK, _BLOCK_HEADER = 65_535, 5
-"""Bytes of a full stored block of a deflate stream, and of what stands before each."""
+"""Bytes of a full stored block of a deflate stream, and of its header."""
 
 _SAMPLE = 1024
-"""Bytes of a plane that show whether it is noise."""
+"""Bytes of a plane that decide whether it is noise."""
 
 _TILE = 2048
-"""Items that are taken apart while they are in the nearest cache."""
+"""Number of items that are shuffled while they are in the first-level cache."""
 
 _WIDTHS = (4, 8)
-"""Bytes of the items for which machine code is worth its compilation."""
+"""Bytes of the items that compiled functions shuffle; others use NumPy."""
 
 _LARGEST_KEPT = 31 * 2**20
-"""Bytes of the largest block that glibc can be made to keep, nearly."""
+"""Nearly the bytes of the largest block that glibc can be made to keep."""
 
 _WORDS = 256
-"""16-bit words whose sum, each times its index, fits 32 bits."""
+"""Number of 16-bit words whose sum, each times its index, fits in 32 bits."""
 
 
 @inline
-def _take_byte(items, byte, start, stop, out, place):
-    """Put one byte of some of the items at a place."""
+def _gather_byte(items, byte, start, stop, out, place):
+    """Copy one byte of each item from `start` to before `stop` to consecutive bytes of `out`."""
     shift = np.uint64(8 * byte)
     for k in range(stop - start):
         out[np.uintp(place + k)] = np.uint8(items[np.uintp(start + k)] >> shift)
@@ -45,10 +45,13 @@ def _take_byte(items, byte, start, stop, out, place):
 
 @njit
 def shuffle(items, noise, blocks, planes):
-    """Gather the bytes of unsigned items (n,) in planes: the first bytes of all items, the second bytes, and so on.
+    """Gather the bytes of items in planes: the first bytes of all items, the second bytes, and so on.
 
-    The first `noise` planes go into stored blocks, one behind the other in `blocks`; the rest into `planes`, one behind
-    the other too.
+    Args:
+        items: (n,) unsigned.
+        noise: number of planes that are written to `blocks`.
+        blocks: bytes of deflate's stored blocks, each with room for its header.
+        planes: bytes of the other planes.
     """
     n = len(items)
     for first in range(0, n, _TILE):
@@ -61,13 +64,13 @@ def shuffle(items, noise, blocks, planes):
                 if stored:
                     stop = min(last, start + _STORED_BLOCK - place % _STORED_BLOCK)
                     place += (place // _STORED_BLOCK + 1) * _BLOCK_HEADER
-                _take_byte(items, byte, start, stop, blocks if stored else planes, place)
+                _gather_byte(items, byte, start, stop, blocks if stored else planes, place)
                 start = stop
 
 
 @inline
-def _give_byte(items, byte, start, stop, plane):
-    """Put a byte of some of the items in its place; the first makes the others 0."""
+def _scatter_byte(items, byte, start, stop, plane):
+    """Set one byte of each item from `start` to before `stop`; the first byte clears the others."""
     shift = np.uint64(8 * byte)
     for k in range(start, stop):
         value = np.uint64(plane[np.uintp(k)]) << shift
@@ -76,27 +79,27 @@ def _give_byte(items, byte, start, stop, plane):
 
 @njit
 def unshuffle(planes, items):
-    """Put unsigned items (n,) together of their planes (itemsize, n)."""
+    """Compose unsigned items (n,) from their planes (itemsize, n)."""
     n = len(items)
     for first in range(0, n, _TILE):
         for byte in range(items.itemsize):
-            _give_byte(items, byte, first, min(first + _TILE, n), planes[byte])
+            _scatter_byte(items, byte, first, min(first + _TILE, n), planes[byte])
 
 
 class Encoder:
-    """Makes the bytes of chunks, in memory of its own: fresh memory for each would take longer than the work itself.
+    """Encodes chunks in its own memory: new memory for each would take longer than the encoding.
 
-    What a method returns is good until the next call.
+    The result of a method is valid until the next call.
     """
 
     def __init__(self) -> None:
         self._planes = self._bytes = np.empty(0, np.uint8)
 
     def compressed(self, rows: np.ndarray) -> np.ndarray:
-        """A whole chunk shuffled and deflated.
+        """Bytes of a full chunk, shuffled and deflated.
 
-        The low-order bytes of a measured number are noise: those of no use to a quick try go in as stored blocks, at a
-        fraction of the time each way.
+        The low-order bytes of a measured number are noise. Planes that a test of a few bytes cannot compress become
+        stored blocks, which takes a fraction of the time in both directions.
         """
         self._grow(rows.nbytes)
         items = np.ascontiguousarray(rows).reshape(-1)
@@ -115,7 +118,7 @@ class Encoder:
         return self._bytes[:size]
 
     def _shuffle(self, items: np.ndarray) -> tuple[int, np.ndarray]:
-        """How many planes are noise, which then are in their place, and the others."""
+        """Number of planes that are noise, which are copied to their blocks, and the bytes of the others."""
         words, width, blocks = items.view(f"u{items.itemsize}"), items.itemsize, self._bytes[2:]
         noise = width if len(items) >= _SAMPLE else 0
         if noise:
@@ -128,7 +131,7 @@ class Encoder:
         return noise, planes
 
     def plain(self, rows: np.ndarray) -> np.ndarray:
-        """A chunk as it is, with its fletcher32."""
+        """Bytes of a chunk, uncompressed, with its fletcher32."""
         self._grow(rows.nbytes)
         size = self._put(0, np.ascontiguousarray(rows).reshape(-1).view(np.uint8))
         size = self._put(size, fletcher32(self._bytes[:size]))
@@ -150,15 +153,24 @@ def _shuffled(items: np.ndarray) -> np.ndarray:
 
 
 def most_stored(size: int) -> int:
-    """Most bytes that a chunk of `size` bytes takes in the file: what cannot be compressed grows a little."""
+    """Largest number of bytes of a stored chunk of `size` bytes: incompressible data grows a little."""
     return size + size // 64 + 1024
 
 
 def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, verify: bool = True) -> np.ndarray:
-    """Flat values of a stored chunk whose filters `mask` were left out.
+    """Values of a stored chunk, (values,).
 
-    values: how many it has. Without `verify` a fletcher32 that does not match is let pass. Raises ValueError on damage,
-    and where there are fewer values or more, of which no more than one is decompressed.
+    At most one byte more than declared is decompressed.
+
+    Args:
+        stored: bytes in the file.
+        mask: filter mask, the filters that were skipped.
+        dtype: type of the values.
+        values: number of values.
+        verify: whether a fletcher32 has to match.
+
+    Raises:
+        ValueError: if the chunk is damaged, or has another number of values.
     """
     size = values * dtype.itemsize
     data: bytes | memoryview = memoryview(stored)
@@ -188,18 +200,18 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
 
 
 def keep_freed_memory() -> None:
-    """Make the C library keep the memory of a chunk for the next one, which takes a quarter off the time of reading.
+    """Make the C library keep the memory of a chunk for the next one, which saves a quarter of the time of reading.
 
-    glibc gives back every block that is larger than any it has seen freed, and then fetches zeroed pages again.
+    glibc returns every block that is larger than any freed before, and then requests zeroed pages again.
     """
     np.empty(_LARGEST_KEPT, np.uint8)
 
 
 def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
-    """HDF5's checksum of the 16-bit big-endian words of some bytes, as the four bytes that follow them in the file.
+    """HDF5's checksum of 16-bit big-endian words, as the four bytes that follow the data in the file.
 
-    Its two sums, of the words and of the running sums, are taken of little-endian words: swapping the bytes of every
-    word multiplies both by 256 modulo 65535.
+    Both sums, of the words and of the running sums, are computed from little-endian words: swapping the bytes of every
+    word multiplies them by 256 modulo 65535.
     """
     words = np.frombuffer(data, "<u2", len(data) // 2)
     words.flags.writeable = False  # of one type, to be compiled once
@@ -213,20 +225,20 @@ def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
 
 @njit
 def _sums(words):
-    """Sum of 16-bit words (n,), and, but for multiples of 65535, of each times its index."""
+    """Sum of 16-bit words (n,), and sum of each times its index, up to multiples of 65535."""
     total = moment = np.int64(0)
     for first in range(0, len(words), _WORDS):
-        some = np.uint32(0)
-        about_first = np.uint32(0)
+        total_here = np.uint32(0)
+        moment_here = np.uint32(0)
         for k in range(np.uint32(min(_WORDS, len(words) - first))):
             word = np.uint32(words[np.uintp(first + k)])
-            some += word
-            about_first += np.uint32(k) * word
-        total += np.int64(some)
-        moment += np.int64(about_first) + first % 65535 * np.int64(some)
+            total_here += word
+            moment_here += np.uint32(k) * word
+        total += np.int64(total_here)
+        moment += np.int64(moment_here) + first % 65535 * np.int64(total_here)
     return total, moment
 
 
 def _fold(value: int) -> int:
-    """Modulo 65535, with 65535 instead of 0 for anything but 0, as end-around carries give."""
+    """Value modulo 65535, with 65535 for positive multiples of it, as end-around carries give."""
     return (value - 1) % 65535 + 1 if value else 0

@@ -1,4 +1,4 @@
-"""A dataset of a log, read and written in whole chunks past HDF5's own filters and cache."""
+"""A dataset of a log, read and written in whole chunks, without HDF5's own filters and cache."""
 
 import math
 
@@ -11,9 +11,17 @@ from idealgas.log.hdf5.safe_hdf5 import layout_of
 
 
 class StoredColumn:
-    """A dataset in chunks, each as long as an entry is wide. Raises ValueError where it is none that a log has."""
+    """A dataset whose chunks divide only its first axis.
+
+    Attributes:
+        dtype: type of its values.
+        shape: shape of the dataset when it was opened.
+        chunk: shape of a chunk.
+        extent: number of rows.
+    """
 
     def __init__(self, dataset: h5py.h5d.DatasetID, encoder: chunks.Encoder | None = None) -> None:
+        """Check the layout of a dataset. Raises ValueError for one that no log has."""
         self.id = dataset
         layout = layout_of(dataset)
         self.dtype, self.shape, self.chunk = layout.dtype, layout.shape, layout.chunk
@@ -23,20 +31,29 @@ class StoredColumn:
         self._origin = (0,) * (len(self.chunk) - 1)
 
     def read(self, start: int, rows: int, tail: int = 0) -> np.ndarray:
-        """Those of the first `rows` rows that lie in the chunk at row `start`; `tail` is their CRC-32 if not all do.
+        """Committed rows of the chunk that begins at row `start`.
 
-        Raises whatever numpy and HDF5 raise where they are damaged or missing.
+        Damaged or missing chunks raise the errors of NumPy and HDF5.
+
+        Args:
+            start: first row of the chunk.
+            rows: number of committed rows of the dataset.
+            tail: CRC-32 of the committed rows in the last chunk if that is not full.
         """
-        growing = rows - start < self.chunk[0]  # its own checksum fails if it was caught while being rewritten
+        growing = rows - start < self.chunk[0]  # its fletcher32 fails while a writer is rewriting it
         data = self.whole(start, verify=not growing)[: rows - start]
         if growing and isal_zlib.crc32(data) != tail:
             raise ValueError("a checksum does not match")
         return data
 
     def whole(self, start: int, verify: bool = True) -> np.ndarray:
-        """The chunk at row `start`, with what is beyond the last row; without `verify` it may be caught half written.
+        """The whole chunk that begins at row `start`, including values beyond the last row.
 
-        However many bytes the file says that it has, no more are read than a chunk of this size can have.
+        At most as many bytes are read as a chunk of this size can have.
+
+        Args:
+            start: first row of the chunk.
+            verify: whether its checksum has to match.
         """
         values = math.prod(self.chunk)
         room = np.empty(chunks.most_stored(values * self.dtype.itemsize), np.uint8)
@@ -49,7 +66,14 @@ class StoredColumn:
         return chunks.decode(stored, mask, self.dtype, values, verify).reshape(self.chunk)
 
     def write(self, start: int, rows: int, data: np.ndarray, plain: bool = False) -> None:
-        """Store the chunk at row `start`, of which `rows` count. HDF5 demands that the extent grows first."""
+        """Write a whole chunk, after the dataset has grown to its last row, as HDF5 requires.
+
+        Args:
+            start: first row of the chunk.
+            rows: number of its rows that belong to the dataset.
+            data: values of the whole chunk.
+            plain: whether it is stored uncompressed in a compressed dataset.
+        """
         if self.extent < start + rows:
             self.resize(start + rows)
         offset = (start, *self._origin)
@@ -62,6 +86,6 @@ class StoredColumn:
             self.id.write_direct_chunk(offset, self._encoder.compressed(data), chunks.COMPRESSED)
 
     def resize(self, rows: int) -> None:
-        """Give the dataset so many rows."""
+        """Set the number of rows."""
         self.id.set_extent((rows, *self.chunk[1:]))
         self.extent = rows

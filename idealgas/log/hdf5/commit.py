@@ -1,8 +1,8 @@
-"""The commit record: how many rows of each table hold.
+"""The commit record: the number of committed rows of each table.
 
-Two slots are written in turn, each with its own checksum, always after the rows they speak of. Whatever moment a writer
-dies at, one slot is whole, and what it promises is in the file. A table's last chunk, while not full, is rewritten in
-place as it grows; its committed rows stay the same bytes, so their CRC-32, kept here too, holds at any moment.
+Two slots with checksums are written alternately, always after the rows that they count. Whenever a writer is killed,
+one slot is complete and its rows are in the file. The last chunk of a table is rewritten in place until it is full. Its
+committed rows remain the same bytes, so their CRC-32, which is also in the record, is correct at any moment.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,10 +20,13 @@ DATASET = "commit"
 
 
 class Commit(NamedTuple):
-    """One state of the file.
+    """One commit.
 
-    sequence: counts the commits. file_size: bytes of the file then. rows: of each table. tails: of each dataset, the
-    CRC-32 of the rows in its growing chunk, or 0.
+    Attributes:
+        sequence: number of the commit.
+        file_size: size of the file at the commit, bytes.
+        rows: number of committed rows, by table.
+        tails: CRC-32 of the committed rows in the last chunk, 0 if that is full, by path of the dataset.
     """
 
     sequence: int
@@ -33,12 +36,12 @@ class Commit(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether the run came to its end."""
+        """Whether the run reached its end."""
         return self.rows["summary"] > 0
 
     @classmethod
     def create(cls, file: h5py.File, paths: Sequence[str]) -> None:
-        """Make the record's dataset, for tables with the datasets `paths`; nothing is committed yet."""
+        """Create the dataset of the record, without committed rows. paths: datasets of all tables."""
         tables = dict.fromkeys(map(table_of, paths), 0)
         width = 2 + len(tables) + len(paths) + 1
         dataset = file.create_dataset(DATASET, (2, width), "u8", chunks=(1, width), fletcher32=True)
@@ -47,14 +50,14 @@ class Commit(NamedTuple):
             cls(sequence, 0, tables, dict.fromkeys(paths, 0)).write(dataset.id)
 
     def write(self, dataset: h5py.h5d.DatasetID) -> None:
-        """Put the record into the slot whose turn it is."""
+        """Write the record to the slot of its sequence number."""
         slot = np.array([self.sequence, self.file_size, *self.rows.values(), *self.tails.values(), 0], "u8")
         slot[-1] = isal_zlib.crc32(slot[:-1])
         dataset.write_direct_chunk((self.sequence % 2, 0), chunks.Encoder().plain(slot), 0)
 
     @classmethod
     def read(cls, file: h5py.File) -> Self:
-        """The newest whole record. Raises ValueError when neither slot is."""
+        """Newest complete record. Raises ValueError if neither slot is complete."""
         dataset = open_dataset(file, DATASET)
         paths = [path.decode() for path in attribute(dataset, "datasets").tolist()]
         tables = list(dict.fromkeys(map(table_of, paths)))
@@ -67,7 +70,7 @@ class Commit(NamedTuple):
             if isal_zlib.crc32(values[:-1]) == values[-1]:
                 slots.append(values[:-1].tolist())
         if not slots:
-            raise ValueError("no commit record is whole")
+            raise ValueError("no complete commit record")
         sequence, size, *rest = max(slots)
         rows, tails = rest[: len(tables)], rest[len(tables) :]
         return cls(sequence, size, dict(zip(tables, rows, strict=True)), dict(zip(paths, tails, strict=True)))

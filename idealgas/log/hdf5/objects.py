@@ -1,6 +1,6 @@
-"""Groups, datasets and attributes of a new file, made through HDF5's C interface.
+"""Groups, datasets and attributes of a new file, created through HDF5's C interface.
 
-h5py's own way takes five times as long, which a short run's log of some fifty datasets would feel.
+h5py's high-level interface takes five times as long, which is noticeable for a short log of about fifty datasets.
 """
 
 from functools import cache, lru_cache
@@ -15,26 +15,26 @@ from idealgas.log.hdf5.safe_hdf5 import check_chunk
 
 
 class Objects:
-    """Makes what a file has, with the groups above it, by paths without a leading slash."""
+    """Creates the objects of a file and their parent groups. Paths have no leading slash."""
 
     def __init__(self, file: h5f.FileID, compression: str = "none") -> None:
-        """compression: "gzip" (with shuffle) or "none", of all datasets; each has a checksum too."""
+        """Begin with an empty file. compression: "gzip" (with shuffle) or "none"; all datasets have checksums."""
         self._groups: dict[str, Any] = {"": file}
         self._compressed = compression == "gzip"
 
     def group(self, path: str) -> h5g.GroupID:
-        """A group, created if it is missing."""
+        """Group at a path, created if it is missing."""
         if path not in self._groups:
             above, _, name = path.rpartition("/")
             self._groups[path] = h5g.create(self.group(above), name.encode(), gcpl=_group_layout())
         return self._groups[path]
 
     def column(self, path: str, dtype: Any, chunk: tuple[int, ...], unit: str = "") -> None:
-        """An empty dataset that grows along its first axis; chunk: its chunk's shape."""
+        """Create an empty dataset that grows along its first axis. chunk: shape of a chunk."""
         self._dataset(path, dtype, (0, *chunk[1:]), chunk, unit)
 
     def constant(self, path: str, data: np.ndarray, unit: str = "") -> h5d.DatasetID:
-        """A dataset that never changes, in one chunk: what is stored contiguously has no checksum."""
+        """A dataset that never changes, in one chunk, as contiguous datasets have no checksums."""
         if not data.size:
             above, _, name = path.rpartition("/")
             return h5py.Group(self.group(above)).create_dataset(name, data=data).id
@@ -47,7 +47,7 @@ class Objects:
         return dataset
 
     def link(self, path: str, target: str) -> None:
-        """A second name for what is there at `target`."""
+        """A second name for the object at `target`."""
         above, _, name = path.rpartition("/")
         self.group(above).links.create_hard(name.encode(), self._groups[""], target.encode())
 
@@ -68,7 +68,7 @@ class Objects:
 
 
 def set_attributes(thing: Any, **values: Any) -> None:
-    """Attributes of a group, dataset or file (h5py.h5g.GroupID and so on) that has none of these names."""
+    """Create attributes of a group, dataset or file (h5py.h5g.GroupID and so on)."""
     for name, value in values.items():
         data = np.asarray(value)
         kind, space = h5t.py_create(data.dtype, logical=True), h5s.create_simple(data.shape)

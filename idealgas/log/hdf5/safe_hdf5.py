@@ -1,9 +1,9 @@
-"""The gate to a file that may come from anybody: what of it is opened at all, and how large that may be.
+"""Safe access to an HDF5 file of unknown origin: only objects that a log has are opened, up to a bounded size.
 
-A log has groups, datasets in chunks with one of two filter pipelines, and attributes; all of them hold numbers or text
-of fixed length, and lie in the file itself. Anything else is refused before HDF5 follows or allocates it: links to
-other places and files, storage in other files, virtual datasets, references, text of variable length, other filters.
-Refused objects raise ValueError, missing ones KeyError.
+A log has groups, chunked datasets with one of two filter pipelines, and attributes. They contain numbers or text of
+fixed length, and are stored in the file itself. Everything else is refused before HDF5 follows or allocates it: soft
+and external links, external storage, virtual datasets, references, text of variable length, other filters. Refused
+objects raise ValueError, missing ones KeyError.
 """
 
 import math
@@ -15,16 +15,16 @@ import numpy as np
 from h5py import h5a, h5d, h5g, h5l, h5o, h5t, h5z
 
 MOST_CHUNK = 2**28
-"""Bytes of the largest chunk, and so of the largest array that is stored before a run."""
+"""Largest size of a chunk, and so of an array that is stored before a run, bytes."""
 
 MOST_TEXT = 2**24
-"""Bytes of the longest text in a row."""
+"""Largest size of a text in a row, bytes."""
 
 MOST_ATTRIBUTE = 2**16
-"""Bytes of the largest attribute."""
+"""Largest size of an attribute, bytes."""
 
 NUMBERS = ("<f8", "<i8", "<u8", "<i4", "<u4", "<u2", "|u1")
-"""Types of all numbers in a log."""
+"""NumPy types of all numbers in a log."""
 
 _COMPRESSED = (h5z.FILTER_SHUFFLE, h5z.FILTER_DEFLATE, h5z.FILTER_FLETCHER32)
 _PLAIN = (h5z.FILTER_FLETCHER32,)
@@ -34,7 +34,14 @@ _LAYOUTS = {h5d.VIRTUAL: "a virtual dataset", h5d.CONTIGUOUS: "not in chunks", h
 
 
 class Layout(NamedTuple):
-    """How a dataset is stored: the type of its numbers or text, its shape, its chunks' shape, and whether deflated."""
+    """Storage layout of a dataset.
+
+    Attributes:
+        dtype: type of its numbers or text.
+        shape: shape of the dataset.
+        chunk: shape of a chunk.
+        compressed: whether chunks are shuffled and deflated.
+    """
 
     dtype: np.dtype
     shape: tuple[int, ...]
@@ -43,22 +50,22 @@ class Layout(NamedTuple):
 
 
 def open_object(file: h5py.File, path: str) -> Any:
-    """A group or dataset of the file (h5py.h5g.GroupID, h5py.h5d.DatasetID)."""
+    """Group or dataset at a path (h5py.h5g.GroupID, h5py.h5d.DatasetID)."""
     found = h5g.open(file.id, b"/")
     for name in filter(None, path.split("/")):
         if not isinstance(found, h5g.GroupID):
-            raise ValueError("lies in what is not a group")
+            raise ValueError("parent is not a group")
         if not found.links.exists(name.encode()):
-            raise KeyError("not there")
+            raise KeyError("missing")
         link = found.links.get_info(name.encode())
         if link.type != h5l.TYPE_HARD:
-            raise ValueError(f"{_LINKS.get(link.type, 'a link')} (allowed: what lies in the file itself)")
+            raise ValueError(f"{_LINKS.get(link.type, 'a link')} (allowed: hard links)")
         found = h5o.open(found, name.encode())
     return found
 
 
 def open_dataset(file: h5py.File, path: str) -> h5d.DatasetID:
-    """A dataset of the file."""
+    """Dataset at a path."""
     found = open_object(file, path)
     if not isinstance(found, h5d.DatasetID):
         raise ValueError("not a dataset")
@@ -66,10 +73,10 @@ def open_dataset(file: h5py.File, path: str) -> h5d.DatasetID:
 
 
 def layout_of(dataset: h5d.DatasetID) -> Layout:
-    """Layout of a dataset, of which nothing but this has been read."""
+    """Layout of a dataset, from its creation properties alone."""
     stored = dataset.get_create_plist()
     if (kind := stored.get_layout()) != h5d.CHUNKED:
-        raise ValueError(_LAYOUTS.get(kind, "stored in an unknown way"))
+        raise ValueError(_LAYOUTS.get(kind, "unknown storage layout"))
     pipeline = tuple(stored.get_filter(k)[0] for k in range(stored.get_nfilters()))
     if pipeline not in (_COMPRESSED, _PLAIN):
         raise ValueError(f"filters {', '.join(map(str, pipeline)) or 'none'} (allowed: {_COMPRESSED} or {_PLAIN})")
@@ -81,7 +88,7 @@ def layout_of(dataset: h5d.DatasetID) -> Layout:
 
 
 def check_chunk(chunk: tuple[int, ...], dtype: np.dtype) -> None:
-    """Refuse chunks that would take too much memory, and too long texts."""
+    """Raise ValueError for chunks that need too much memory, and for texts that are too long."""
     if (size := math.prod(chunk) * dtype.itemsize) > MOST_CHUNK:
         raise ValueError(f"a chunk of {size:,} bytes (allowed up to {MOST_CHUNK:,})")
     if dtype.kind == "S" and dtype.itemsize > MOST_TEXT:
@@ -89,9 +96,9 @@ def check_chunk(chunk: tuple[int, ...], dtype: np.dtype) -> None:
 
 
 def attribute(thing: Any, name: str) -> np.ndarray:
-    """An attribute of a group or dataset. KeyError if it has none of this name."""
+    """Attribute of a group or dataset. Raises KeyError if it is missing."""
     if not h5a.exists(thing, name.encode()):
-        raise KeyError(f"attribute {name}: not there")
+        raise KeyError(f"attribute {name}: missing")
     found = h5a.open(thing, name.encode())
     dtype, shape = _dtype(found.get_type()), found.shape
     if shape is None or math.prod(shape) * dtype.itemsize > MOST_ATTRIBUTE:
@@ -102,10 +109,10 @@ def attribute(thing: Any, name: str) -> np.ndarray:
 
 
 def value(thing: Any, name: str) -> str | int:
-    """An attribute that is one text or whole number."""
+    """Attribute that is a single text or integer."""
     found = attribute(thing, name)
     if found.ndim or found.dtype.kind == "f":
-        raise ValueError(f"attribute {name}: not one text or whole number")
+        raise ValueError(f"attribute {name}: not a single text or integer")
     try:
         return found.item().decode() if found.dtype.kind == "S" else found.item()
     except UnicodeDecodeError as error:
@@ -113,7 +120,7 @@ def value(thing: Any, name: str) -> str | int:
 
 
 def _dtype(kind: h5t.TypeID) -> np.dtype:
-    """Type of numbers, or of text of fixed length, as numpy has it."""
+    """NumPy type of numbers, or of text of fixed length."""
     if kind.get_class() == h5t.STRING:
         if kind.is_variable_str():
             raise ValueError("text of variable length")
@@ -122,7 +129,7 @@ def _dtype(kind: h5t.TypeID) -> np.dtype:
     for name, number in _numbers().items():
         if base.equal(number):
             return np.dtype(name)
-    raise ValueError(f"of a type that no log has (allowed: {', '.join(NUMBERS)} and text of fixed length)")
+    raise ValueError(f"unsupported type (allowed: {', '.join(NUMBERS)} and text of fixed length)")
 
 
 @cache

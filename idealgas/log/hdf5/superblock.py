@@ -1,8 +1,8 @@
-"""The first bytes of an HDF5 file: whether a writer has it open, and where it ends.
+"""The superblock of an HDF5 file: the file consistency flags, and where the file ends.
 
-A writer that lives or died has its mark there, and HDF5 then refuses to open the file in the common way.
-HDF5 File Format Specification 3.0, II.A: version 3 has the status flags in byte 11, the end of the file in bytes 28 to
-35, and the lookup3 checksum of all before it in bytes 44 to 47.
+A file that a writer has open, or did not close, has file consistency flags, and HDF5 then refuses to open it as usual.
+Source: HDF5 File Format Specification 3.0, II.A. A superblock of version 3 has the flags in byte 11, the end of the
+file in bytes 28 to 35, and in bytes 44 to 47 the lookup3 checksum of all previous bytes.
 """
 
 import errno
@@ -24,14 +24,19 @@ _MASK = 0xFFFFFFFF
 
 
 def has_consistency_flags(path: Path) -> bool | None:
-    """Whether a writer has left its mark; None if this is not an HDF5 file of version 3."""
+    """Whether the file consistency flags are set; None for a file other than HDF5 with a superblock of version 3."""
     with open_regular(path) as file:
         block = file.read(_SIZE)
     return block[11] != 0 if len(block) == _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
 def clear_consistency_flags(path: Path) -> None:
-    """Take a dead writer's mark off. Raises ValueError where it is damaged, OSError where the writer lives."""
+    """Clear the file consistency flags of a file that was not closed.
+
+    Raises:
+        ValueError: if the superblock is damaged.
+        OSError: if a writer has the file open.
+    """
     with path.open("r+b") as file:
         lock(file)
         end = -(-os.fstat(file.fileno()).st_size // _PAGE) * _PAGE
@@ -42,16 +47,16 @@ def clear_consistency_flags(path: Path) -> None:
 
 
 class ClearedFile(io.RawIOBase):
-    """A file to read as if its writer had closed it.
+    """A file for reading whose file consistency flags appear to be cleared.
 
-    HDF5's own way, SWMR, retries indefinitely where a byte is damaged. The file seems to end far away, since a
-    living writer may put there what it will then tell of; whatever it has not put there yet is zero.
+    HDF5's own way to read such a file, SWMR, retries indefinitely where a byte is damaged. The file appears to end far
+    away, as a live writer may extend it at any moment; bytes beyond its present end are zero.
     """
 
     def __init__(self, path: Path) -> None:
-        """Raises ValueError where the superblock is damaged."""
+        """Open a file. Raises ValueError if the superblock is damaged."""
         self._file = open_regular(path)
-        self._place = 0
+        self._position = 0
         try:
             self._head = _cleared(self._file.read(_SIZE), _FAR)
         except ValueError:
@@ -59,45 +64,45 @@ class ClearedFile(io.RawIOBase):
             raise
 
     def readable(self) -> bool:
-        """True."""
+        """Whether the file can be read."""
         return True
 
     def seekable(self) -> bool:
-        """True."""
+        """Whether the file supports random access."""
         return True
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """As any file."""
-        self._place = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: _FAR}[whence]
-        return self._place
+        """Change the position in the file."""
+        self._position = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._position, os.SEEK_END: _FAR}[whence]
+        return self._position
 
     def tell(self) -> int:
-        """As any file."""
-        return self._place
+        """Position in the file."""
+        return self._position
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
-        """As any file, with another beginning, and without a read that lies all beyond its end."""
+        """Read bytes into a buffer. Raises OSError if all of them lie beyond the end of the file."""
         data, count = memoryview(buffer).cast("B"), 0
-        if self._place >= os.fstat(self._file.fileno()).st_size:
+        if self._position >= os.fstat(self._file.fileno()).st_size:
             raise OSError(errno.EINVAL, "lies beyond the end of the file")
-        while some := os.preadv(self._file.fileno(), [data[count:]], self._place + count):
+        while some := os.preadv(self._file.fileno(), [data[count:]], self._position + count):
             count += some
         data[count:] = bytes(len(data) - count)
-        head = self._head[self._place : self._place + len(data)]
+        head = self._head[self._position : self._position + len(data)]
         data[: len(head)] = head
-        self._place += len(data)
+        self._position += len(data)
         return len(data)
 
     def close(self) -> None:
-        """As any file."""
+        """Close the file."""
         self._file.close()
         super().close()
 
 
 def abandon(file: h5py.File) -> None:
-    """Close a file that could not be written to, and leave it as its writer's death would.
+    """Close a file that could not be written to, and leave it as if its writer had been killed.
 
-    HDF5 would write what it can, and take its mark off: that goes nowhere.
+    HDF5 would write what it can and clear the file consistency flags; these bytes are discarded.
     """
     nowhere = os.open(os.devnull, os.O_RDWR)
     os.dup2(nowhere, file.id.get_vfd_handle())
@@ -107,9 +112,9 @@ def abandon(file: h5py.File) -> None:
 
 
 def _cleared(block: bytes, end: int) -> bytes:
-    """The superblock of a file that was closed and has `end` bytes.
+    """Superblock of a closed file of `end` bytes.
 
-    What a dead writer's superblock says of the end is as old as its last flush; all that it wrote lies before the end.
+    The end of the file in the superblock of a file that was not closed is that at its last flush.
     """
     if len(block) < _SIZE or struct.unpack_from("<I", block, _SIZE - 4)[0] != lookup3(block[:-4]):
         raise ValueError("the superblock's checksum does not match")
@@ -118,7 +123,10 @@ def _cleared(block: bytes, end: int) -> bytes:
 
 
 def lookup3(data: bytes) -> int:
-    """Bob Jenkins's hash of one byte or more, `hashlittle` of lookup3.c (2006, public domain) with initial value 0."""
+    """Hash of at least one byte.
+
+    Source: Bob Jenkins, `hashlittle` of lookup3.c (2006, public domain), with initial value 0.
+    """
     a = b = c = 0xDEADBEEF + len(data) & _MASK
     blocks = (len(data) - 1) // 12
     for block in range(blocks):

@@ -1,4 +1,4 @@
-"""Tables of columns that grow together: rows of any number in, whole chunks out."""
+"""Writing tables: rows in batches of any size are stored in whole chunks."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,18 +15,23 @@ from idealgas.log.hdf5.safe_hdf5 import open_dataset
 
 
 class TableWriter:
-    """Columns of one row count that grow together: rows of any number in, whole chunks out.
+    """Writes a table, columns with the same number of rows, in whole chunks.
 
-    whole: rows in full chunks. fill: rows of the growing chunk. tail: those of them that are in the file.
+    Attributes:
+        columns: datasets, by path.
+        chunk: number of rows in a chunk.
+        whole: number of rows in full chunks.
+        fill: number of rows in the last chunk, which is not full.
+        tail: number of these that are in the file.
     """
 
     def __init__(self, columns: Mapping[str, StoredColumn], commit: Commit, rows: int) -> None:
-        """Continue after the first `rows` rows of those that `commit` says are in the file."""
+        """Continue after the first `rows` of the committed rows."""
         self.columns = dict(columns)
         self.chunk = next(iter(columns.values())).chunk[0]
         self.whole = rows // self.chunk * self.chunk
         self.fill = self.tail = rows - self.whole
-        self._plain = False  # the growing chunk lies plain in the file
+        self._plain = False  # whether the last chunk is uncompressed in the file
         self._pending = [np.zeros(column.chunk, column.dtype) for column in columns.values()]
         if self.fill:
             for (path, column), pending in zip(columns.items(), self._pending, strict=True):
@@ -35,10 +40,10 @@ class TableWriter:
                 pending[: self.fill] = committed[: self.fill]
 
     def append(self, start: int, stop: int, data: Sequence[np.ndarray]) -> None:
-        """Take rows `start` to `stop` of each column's data; store every chunk that becomes full.
+        """Append rows `start` to before `stop` of each column's data, and write every chunk that becomes full.
 
-        What lies before them may be overwritten: where there is room for the rows of the growing chunk, those are put
-        there, rather than all of the new ones behind the old.
+        Rows before `start` may be overwritten: if the pending rows fit there, they are copied in front of the new ones,
+        instead of all new ones behind them.
         """
         while start < stop:
             some = min(stop - start, self.chunk - self.fill)
@@ -56,7 +61,7 @@ class TableWriter:
                 self._close_chunk(self._pending)
 
     def _close_chunk(self, data: Sequence[np.ndarray]) -> None:
-        """Store a chunk that became full, and begin the next."""
+        """Write a full chunk and begin the next one."""
         self._write(data, self.chunk)
         for pending in self._pending:
             pending[: self.fill] = 0
@@ -65,16 +70,16 @@ class TableWriter:
         self._plain = False
 
     def store_tail(self, last: bool = False) -> None:
-        """Put the growing chunk into the file: plain, to be rewritten in place as it grows, unless it is the last."""
+        """Write the growing chunk, uncompressed, so that it can be rewritten in place; compressed if it is the `last` time."""
         if self.tail != self.fill:
             self._plain |= not last
             self._write(self._pending, self.fill)
             self.tail = self.fill
 
     def trim(self) -> None:
-        """Drop what the file has beyond the last row, and the torn end of a chunk that was being rewritten.
+        """Remove rows beyond the last one from the file, and rewrite a chunk whose writing was interrupted.
 
-        HDF5 is not left to cut within a chunk: it forgets the filter mask of one written past it.
+        Datasets are cut before that chunk: HDF5 loses the filter mask of a directly written chunk in which it cuts.
         """
         for column in self.columns.values():
             if column.extent > self.whole + self.fill:
@@ -85,11 +90,11 @@ class TableWriter:
 
     @property
     def stored(self) -> int:
-        """Rows in the file."""
+        """Number of rows in the file."""
         return self.whole + self.tail
 
     def checksums(self) -> dict[str, int]:
-        """CRC-32 of each column's stored rows in the growing chunk, 0 without any."""
+        """CRC-32 of each column's stored rows in the growing chunk, by path; 0 if it has no rows."""
         return {
             path: isal_zlib.crc32(pending[: self.tail]) if self.tail else 0
             for path, pending in zip(self.columns, self._pending, strict=True)
@@ -102,7 +107,7 @@ class TableWriter:
 
 @contextmanager
 def _named(path: str) -> Iterator[None]:
-    """Let an error say which dataset it is about."""
+    """Add the path of the dataset to the message of an error."""
     try:
         yield
     except (OSError, RuntimeError, ValueError, KeyError) as error:
@@ -110,7 +115,7 @@ def _named(path: str) -> Iterator[None]:
 
 
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, TableWriter]:
-    """The tables of a file, ready to grow after the first `keep` rows of each.
+    """Writers of all tables of a file, which continue after the first `keep` rows of each.
 
     To be called before SWMR mode, in which HDF5 retries indefinitely where an index is damaged.
     """
@@ -124,7 +129,7 @@ def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dic
 
 
 def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, fsync: bool = False) -> None:
-    """Flush the file, and then let the commit record say what it holds."""
+    """Flush the file, and then write the commit record of its rows."""
     descriptor = file.id.get_vfd_handle()
     file.flush()
     if fsync:
