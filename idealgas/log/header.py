@@ -74,8 +74,8 @@ class LogHeader:
     def attributes(self) -> dict[str, Any]:
         """Attributes of the file by name: format, format_version, seed, created (UTC), and versions.
 
-        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5, and `trajectory`, that of the laws
-        of motion: only a program with the same one resumes the log.
+        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5. `trajectory` is the version of
+        the laws of motion: only a program with the same one resumes the log.
         """
         return self._file.attributes("/", ROOT_ATTRIBUTES) | self._file.attributes("versions", VERSIONS)
 

@@ -89,7 +89,7 @@ class LogFile:
         return self._names.get(table, [])
 
     def stored(self, table: str) -> list[Column]:
-        """Columns of a table as they are in the file: name, type and shape of an entry. Of H5MD elements only the values."""
+        """Columns of a table as in the file: name, type and shape of an entry; of H5MD elements the values."""
         found = ((name, self._columns[f"{table}/{name}"]) for name in self.names(table))
         paths = ((name.removesuffix("/value").rpartition("/")[2], name, column) for name, column in found)
         return [
@@ -134,7 +134,7 @@ class LogFile:
         return self.checked(lambda: [text.decode() for text in texts], name)
 
     def checked(self, action: Callable[[], Result], what: str = "") -> Result:
-        """Result of an action that raises ValueError for invalid data. what: name of the data, if the error lacks it."""
+        """Result of an action that raises ValueError for invalid data. what: name of the data, put before the error."""
         return self._read(action, what and f"{what}: ")
 
     def attribute(self, name: str, attribute: str) -> np.ndarray:

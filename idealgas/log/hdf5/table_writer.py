@@ -70,7 +70,10 @@ class TableWriter:
         self._plain = False
 
     def store_tail(self, last: bool = False) -> None:
-        """Write the growing chunk, uncompressed, so that it can be rewritten in place; compressed if it is the `last` time."""
+        """Write the growing chunk, uncompressed, so that it can be rewritten in place.
+
+        last: whether it will not grow further, so that it can be compressed.
+        """
         if self.tail != self.fill:
             self._plain |= not last
             self._write(self._pending, self.fill)

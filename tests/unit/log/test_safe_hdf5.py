@@ -114,10 +114,10 @@ STRUCTURE = {
     "texts": (link("discs/species_name", np.array(["a", "b"], TEXTS)), "discs/species_name: not in chunks"),
     "references": (
         swap("discs/radius", data=None, shape=(25,), dtype=REFERENCES),
-        "discs/radius: of a type that no log has",
+        "discs/radius: unsupported type",
     ),
-    "compound": (swap("discs/radius", data=np.zeros(25, "f8,f8")), "discs/radius: of a type"),
-    "big-endian": (swap("discs/radius", data=np.ones(25, ">f8")), "discs/radius: of a type"),
+    "compound": (swap("discs/radius", data=np.zeros(25, "f8,f8")), "discs/radius: unsupported type"),
+    "big-endian": (swap("discs/radius", data=np.ones(25, ">f8")), "discs/radius: unsupported type"),
     "bomb": (bomb("discs/radius", size=2**16), "discs/radius: a compressed chunk: does not end at 200 bytes"),
     "large bomb": (bomb("discs/radius"), r"discs/radius: a chunk of more than 1,227 bytes"),
     "bomb among events": (bomb("events/velocity"), "events/velocity from row 0: a compressed chunk: does not end"),
@@ -136,7 +136,7 @@ STRUCTURE = {
     "format none": (attribute("/", "format_version", "1", dtype=TEXTS), "text of variable length"),
     "format 1 and 1": (attribute("/", "format_version", [1, 1]), "attribute format_version: not a single text"),
     "seeds": (attribute("/", "seed", np.array([b"1", b"2"])), "seed: not a single text"),
-    "seed nan": (attribute("/", "seed", np.nan), "seed: not a single text or whole number"),
+    "seed nan": (attribute("/", "seed", np.nan), "seed: not a single text or integer"),
     "not UTF-8": (attribute("/", "created", np.bytes_(b"\xff")), "/: attribute created: not UTF-8 text"),
     "record too narrow": (attribute("commit", "datasets", np.array([b"events/time"])), "not a record of 1 datasets"),
 }  # fmt: skip
