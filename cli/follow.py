@@ -56,15 +56,6 @@ def follow(path: str, once: bool) -> None:
 def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group":
     from rich.console import Group
 
-    state = (
-        "complete"
-        if log.complete
-        else "running"
-        if log.live
-        else "not closed (crash?)"
-        if log.unclosed
-        else "interrupted"
-    )
     rows = {
         "time": f"{seen.time:.6g}",
         "events": f"{seen.events:,}",
@@ -74,7 +65,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
     for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility)):
         rows[name] = "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}"
     rows["KS distance of speeds"] = "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}"
-    table = as_rich(facts(f"{log.path}: {state}", rows), width)
+    table = as_rich(facts(f"{log.path}: {log.run_state}", rows), width)
     return Group(*(f"premise: {sentence}" for sentence in seen.premises), *table, _histogram(seen))
 
 

@@ -22,7 +22,7 @@ def info(log: Log) -> dict[str, Any]:
             "bytes": os.path.getsize(log.path),
             **log.attributes,
             "command": log.command,
-            "state": "complete" if log.complete else "being written" if log.live else "interrupted",
+            "state": log.run_state,
         },
         "scene": {"title": log.scene.scene.title, "seed": log.scene.scene.seed, "method": log.scene.run.method},
         "gas": {

@@ -1,4 +1,4 @@
-"""Rows of a log as columns of one number a row, as the tables of other programs have them."""
+"""Rows of a log as columns with one number per row, for tables of other programs."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Columns = dict[str, np.ndarray]
 
 KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
-"""What the numbers in the column `kind` of events stand for."""
+"""Names of the numbers in the column `kind` of events."""
 
 CHOSEN_BY = {
     "events": ("disc", "t0", "t1"),
@@ -28,30 +28,34 @@ CHOSEN_BY = {
     "discs": ("disc", "times"),
     "observables": ("t0", "t1"),
 }
-"""Tables that a log has, and the arguments of `Log.to_pandas` that choose rows of them."""
+"""Tables of `Log.to_pandas`, and its arguments that select rows of each."""
 
 
 def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTORS) -> Columns:
-    """Columns (n,) from columns (n,) and (n, components), without those that are None.
+    """Columns (n,) from columns (n,) and (n, components).
 
-    vectors: names of components. A component without a name is numbered, as in name_0_1.
+    Args:
+        values: columns by name, None for missing ones.
+        vectors: names of components, by column; other components are numbered, as in name_0_1.
     """
     columns: Columns = {}
     for name, column in values.items():
         if name in vectors and column is not None:
             columns |= dict(zip(vectors[name], np.ascontiguousarray(column.T), strict=True))
         elif column is not None and column.ndim > 1:
-            for place in np.ndindex(column.shape[1:]):
-                columns["_".join(map(str, (name, *place)))] = column[:, *place]
+            for index in np.ndindex(column.shape[1:]):
+                columns["_".join(map(str, (name, *index)))] = column[:, *index]
         elif column is not None:
             columns[name] = column
     return columns
 
 
 def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[Columns]:
-    """Event rows block by block; the first block is empty, so that a log without events has its columns too.
+    """Event rows block by block. The first block is empty, so that the columns of a log without events are known.
 
-    names: of the log's event columns. `kind` is an index into KIND_NAMES.
+    Args:
+        blocks: blocks of event rows.
+        names: names of the event columns of the log; `kind` is an index into KIND_NAMES.
     """
     yield flat(empty_batch(0, columns_named(names))._asdict())
     for block in blocks:
@@ -59,14 +63,14 @@ def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[
 
 
 def flat_flights(batches: Iterable[Flights]) -> Iterator[Columns]:
-    """Flights batch by batch. `kind` is an index into KIND_NAMES, -1 where no event ends the flight."""
+    """Flights batch by batch. `kind` is an index into KIND_NAMES, -1 if no event ends the flight."""
     for batch in batches:
         columns = flat(batch._asdict(), {column.name: column.parts for column in FLIGHT_COLUMNS if column.parts})
         yield columns | {"kind": np.where(batch.kind == NO_EVENT, -1, batch.kind.astype(np.int8))}
 
 
 def flat_states(gas: Gas, states: Iterable[LogState]) -> Iterator[Columns]:
-    """One row for each disc, state by state. gas: the same discs. `species` is an index into their species' names."""
+    """A row for each disc, state by state. gas: the same discs; `species` is an index into its names of species."""
     ids = np.arange(len(gas), dtype=np.uint32)
     for state in states:
         values = state._asdict()
@@ -77,7 +81,7 @@ def flat_states(gas: Gas, states: Iterable[LogState]) -> Iterator[Columns]:
 
 
 def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
-    """One row for each disc, or for one chosen by its id, state by state, with radius and mass."""
+    """A row for each disc, or for the disc with an id, state by state, with radius and mass."""
     chosen = np.arange(len(gas)) if disc is None else np.flatnonzero(np.arange(len(gas)) == disc)
     for columns in flat_states(gas, states):
         names = ("time", "disc", "species")
@@ -88,7 +92,7 @@ def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) ->
 def flat_samples(
     observables: Mapping[str, tuple[np.ndarray, np.ndarray]], walls: Sequence[Wall], t0: float | None, t1: float | None
 ) -> Columns:
-    """Samples at times t0 ≤ t < t1, with their times; observables: times and values, by name."""
+    """Samples at times t0 ≤ t < t1, with their times. observables: times and values, by name."""
     time = next((time for time, _ in observables.values()), np.empty(0))
     some = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
     return flat(
@@ -98,17 +102,24 @@ def flat_samples(
 
 
 def check_choice(path: Path, what: str, choice: Mapping[str, Any]) -> None:
-    """LogError if there is no such table of a log, or if its rows are chosen by what they do not have."""
+    """Raise LogError for an unknown table, or for arguments (by name) that do not apply to it."""
     if what not in CHOSEN_BY:
         raise LogError(f"{path}: no table of {what} (allowed: {', '.join(CHOSEN_BY)})")
     if useless := [name for name, value in choice.items() if value is not None and name not in CHOSEN_BY[what]]:
-        raise LogError(
-            f"{path}: rows of {what} are not chosen by {', '.join(useless)} (allowed: {', '.join(CHOSEN_BY[what])})"
-        )
+        allowed = ", ".join(CHOSEN_BY[what])
+        raise LogError(f"{path}: {', '.join(useless)} does not apply to {what} (allowed: {allowed})")
 
 
 def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]]) -> "DataFrame":
-    """A DataFrame of all blocks. categories: what the numbers of a column stand for. LogError if pandas is missing."""
+    """DataFrame of all blocks.
+
+    Args:
+        blocks: rows as columns.
+        categories: names of the numbers of a column, by column.
+
+    Raises:
+        LogError: if pandas is missing.
+    """
     try:
         from pandas import Categorical, DataFrame
     except ModuleNotFoundError as error:
@@ -117,7 +128,9 @@ def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]
     for block in blocks:
         for name, column in block.items():
             parts.setdefault(name, []).append(column)
-    whole: dict[str, Any] = {name: np.concatenate(parts.pop(name)) for name in tuple(parts)}  # never all parts twice
+    whole: dict[str, Any] = {
+        name: np.concatenate(parts.pop(name)) for name in tuple(parts)
+    }  # so that memory holds the parts once
     for name, words in categories.items():
         whole[name] = Categorical.from_codes(whole[name], categories=list(words))
     return DataFrame(whole, copy=False)

@@ -1,6 +1,6 @@
-"""The rule of pairs: a collision of two discs is two rows with one time, one for each disc, the smaller id first.
+"""The rule of pairs: a collision of two discs is two event rows at the same time, that of the smaller id first.
 
-The kind of a row is that of its partner: a disc, the heat bath or a wall.
+The kind of a row agrees with its partner: a disc, the heat bath or a wall.
 """
 
 from collections.abc import Mapping
@@ -11,16 +11,21 @@ from idealgas.events import BATH, Column, Kind, columns_named
 from idealgas.jit import njit
 
 RULED = columns_named(("time", "disc", "partner", "kind"))
-"""Columns of events that the rule is about."""
+"""Event columns to which the rule applies."""
 
 NO_PAIR, OTHER_KIND = 1, 2
 DISC, KICK = int(Kind.DISC), int(Kind.KICK)
 
 
 def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
-    """Raise ValueError where rows are no pairs, or of a kind that is not their partner's.
+    """Check the rule of pairs. A pair may be divided between two chunks.
 
-    columns: chunks of some columns of events, from row `start` on. A pair may lie across the edge of a chunk.
+    Args:
+        columns: chunks of event columns, by name.
+        start: number of their first row.
+
+    Raises:
+        ValueError: if a row has no pair, or a kind that disagrees with its partner.
     """
     if "disc" not in columns or "partner" not in columns:
         return
@@ -32,7 +37,7 @@ def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
 
 
 def _of_one_type(columns: Mapping[str, np.ndarray], column: Column) -> np.ndarray:
-    """A column, empty if it is missing, of a type that does not depend on how it was read, to be compiled once."""
+    """A column, empty if it is missing, as a read-only view, so that one type is compiled."""
     found = columns.get(column.name, np.empty(0, column.dtype)).view()
     found.flags.writeable = False
     return found
@@ -40,7 +45,7 @@ def _of_one_type(columns: Mapping[str, np.ndarray], column: Column) -> np.ndarra
 
 @njit
 def _first_fault(time, disc, partner, kind, is_second_allowed):
-    """What is wrong first, or 0, and in which row; pairs before kinds. time, kind: may be empty."""
+    """Code of the first fault, pairs before kinds, or 0, and its row. time and kind may be empty."""
     n = disc.shape[0]
     odd = -1  # first row of another kind
     allowed = is_second_allowed  # whether the row may be the second one of a pair

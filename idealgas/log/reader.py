@@ -1,7 +1,7 @@
-"""Reading a log: its events, the states of the gas at any time, and what the run told of itself.
+"""Reading a log: its events, the state of the gas at any time, its samples and its summary.
 
-A log can be read whether its run came to its end, was killed or still goes on. Events are read in blocks, so that logs
-may be larger than memory.
+A log can be read during its run, and after it was interrupted or killed. Events are read in blocks, so that a log may
+be larger than memory.
 
     import numpy as np
     from idealgas import open_log
@@ -19,7 +19,7 @@ may be larger than memory.
 Without this package the columns are plain datasets:
 
     import h5py, json
-    with h5py.File("run.h5") as log:  # swmr=True while its writer lives, or if it died
+    with h5py.File("run.h5") as log:  # swmr=True while it is written, or if it was not closed
         rows = min(len(column) for column in log["events"].values())
         for start in range(0, rows, 65536):
             block = slice(start, min(start + 65536, rows))
@@ -40,6 +40,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from idealgas.errors import plain
 from idealgas.events import EventBatch
 from idealgas.files import is_locked
 from idealgas.log.dataframes import (
@@ -65,10 +66,14 @@ if TYPE_CHECKING:
 
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
-    """Open the log of a run for reading; use it in a `with` statement, or call its `close`.
+    """Open the log of a run for reading, in a `with` statement or with a call of `close` at the end.
 
-    Raises LogError if there is no such file, or if it is not a log of idealgas or is damaged; so do all methods of
-    `Log`, since most of the file is read only when it is asked for.
+    Args:
+        path: path of the log.
+
+    Raises:
+        LogError: if the file is missing, damaged, or not a log of idealgas. All methods of `Log` raise it too, as most
+            of the file is read on demand.
     """
     for _ in range(ATTEMPTS):
         try:
@@ -76,26 +81,32 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
         except LogError:
             if not os.path.exists(path) or not is_locked(Path(path)):
                 raise
-            sleep(PAUSE)  # a run that resumes the log may have truncated the rows that the record named
+            sleep(PAUSE)  # a run that resumes the log may just have removed rows
     return Log(LogFile(Path(path)))
 
 
 @cache
 def _rows(columns: tuple[str, ...]) -> Any:
-    """Type of blocks of rows with these columns; to make it takes longer than to read a short block."""
+    """Type of blocks of rows with these columns, cached, as creating it takes longer than reading a short block."""
     return namedtuple("Rows", columns)
 
 
 class Log(LogHeader):
-    """The log of a run, open for reading; a context manager that closes the file. `open_log` makes it.
+    """The log of a run, open for reading; a context manager that closes the file. Use `open_log` to create it.
 
-    path: the file. complete: whether the run came to its end. unclosed: whether it was not closed, or is still written
-    (`live` tells which). has_events: whether the run kept its events. box: (Lx, Ly), length; the origin is its lower
-    left corner. periodic: whether the box is periodic along x and along y. gravity: (gx, gy), length/time².
-    start_time: 0. len(log): number of event rows, two for a collision of two discs and one for any other event.
+    `len(log)` is the number of event rows, two for a collision of two discs and one for any other event. `print(log)`
+    shows the scene, the state of the run, and the file. Energies and temperatures are in units of mass length²/time²,
+    with Boltzmann's constant 1. Methods and properties raise LogError if the data they need are damaged.
 
-    Energies and temperatures are in units of mass length²/time², with Boltzmann's constant 1. Every method and property
-    that reads the file raises LogError if what it needs is damaged.
+    Attributes:
+        path: path of the file.
+        complete: whether the run reached its end.
+        unclosed: whether the file was not closed: it is still written (see `live`), or its run was killed.
+        has_events: whether the log has event rows.
+        box: (Lx, Ly), length; the origin is the lower left corner.
+        periodic: whether the box is periodic along x and along y.
+        gravity: (gx, gy), length/time².
+        start_time: 0.
     """
 
     start_time = 0.0
@@ -113,8 +124,33 @@ class Log(LogHeader):
         """Whether another process is writing this log now."""
         return self.unclosed and is_locked(self.path)
 
+    @property
+    def run_state(self) -> str:
+        """State of the run: "complete", "running", "not closed (crash?)" or "interrupted"."""
+        if self.complete:
+            return "complete"
+        if self.unclosed:
+            return "running" if self.live else "not closed (crash?)"
+        return "interrupted"
+
+    def __str__(self) -> str:
+        """Three lines: scene and discs; time span, events and state of the run; file."""
+        from rich.filesize import decimal
+
+        scene, names = self.scene, self.discs.species_names
+        counts = np.bincount(self.discs.species, minlength=len(names))
+        species = ", ".join(f"{count:,} {name}" for name, count in zip(names, counts, strict=True))
+        rows = f"{len(self):,} event rows" if self.has_events else "without event rows"
+        events = f"{self.summary['events']:,} events" if self.complete else rows
+        lines = (
+            f"{scene.scene.title or 'untitled scene'}: {len(self.discs):,} discs ({species}), {scene.run.method}",
+            f"t = {self.start_time:g} to {self.end_time:g}: {events}, {self.run_state}",
+            f"{self.path}: {decimal(self.path.stat().st_size)}",
+        )
+        return "\n".join(plain(line.replace("\n", "\\n")) for line in lines)
+
     def refresh(self) -> None:
-        """Take in what the run has stored since the log was opened or last refreshed."""
+        """Read what the run has stored since the log was opened or last refreshed."""
         self._file.refresh()
         self._update()
 
@@ -128,7 +164,7 @@ class Log(LogHeader):
             start = (self._rows - 1) // self._block * self._block
             last = {name: self._file.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
             self._file.checked(partial(check_pairs, last, start))
-            if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair, whose second did not get here
+            if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair whose second is not committed
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
         for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time"):
@@ -149,7 +185,7 @@ class Log(LogHeader):
 
     @cached_property
     def checkpoints(self) -> Checkpoints:
-        """States at the starts of epochs, from which the run can be resumed; read when they are indexed."""
+        """States at the starts of epochs, from which the run can be resumed; each is read when it is indexed."""
         found = Checkpoints(self._file, len(self), self._check_checkpoint)
         if self.complete and len(found) < self._file.rows("checkpoints"):
             row = self._file.column("checkpoints/row")[-1]
@@ -157,22 +193,22 @@ class Log(LogHeader):
         return found
 
     def _check_checkpoint(self, time: float, row: int) -> None:
-        """That the event rows before a checkpoint are those before its time."""
+        """Raise DamageError unless the event rows before a checkpoint are those before its time."""
         if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
             raise DamageError(self.path, f"checkpoints/row: {row} at t = {time:g} (got other events before it)")
 
     @cached_property
     def observables(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Samples that the run took as it went: times (P,) and values (P,) or (P, components), by name.
+        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name.
 
-        Always there: kinetic_energy, momentum, energy (of the discs), overlap (deepest, in units of the sum of two
+        Every log has kinetic_energy, momentum, energy (of the discs), overlap (deepest, relative to the sum of two
         radii), outside (farthest reach out of the box, in diameters), and the numbers of events, disc_collisions,
-        wall_hits and trials so far. With the effect: rotational_energy, potential_energy, piston_position,
-        piston_velocity, wall_energy (given to the discs since the start, one column a wall), dissipated_energy (lost
-        since the start in collisions of discs, then at each wall), kicks and bath_energy (of a heat bath, since the
-        start). With `log.pressure` the sums since the start that idealgas/log/README.md describes: kinetic_flow,
-        collision_flow, wall_virial, face_push, face_drag, face_hits and, in mixtures, pair_collisions; with
-        `log.heat_flow` kinetic_heat_flow and collision_heat_flow.
+        wall_hits and trials since the start. Effects add rotational_energy, potential_energy, piston_position,
+        piston_velocity, wall_energy (from each wall since the start), dissipated_energy (lost since the start in
+        collisions of discs, then at each wall), kicks and bath_energy (of a heat bath, since the start). With
+        `log.pressure` samples have the sums of idealgas/log/README.md: kinetic_flow, collision_flow, wall_virial,
+        face_push, face_drag, face_hits and, in mixtures, pair_collisions; with `log.heat_flow` also
+        kinetic_heat_flow and collision_heat_flow.
         """
         names = [name.partition("/")[0] for name in self._file.names("observables") if name.endswith("/value")]
         times = next((name for name in self._file.names("observables") if name.endswith("/time")), "")
@@ -184,13 +220,13 @@ class Log(LogHeader):
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
-        """(S,) times of the snapshots asked for by `log.snapshot_every`; they lie in the file as H5MD."""
+        """(S,) times of the snapshots, which `log.snapshot_every` adds to the file as in H5MD."""
         times = next((name for name in self._file.names("particles") if name.endswith("/time")), None)
         return self._file.column(f"particles/{times}") if times else np.empty(0)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The fields of the run's `Summary` by name; empty if the run did not come to its end."""
+        """Fields of the run's `Summary` by name; empty if the run has not reached its end."""
         names, values = (self._file.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
         found = self._file.checked(lambda: parse_summary(names, values), "summary/value")
         if self.has_events and found.get("rows", len(self)) != len(self):
@@ -212,12 +248,12 @@ class Log(LogHeader):
 
     @property
     def has_positions(self) -> bool:
-        """Whether the discs have positions: not in the Monte Carlo method, whose states have nan for them."""
+        """Whether the discs have positions; in the Monte Carlo method they are nan."""
         return "position" in self._file.names("checkpoints")
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the event columns, those of `EventBatch` that this log has; empty if events were not kept."""
+        """Names of the event columns, those of `EventBatch` that this log has; empty without events."""
         return tuple(self._file.names("events"))
 
     @overload
@@ -225,15 +261,21 @@ class Log(LogHeader):
     @overload
     def chunks(self, columns: Sequence[str], start: int = 0, stop: int | None = None) -> Iterator[Any]: ...
     def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
-        """Event rows `start` to `stop` (not included, by default all), in blocks of at most 65 536 rows.
+        """Event rows in blocks of at most 65 536 rows.
 
-        columns: names of those to read; each block is then a named tuple of arrays, (n,) or (n, 2). Without them it is
-        an `EventBatch`, which says what the columns are. Raises LogError if the log does not have a column.
+        Args:
+            columns: names of the columns to read; each block is then a named tuple of arrays, (n,) or (n, 2). By
+                default it is an `EventBatch`, which describes the columns.
+            start: number of the first row.
+            stop: number after the last row; by default the end of the log.
+
+        Raises:
+            LogError: if the log lacks a column.
         """
         block: Any = partial(EventBatch, position=None) if columns is None else _rows(tuple(columns))
         names = self.columns if columns is None else columns
         if self.has_events and (missing := [name for name in names if name not in self.columns]):
-            raise LogError(f"{self.path}: its events have no {' and no '.join(missing)} ({self.scene.run.method})")
+            raise LogError(f"{self.path}: events of method {self.scene.run.method} have no {' and no '.join(missing)}")
         stop = len(self) if stop is None else min(stop, len(self))
         for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
             rows = {name: self._file.chunk(f"events/{name}", first) for name in names}
@@ -242,8 +284,8 @@ class Log(LogHeader):
             yield block(**{name: column[some] for name, column in rows.items()})
 
     def row_at(self, time: float, side: str = "left") -> int:
-        """Number of the first event row at `time` or later; with side "right", of the first one later than `time`."""
-        low, high = 0, -(-len(self) // self._block)  # the row lies in one of these chunks, or just behind the last
+        """Number of the first event row at `time` or later; with side "right" of the first one after `time`."""
+        low, high = 0, -(-len(self) // self._block)  # the row is in one of these chunks, or follows the last
         while high - low > 1:
             middle = (low + high) // 2
             if middle not in self._first_times:
@@ -257,9 +299,12 @@ class Log(LogHeader):
         return low * self._block + int(times.searchsorted(time, side))  # type: ignore[call-overload]
 
     def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[EventBatch]:
-        """Event rows of one disc (by its id) or of all, at times t0 ≤ t < t1, in blocks (`EventBatch`) of any length.
+        """Event rows at times t0 ≤ t < t1, in blocks (`EventBatch`) of any length.
 
-        By default from the start to the end of the log.
+        Args:
+            disc: id of the disc; all by default.
+            t0: start of the window; by default that of the log.
+            t1: end of the window; by default that of the log.
         """
         start = 0 if t0 is None else self.row_at(t0)
         stop = len(self) if t1 is None else self.row_at(t1)
@@ -297,25 +342,35 @@ class Log(LogHeader):
         return FlightReader(self, edges, discs, columns).batches()
 
     def state_at(self, time: float) -> LogState:
-        """All discs at one time, exactly; at the time of an event, after it. Raises LogError as `frames` does."""
+        """All discs at one time, exactly; at the time of an event after the event. Raises LogError as `frames` does."""
         return next(self.frames([time]))
 
     def frames(self, times: Iterable[float]) -> Iterator[LogState]:
-        """All discs at each of the times, which must not decrease, in one pass over the log.
+        """All discs at each of several times, in one pass over the log.
 
-        The states are exact: those of the last event of every disc, moved on in free flight. A log without events has
-        states only at its checkpoints. Raises LogError at a time that the log does not cover or that is out of order.
+        The states are exact: every disc is in free flight after its last event. A log without events has states only
+        at its checkpoints.
+
+        Args:
+            times: times in increasing order.
+
+        Raises:
+            LogError: at a time that the log does not cover, or that is out of order.
         """
         replay: Replay | None = None
         base = -1
         earliest = self.start_time
         for time in times:
             if not earliest <= time <= self.end_time:
-                raise LogError(f"{self.path}: no state at time {time:g} (got up to {self.end_time:g}, asked in order)")
+                raise LogError(
+                    f"{self.path}: no state at time {time:g} (got up to {self.end_time:g}, in increasing order)"
+                )
             earliest = time
             nearest = int(self.checkpoints.times.searchsorted(time, "right")) - 1
             if not self.has_events and (nearest < 0 or self.checkpoints.times[nearest] != time):
-                raise LogError(f"{self.path}: no state at time {time:g}: without events only at checkpoints")
+                raise LogError(
+                    f"{self.path}: no state at time {time:g}: a log without events has states only at its checkpoints"
+                )
             if replay is None or nearest > base:
                 replay, base = self._replay(nearest), nearest
             for block in self.chunks(("time", "disc", *replay.state), replay.row, self.row_at(time, "right")):
@@ -331,17 +386,29 @@ class Log(LogHeader):
         t1: float | None = None,
         times: Iterable[float] | None = None,
     ) -> "DataFrame":
-        """A part of the log as a pandas DataFrame, which lies in memory as a whole.
+        """A table of the log as a pandas DataFrame in memory.
 
-        "events": one row for each event row at times t0 ≤ t < t1, of one disc (by its id) or of all: time, disc,
-        partner, kind (disc, wall, wall_end or piston), then after the event x, y, vx, vy, and with the effect
-        angular_velocity, image_x, image_y. "flights": one row for each flight of one disc or of all, cut at `times`,
-        with the columns of `Flights`; kind is missing where no event ends it. "discs": one row for each disc at each of
-        `times`, or at the start: time, disc, species, radius, mass, then as above. "observables": one row for each
-        sample at times t0 ≤ t < t1, columns as in `observables`, one for each component.
+        - "events": a row for each event row at times t0 ≤ t < t1, of one disc or of all: time, disc, partner, kind (a
+          category: disc, wall, ...), after the event x, y, vx, vy, and with the effect angular_velocity, image_x,
+          image_y.
+        - "flights": a row for each flight of one disc or of all, cut at `times`, with the columns of `Flights`; kind is
+          missing if no event ends the flight.
+        - "discs": a row for each disc at each of `times`, by default the start: time, disc, species, radius, mass, and
+          the state as above.
+        - "observables": a row for each sample at times t0 ≤ t < t1, with a column for each component of `observables`.
 
-        Needs pandas: pip install 'idealgas[notebook]'. Raises LogError without it, if the log has no events, if it does
-        not cover a time, or if an argument is of no use with `what`.
+        Needs pandas: pip install 'idealgas[notebook]'.
+
+        Args:
+            what: name of the table.
+            disc: id of a disc.
+            t0: start of the window.
+            t1: end of the window.
+            times: times in increasing order.
+
+        Raises:
+            LogError: without pandas, if the log has no events, if it does not cover a time, or if an argument does not
+                apply to the table.
         """
         check_choice(self.path, what, {"disc": disc, "t0": t0, "t1": t1, "times": times})
         if what == "events":
@@ -364,14 +431,14 @@ class Log(LogHeader):
         return Replay(start, self.columns, self.box, self.periodic, self.gravity)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
-        """The discs at the start, as a checkpoint has them."""
-        kept = self._file.names("checkpoints")
+        """Discs at the start, as in a checkpoint."""
+        names = self._file.names("checkpoints")
         arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
         if not self.has_positions:
             arrays["position"] = np.full_like(self.discs.position, np.nan)
-        if "image" in kept:
+        if "image" in names:
             arrays["image"] = np.zeros((len(self.discs), 2), np.int32)
-        if "angular_velocity" in kept:
+        if "angular_velocity" in names:
             arrays["angular_velocity"] = self._file.fixed("discs/angular_velocity")
         return arrays
 

@@ -1,4 +1,4 @@
-"""Opening a log for writing again: after a crash, or to continue it from a checkpoint."""
+"""Opening a log for writing again: after its writer was killed, or to continue it from a checkpoint."""
 
 import os
 import shutil
@@ -17,41 +17,83 @@ from idealgas.log.schema import FILE_OPTIONS
 
 
 def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None, force: bool = False) -> int:
-    """Close a log that was not closed, in place or as a copy `output`; returns the event rows kept.
+    """Close a log that was not closed, so that any HDF5 program opens it. A log that was closed stays as it is.
 
-    A log that was closed stays as it is. Another log under the name of the copy is replaced only with `force`. Raises
-    LogError if the file is damaged, OutputError if its writer lives or the copy cannot be written.
+    Args:
+        path: path of the log.
+        output: path of a copy that is closed instead of the log itself.
+        force: whether the copy may overwrite another log.
+
+    Returns:
+        Number of event rows.
+
+    Raises:
+        LogError: if the log is damaged.
+        OutputError: if another process is writing the log, or if the copy cannot be written.
     """
     path = Path(path)
-    if output is None:
-        return _recover(path)
-    with open_log(path) as log, written(output, LOG, force, [path]) as copy:
-        _kept(log)  # what is wrong is said of the log, not of its copy
-        shutil.copyfile(path, copy)
-        return _recover(copy)
-
-
-def _recover(path: Path) -> int:
     with open_log(path) as log:
-        rows, unclosed, keep = len(log), log.unclosed, _kept(log)
-    if unclosed:
-        _cut(path, keep)[0].close()
+        rows, keep = len(log), _committed(log) if log.unclosed else None
+        if output is not None:
+            with written(output, LOG, force, [path]) as copy:
+                shutil.copyfile(path, copy)
+                _close(copy, keep)
+            return rows
+    _close(path, keep)
     return rows
 
 
-def _kept(log: Log) -> dict[str, int]:
-    """Rows of each table that a log holds."""
-    held = {"events": len(log), "checkpoints": len(log.checkpoints)}
-    keep = {table: held.get(table, stored) for table, stored in log.commit.rows.items()}
-    if log.unclosed:
-        _check(log, keep)
+def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, TableWriter], int]:
+    """Open a log for appending after one of its checkpoints, or after its start.
+
+    Args:
+        path: path of the log.
+        checkpoint: index of the checkpoint, None for the start.
+
+    Returns:
+        The file, the writers of its tables, and the number of its last commit.
+
+    Raises:
+        LogError: if the log has no such checkpoint or is damaged.
+        OutputError: if another process is writing the log.
+    """
+    path = Path(path)
+    with open_log(path) as log:
+        rows = {"runs": log.commit.rows["runs"]}
+        if checkpoint is not None:
+            try:
+                index = range(len(log.checkpoints))[checkpoint]
+            except IndexError:
+                raise LogError(f"{path}: no checkpoint {checkpoint} among {len(log.checkpoints)}") from None
+            time, row = log.checkpoints.times[index], log.checkpoints.rows[index]
+            rows |= {"events": int(row), "checkpoints": index + 1}
+            rows["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
+            for times, _ in log.observables.values():  # of two samples at one time the second is that of an end
+                first, after = (int(times.searchsorted(time, side)) for side in ("left", "right"))  # type: ignore[call-overload]
+                rows["observables"] = min(first + 1, after)
+        keep = {table: rows.get(table, 0) for table in log.commit.rows}
+        _check_appendable(log, keep)
+    return _open_after(path, keep)
+
+
+def _committed(log: Log) -> dict[str, int]:
+    """Number of valid rows of each table, after which a log can be continued."""
+    rows = {"events": len(log), "checkpoints": len(log.checkpoints)}
+    keep = {table: rows.get(table, stored) for table, stored in log.commit.rows.items()}
+    _check_appendable(log, keep)
     return keep
 
 
-def _check(log: Log, keep: Mapping[str, int]) -> None:
-    """Raise DamageError where a log cannot be gone on with after these rows, before a byte of it is changed."""
+def _close(path: Path, keep: Mapping[str, int] | None) -> None:
+    """Close a log after the first `keep` rows of each table; None if it is closed already."""
+    if keep is not None:
+        _open_after(path, keep)[0].close()
+
+
+def _check_appendable(log: Log, keep: Mapping[str, int]) -> None:
+    """Raise DamageError if a log cannot be continued after these rows, before a byte of it is changed."""
     if log.live:
-        return  # it cannot be gone on with anyway, and its writer may be at work on these very bytes
+        return  # it will be refused, and its writer may be changing the same bytes
     try:
         with h5py.File(ClearedFile(log.path) if log.unclosed else log.path, "r") as file:
             open_tables(file, Commit.read(file), keep)
@@ -59,31 +101,10 @@ def _check(log: Log, keep: Mapping[str, int]) -> None:
         raise DamageError(log.path, reason(error)) from error
 
 
-def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, TableWriter], int]:
-    """A log to resume after one of its checkpoints, or from its start: file, tables, number of its last commit."""
-    path = Path(path)
-    with open_log(path) as log:
-        held = {"runs": log.commit.rows["runs"]}
-        if checkpoint is not None:
-            try:
-                index = range(len(log.checkpoints))[checkpoint]
-            except IndexError:
-                raise LogError(f"{path}: no checkpoint {checkpoint} among {len(log.checkpoints)}") from None
-            time, row = log.checkpoints.times[index], log.checkpoints.rows[index]
-            held |= {"events": int(row), "checkpoints": index + 1}
-            held["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
-            for times, _ in log.observables.values():  # the first sample of an instant is a checkpoint's, not an end's
-                first, after = (int(times.searchsorted(time, side)) for side in ("left", "right"))  # type: ignore[call-overload]
-                held["observables"] = min(first + 1, after)
-        keep = {table: held.get(table, 0) for table in log.commit.rows}
-        _check(log, keep)
-    return _cut(path, keep)
+def _open_after(path: Path, keep: Mapping[str, int]) -> tuple[h5py.File, dict[str, TableWriter], int]:
+    """Open a log for appending after the first `keep` rows of each table, and remove later rows.
 
-
-def _cut(path: Path, keep: Mapping[str, int]) -> tuple[h5py.File, dict[str, TableWriter], int]:
-    """Open for appending after the first `keep` rows of each table; what came after them is gone.
-
-    The record says so first: at any moment from then on, the rows kept are there.
+    The commit record is written first, so that the log is valid at any moment.
     """
     try:
         if has_consistency_flags(path):

@@ -1,4 +1,4 @@
-"""States of the gas from what a log holds: checkpoints, and between them the discs' records and free flight."""
+"""States of the gas at any time: a checkpoint, the events after it, and free flight after the last event of a disc."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, overload
@@ -11,15 +11,18 @@ from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
 MOST_BOXES = 2.0**30
-"""Box lengths of a free flight; images are counted in 32 bits."""
+"""Largest length of a free flight in box lengths; images are 32-bit integers."""
 
 
 class LogState(NamedTuple):
     """All discs at one time, in order of id.
 
-    position: (N, 2), length; nan in a gas without positions. velocity: (N, 2), length/time. image: (N, 2), number of
-    box lengths to add to a position to unwrap it; None without periodic sides. angular_velocity: (N,), 1/time; None
-    without rotation.
+    Attributes:
+        time: time of the state.
+        position: (N, 2), length; nan in a gas without positions.
+        velocity: (N, 2), length/time.
+        image: (N, 2), number of box lengths to add to a position to unwrap it; None without periodic sides.
+        angular_velocity: (N,), 1/time; None without rotation.
     """
 
     time: float
@@ -30,7 +33,15 @@ class LogState(NamedTuple):
 
 
 class Checkpoint(NamedTuple):
-    """A state that a run can go on from, after `row` event rows and `epoch` epochs; arrays by disc, and values."""
+    """A state from which a run can be resumed.
+
+    Attributes:
+        time: time of the state.
+        row: number of event rows before it.
+        epoch: number of epochs before it.
+        arrays: values of each disc, and other arrays, by name.
+        values: single numbers, by name.
+    """
 
     time: float
     row: int
@@ -40,20 +51,26 @@ class Checkpoint(NamedTuple):
 
     @property
     def position(self) -> np.ndarray:
-        """(N, 2), length."""
+        """Positions, (N, 2), length."""
         return self.arrays["position"]
 
     @property
     def velocity(self) -> np.ndarray:
-        """(N, 2), length/time."""
+        """Velocities, (N, 2), length/time."""
         return self.arrays["velocity"]
 
 
 class Checkpoints(Sequence[Checkpoint]):
-    """The checkpoints of a log up to event row `rows`, read when asked for."""
+    """The checkpoints of a log, each read from the file when it is indexed."""
 
     def __init__(self, file: LogFile, rows: int, check: Callable[[float, int], None]) -> None:
-        """check: raises LogError where a time and a row cannot be those of one checkpoint."""
+        """Read the times and rows of the checkpoints.
+
+        Args:
+            file: file of the log.
+            rows: number of event rows; later checkpoints are left out.
+            check: function that raises LogError for a time and a row that do not belong together.
+        """
         self._file, self._check = file, check
         self.times = file.column("checkpoints/time")
         self.rows = file.column("checkpoints/row")
@@ -87,9 +104,11 @@ class Checkpoints(Sequence[Checkpoint]):
 
 
 class Replay:
-    """Records of all discs, each as its last event left it; moves on through the event rows.
+    """The state of every disc after its last event, advanced through the event rows.
 
-    state: the columns of a record beside its time.
+    Attributes:
+        row: number of the next event row.
+        state: columns of events that `follow` needs in addition to time and disc.
     """
 
     def __init__(
@@ -108,31 +127,31 @@ class Replay:
         self._box, self._periodic, self._gravity = box, periodic, gravity
 
     def follow(self, block: Any) -> None:
-        """Take the next event rows; of several rows of a disc the last one stays."""
+        """Advance through a block of event rows."""
         self._time[block.disc] = block.time
         for name in self.state:
             self._record[name][block.disc] = getattr(block, name)
         self.row += len(block.time)
 
     def at(self, time: float) -> LogState:
-        """All discs in free flight to a time between this row and the next.
+        """All discs at a time between the last event row and the next.
 
-        ValueError if a disc flies through more boxes than an image can count.
+        Raises ValueError if a disc passes through more boxes than an image can count.
         """
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]
         delay = time - self._time
-        for axis, pull in enumerate(self._gravity):
+        for axis, acceleration in enumerate(self._gravity):
             falls = any(self._gravity)
-            place = position_after(position[:, axis], velocity[:, axis], pull if falls else None, delay)
+            coordinate = position_after(position[:, axis], velocity[:, axis], acceleration if falls else None, delay)
             if falls:
-                velocity[:, axis] = velocity_after(velocity[:, axis], pull, delay)
+                velocity[:, axis] = velocity_after(velocity[:, axis], acceleration, delay)
             if self._periodic[axis]:
-                place, boxes = wrapped(place, self._box[axis])
+                coordinate, boxes = wrapped(coordinate, self._box[axis])
                 if not (np.abs(boxes) < MOST_BOXES).all():
                     raise ValueError(
                         f"a disc flies through {np.abs(boxes).max():g} boxes (allowed up to {MOST_BOXES:g})"
                     )
                 now["image"][:, axis] += boxes.astype(np.int32)
-            position[:, axis] = place
+            position[:, axis] = coordinate
         return LogState(time, **now)

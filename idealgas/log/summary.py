@@ -1,4 +1,4 @@
-"""What a run tells of itself at its end, as its log has it."""
+"""The summary of a run, which its log has once the run has reached its end."""
 
 import json
 import math
@@ -9,24 +9,30 @@ from typing import Any, Self
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run came to, all of the log included if it was resumed.
+    """Summary of a run, over the whole log if it was resumed.
 
-    completed: whether the run reached the end that its scene asks for. end_time: time at which it ended. events: number
-    of events, the sum of disc_collisions (of two discs), wall_hits (of discs with walls and the piston) and kicks (by a
-    heat bath). trials: number of pairs tried by the Monte Carlo method. rows: event rows, two for a disc collision.
-    epochs: number of them.
-
-    energy_change: of the discs since the start, in units of energy. energy_drift: the same of discs and piston, with
-    what collisions lost and less what walls and a heat bath gave, relative to the largest of these: rounding errors
-    only.
-    deepest_overlap: of two discs, in units of the sum of their radii; farthest_outside: reach of a disc out of the box,
-    in units of its diameter. Both are taken at the starts of epochs and at the end; in the method of time steps
-    the overlap is that of all collisions, each of which has one.
-
-    seconds: wall time of this run without start-up and compilation; compile_seconds: that of compilation.
-
-    threads: number of threads of this run at its end; threads_because: why it is no other. shared_slices: pieces of
-    work that they shared; given_up_slices: those of them that one thread had to do again.
+    Attributes:
+        completed: whether the run reached the end of its scene.
+        end_time: time at the end, time.
+        events: number of events, the sum of the next three.
+        disc_collisions: number of collisions of two discs.
+        wall_hits: number of collisions with walls and the piston.
+        kicks: number of kicks by a heat bath.
+        trials: number of pairs tried by the Monte Carlo method.
+        rows: number of event rows, two for a collision of two discs.
+        epochs: number of epochs.
+        energy_change: change of the energy of the discs since the start, energy.
+        energy_drift: change of the energy of discs and piston, plus losses in collisions, minus the energy from walls
+            and a heat bath, relative to the largest of these: rounding errors only.
+        deepest_overlap: deepest overlap of two discs at epoch starts and the end, relative to the sum of their radii;
+            with time steps that of all collisions.
+        farthest_outside: farthest reach of a disc out of the box at these times, in diameters.
+        seconds: wall time of the last run without start-up and compilation, s.
+        compile_seconds: wall time of compilation, s.
+        threads: number of threads at the end of the last run.
+        threads_because: reason for this number of threads.
+        shared_slices: number of time slices that threads computed together.
+        given_up_slices: number of these that one thread computed again.
     """
 
     completed: bool
@@ -51,22 +57,22 @@ class Summary:
 
     @classmethod
     def of(cls, found: Mapping[str, Any]) -> Self:
-        """Make a summary from the fields that a log has; `found` raises its own error for a missing one."""
+        """Make a summary from the fields of a log; a missing one raises the error of `found`."""
         return cls(**{field.name: found[field.name] for field in fields(cls)})
 
     def as_dict(self) -> dict[str, Any]:
-        """The fields by name, ready for JSON."""
+        """Fields by name, ready for JSON."""
         return asdict(self)
 
 
 def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, Any]:
-    """The fields of a summary by name, from the rows of a log. Raises ValueError for what a summary cannot say."""
+    """Fields of a summary by name, from the rows of a log. Raises ValueError for an invalid value."""
     types = {field.name: field.type for field in fields(Summary)}
     found: dict[str, Any] = {}
     for name, value in zip(names, values, strict=True):
         key = name.decode()
         if key in found:
-            raise ValueError(f"{key} is there twice")
+            raise ValueError(f"{key} appears twice")
         found[key] = json.loads(value)
         if not _fits(found[key], types.get(key, float | None)):
             raise ValueError(f"{key}: {value.decode()}")
@@ -74,7 +80,7 @@ def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, 
 
 
 def _fits(value: Any, kind: Any) -> bool:
-    """Whether a value is of a type: text, a truth value, a whole number from 0 on, a finite number, or that or None."""
+    """Whether a value has the type of a field: str, bool, int (at least 0), float (finite), or one that may be None."""
     if kind is str or isinstance(value, str):
         return kind is str and isinstance(value, str)
     if kind is bool or isinstance(value, bool):

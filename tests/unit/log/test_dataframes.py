@@ -152,9 +152,9 @@ def test_a_log_that_nothing_happened_in(tmp_path):
     ("what", "choice", "line"),
     [
         ("walls", {}, r"no table of walls \(allowed: events, flights, discs, observables\)$"),
-        ("events", {"times": [1.0]}, r"rows of events are not chosen by times \(allowed: disc, t0, t1\)$"),
-        ("discs", {"t0": 1.0}, r"rows of discs are not chosen by t0 \(allowed: disc, times\)$"),
-        ("observables", {"disc": 1}, r"not chosen by disc \(allowed: t0, t1\)$"),
+        ("events", {"times": [1.0]}, r"times does not apply to events \(allowed: disc, t0, t1\)$"),
+        ("discs", {"t0": 1.0}, r"t0 does not apply to discs \(allowed: disc, times\)$"),
+        ("observables", {"disc": 1}, r"disc does not apply to observables \(allowed: t0, t1\)$"),
         ("discs", {"times": [1e9]}, r"no state at time 1e\+09"),
     ],
 )

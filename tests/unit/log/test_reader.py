@@ -5,6 +5,7 @@ import re
 import h5py
 import numpy as np
 import pytest
+from log_compare import scene_of
 from log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
 
 import idealgas.log.reader as log_reader
@@ -228,3 +229,31 @@ def test_steps_of_time_may_carry_discs_beyond_a_side(tmp_path):
     with open_log(tmp_path / "run.h5") as log:
         position = np.concatenate([rows.position for rows in log.chunks()])
         assert position.min() < 0 or (position > log.box).any()
+
+
+def test_print_of_a_log(tmp_path):
+    path = tmp_path / "run.h5"
+    simulate(scene_of("mixture", "run.events=100"), path)
+    with open_log(path) as log:
+        title, discs = log.scene.scene.title, len(log.discs)
+        lines = str(log).splitlines()
+        assert len(lines) == 3
+        assert lines[0].startswith(f"{title}: {discs:,} discs (")
+        assert lines[0].endswith("), event_driven")
+        assert all(name in lines[0] for name in log.discs.species_names)
+        assert lines[1] == f"t = 0 to {log.end_time:g}: 100 events, complete"
+        assert lines[2].startswith(f"{path}: ")
+
+
+def test_print_of_a_log_of_an_interrupted_run(tmp_path):
+    simulate(scene_of("quickstart", "run.events=100000"), tmp_path / "run.h5", interrupted=lambda: True)
+    with open_log(tmp_path / "run.h5") as log:
+        assert str(log).splitlines()[1] == f"t = 0 to {log.end_time:g}: {len(log):,} event rows, interrupted"
+
+
+def test_print_of_an_odd_title_is_three_lines(tmp_path):
+    path = tmp_path / "run.h5"
+    simulate(scene_of("quickstart", "run.events=100", 'scene.title="a\\nb\\u001b[31m"'), path)
+    with open_log(path) as log:
+        assert len(str(log).splitlines()) == 3
+        assert "\x1b" not in str(log)

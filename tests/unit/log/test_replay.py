@@ -86,7 +86,7 @@ def test_without_events_there_are_states_at_checkpoints(tmp_path):
     with idealgas.open_log(tmp_path / "run.h5") as log:
         last = log.checkpoints[-1]
         assert np.array_equal(log.state_at(last.time).position, last.position)
-        with pytest.raises(LogError, match="without events only at checkpoints"):
+        with pytest.raises(LogError, match="a log without events has states only at its checkpoints"):
             log.state_at(last.time / 3)
 
 

@@ -152,7 +152,7 @@ VALUES = {
     "summary nan": (texts("summary/value", 0, b"NaN"), "summary/value: end_time: NaN"),
     "summary text": (texts("summary/value", 1, b'"many"'), "summary/value: rows: \"many\""),
     "summary negative": (texts("summary/value", 1, b"-1"), "summary/value: rows: -1"),
-    "summary twice": (texts("summary/name", 1, b"end_time"), "summary/value: end_time is there twice"),
+    "summary twice": (texts("summary/name", 1, b"end_time"), "summary/value: end_time appears twice"),
     "early end": (texts("summary/value", 0, b"0.001"), "summary/value: end_time 0.001"),
     "wrong number of rows": (texts("summary/value", 1, b"299"), "summary/value: 299 rows"),
     "type of ids": (retyped("events/disc", "i8"), "events/disc: of type int64 .allowed uint32"),
