@@ -23,7 +23,7 @@ from calibration_cases import CASES, Case
 from scipy import stats
 
 from idealgas import open_log, parse_scene, simulate
-from idealgas.analysis.core import window
+from idealgas.analysis.core.equilibration import measure as read_window
 from idealgas.errors import NotApplicableError
 
 PART = 50
@@ -58,7 +58,7 @@ def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
         with open_log(path) as log:
             try:
                 estimates = list(case.measured(log))
-                share = window.measure(log, []).duration / (log.end_time - log.start_time) if case.steady else None
+                share = read_window(log, []).duration / (log.end_time - log.start_time) if case.steady else None
             except NotApplicableError:
                 estimates, share = [], 0.0
         for name, one in estimates:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import drift, energy_of_drift
+from idealgas.analysis.core.ensemble import drift, energy_of_drift
 from idealgas.log import Log
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.ensemble import drift
 from idealgas.analysis.core.premises import of_log
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.pressure.measure import PAIRS, pressure

@@ -12,8 +12,8 @@ from typing import IO
 import numpy as np
 from PIL import Image
 
-from idealgas.analysis.core.equilibrium import drift
-from idealgas.analysis.core.window import span
+from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.stream import span
 from idealgas.errors import OutputError, UserError
 from idealgas.files import check_output, written
 from idealgas.log import Log

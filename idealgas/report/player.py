@@ -13,9 +13,9 @@ from matplotlib import colormaps
 
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
-from idealgas.analysis.core.window import span
 from idealgas.errors import UserError
 from idealgas.events import Kind
 from idealgas.log import Log

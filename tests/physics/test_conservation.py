@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.ensemble import kept_momentum
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.window import measure
+from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure

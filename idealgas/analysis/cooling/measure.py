@@ -16,11 +16,11 @@ from idealgas.analysis.cooling.theory import (
     expected_course,
     grains_of,
 )
-from idealgas.analysis.core.equilibrium import degrees_of_freedom, drift
+from idealgas.analysis.core.ensemble import degrees_of_freedom, drift
 from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
-from idealgas.analysis.core.window import span
+from idealgas.analysis.core.stream import span
 from idealgas.analysis.theory import granular
 from idealgas.analysis.theory.granular import Grains
 from idealgas.analysis.theory.values import Theory

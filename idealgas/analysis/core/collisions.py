@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble
+from idealgas.analysis.core.ensemble import Ensemble
+from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
-from idealgas.analysis.core.window import Window
 from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
 from idealgas.log import Log

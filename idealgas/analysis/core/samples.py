@@ -2,16 +2,9 @@
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift
-from idealgas.analysis.core.window import (
-    MOST_BLOCKS,
-    Window,
-    after_gates,
-    first_steady,
-    must_apply,
-    must_be_shared,
-    span,
-)
+from idealgas.analysis.core.ensemble import drift, kind_of_state, must_apply, must_be_shared
+from idealgas.analysis.core.equilibration import Window, equilibrated_from
+from idealgas.analysis.core.stream import MOST_BLOCKS, span
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.sides import FIRST_SEGMENT, OUTWARD
@@ -110,8 +103,7 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     if start is not None:
         return Window(edges, 0, detected=False), impacts
     series = (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
-    begin = after_gates(log, edges)
-    window = Window(edges, begin + first_steady(log, (values[begin:] for values in series)), detected=True)
+    window = Window(edges, equilibrated_from(log, edges, series), detected=True, state=kind_of_state(log))
     energies = window.of(impacts.kinetic_flow[:, ::2]) - log.discs.mass.sum() * drift(log) ** 2
     must_be_shared(log, energies[:, None])
     return window, impacts

@@ -10,10 +10,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.ensemble import drift
+from idealgas.errors import UserError
 from idealgas.log import Flights, Log
 from idealgas.log.flights import FlightReader
 from idealgas.state import Gas
+
+FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
+DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
 
 VELOCITIES = ("velocity", "end_velocity", "new_velocity")
 
@@ -111,3 +115,41 @@ def add_to(sums: np.ndarray, index: np.ndarray, values: np.ndarray | None = None
 def began_in(edges: np.ndarray, start: np.ndarray, block: np.ndarray) -> np.ndarray:
     """Blocks in which intervals started that end in the given blocks."""
     return np.minimum(edges.searchsorted(start, "right") - 1, block)
+
+
+def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
+    """Times (B + 1,) between blocks of equal width between `start` and `end`.
+
+    A block is not shorter than the mean time between two events of a disc, unless there were too few blocks then.
+    """
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events (made with log.events = false)")
+    first, last = span(log, start, end)
+    rows = log.row_at(last, "right") - log.row_at(first, "right")
+    if rows == 0:
+        raise UserError(f"{log.path}: no event between t = {exact(first)} and {exact(last)}; {_covered(log)}")
+    number = len(log.discs)
+    most = min(max(DISC_BLOCKS // number, MANY_BLOCKS), MOST_BLOCKS)
+    return np.linspace(first, last, min(max(rows // number, FEWEST_BLOCKS), most) + 1)
+
+
+def span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
+    """Start and end of a window in units of time, by default those of the log.
+
+    Raises:
+        UserError: if the log does not cover the window, or if the end is not after the start.
+    """
+    first = log.start_time if start is None else start
+    last = log.end_time if end is None else end
+    if not log.start_time <= first < last <= log.end_time:
+        raise UserError(f"{log.path}: no window from t = {exact(first)} to {exact(last)}: {_covered(log)}")
+    return first, last
+
+
+def exact(number: float) -> str:
+    """A number with all the digits that tell it from any other."""
+    return repr(float(number)).removesuffix(".0")
+
+
+def _covered(log: Log) -> str:
+    return f"the log covers t = {exact(log.start_time)} to {exact(log.end_time)}"

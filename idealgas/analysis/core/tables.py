@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.collisions import CollisionRate, FreePath
+    from idealgas.analysis.core.equilibration import Window
     from idealgas.analysis.core.statistics import Estimate
-    from idealgas.analysis.core.window import Window
 
 
 class Number(NamedTuple):
@@ -110,7 +110,7 @@ def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath
 
 def describe(window: "Window") -> str:
     """One line that describes the window of time an analysis used."""
-    how = "from detected equilibrium" if window.detected else "as asked"
+    how = f"from detected {window.state}" if window.detected else "as asked"
     return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.window import span
+from idealgas.analysis.core.stream import span
 from idealgas.analysis.effusion.slit import Slit, slit_of
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError

@@ -6,12 +6,12 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import drift, energy_of_drift
+from idealgas.analysis.core.ensemble import drift, energy_of_drift
+from idealgas.analysis.core.equilibration import detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.steadiness import steady_from
-from idealgas.analysis.core.window import span
+from idealgas.analysis.core.stream import span
 from idealgas.analysis.evolution.course import PressureCourse, pressure_course
 from idealgas.analysis.evolution.theory import Law, expected_course
 from idealgas.analysis.theory.values import Theory
@@ -162,7 +162,7 @@ def _rest(log: Log, course: PressureCourse | None, law: Law | None) -> Estimate 
     if not log.scene.piston or not log.scene.piston.mass or course is None or course.track is None:
         return None
     places = course.track[1]
-    start = steady_from([places])
+    start = detect_equilibration([places])
     if start is None:
         return None
     if law is None or law.piston is None:

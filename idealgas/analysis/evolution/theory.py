@@ -6,7 +6,7 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import column_temperature, drift, kept_momentum, known_ensemble
+from idealgas.analysis.core.ensemble import column_temperature, drift, kept_momentum, known_ensemble
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.log import Log

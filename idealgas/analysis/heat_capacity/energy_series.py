@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import energy_of_drift
-from idealgas.analysis.core.window import after_gates, first_steady, measure
+from idealgas.analysis.core.ensemble import energy_of_drift
+from idealgas.analysis.core.equilibration import equilibrated_from, measure
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
@@ -63,8 +63,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
     first = 0
     if start is None:
-        opened = after_gates(log, time[at])
-        first = opened + first_steady(log, (kinetic[opened:], energy[opened:]))
+        first = equilibrated_from(log, time[at], (kinetic, energy))
     if len(at) - first < FEWEST:
         raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
     tail = slice(first, None)

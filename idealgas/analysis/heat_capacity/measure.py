@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.equilibrium import degrees_of_freedom, energy_of_drift
+from idealgas.analysis.core.ensemble import degrees_of_freedom, energy_of_drift
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble, energy_of_drift, known_ensemble
-from idealgas.analysis.core.settling import why_no_equilibrium
+from idealgas.analysis.core.ensemble import Ensemble, energy_of_drift, known_ensemble, nonequilibrium_reason
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -63,7 +62,7 @@ def premise(log: Log, start: float | None, end: float | None) -> Premise:
             few = f"{ensemble.dof} degrees of freedom are too few for a law"
             return Premise(None, None, ensemble.temperature, few)
         return Premise(ensemble, ensemble.temperature, ensemble.temperature, "")
-    why_not = why_no_equilibrium(log)
+    why_not = nonequilibrium_reason(log)
     if len(log.discs) == 1 and not why_not:
         why_not = "a single disc shares its energy with no other"
     temperature = None if why_not else min(log.scene.properties.temperatures, default=None)

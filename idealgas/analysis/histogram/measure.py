@@ -15,13 +15,13 @@ from scipy import stats
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.ensemble import nonstationary_reason
+from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
-from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.histogram.laws import premise
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
@@ -122,7 +122,7 @@ def histogram(
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if no disc moves or if there are too few events in the window.
     """
-    if start is None and why_never_stationary(log):
+    if start is None and nonstationary_reason(log):
         start = log.start_time
     if quantity in VELOCITY_QUANTITIES:
         window, found, no_law = _velocities(log, quantity, start, end, progress)
@@ -256,7 +256,7 @@ def _waits(log: Log, start: float | None, end: float | None, progress: Progress)
     tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
-    why_not = why_never_stationary(log)
+    why_not = nonstationary_reason(log)
     if log.has_positions and len(log.discs) < FEW:
         why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.bond_order import FOLD, bond_order
+from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.steadiness import unsteady
-from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.order.structure import Structure, WaveVectors
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import NotApplicableError, UserError

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
-from idealgas.analysis.core.window import Window
 from idealgas.sides import SIDES, axis_of
 from idealgas.state import Gas
 

@@ -22,18 +22,16 @@ from idealgas.analysis.core.collisions import (
     theory_of,
 )
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.equilibrium import known_ensemble
+from idealgas.analysis.core.ensemble import known_ensemble, nonstationary_reason
+from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import SampledImpacts, SampledWalls, sampled
-from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
-from idealgas.analysis.core.steadiness import unsteady
 from idealgas.analysis.core.wall_pressure import WallGauge
-from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
@@ -173,7 +171,7 @@ def _without_theory(
 ) -> Pressure:
     """Mechanical pressure of a gas without an equation of state; one that never settles is averaged from its start."""
     gas = log.discs
-    if start is None and why_never_stationary(log):
+    if start is None and nonstationary_reason(log):
         start = log.start_time
     if log.has_events:
         gauge, moments = WallGauge(log), Moments(log.gravity)

@@ -6,12 +6,11 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import kept_momentum
+from idealgas.analysis.core.ensemble import kept_momentum, nonstationary_reason
+from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import OMITTED, Key
-from idealgas.analysis.core.settling import why_never_stationary
 from idealgas.analysis.core.statistics import Estimate, mean_of_flux, mean_of_replicates, ratio
 from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
-from idealgas.analysis.core.window import Window
 from idealgas.log import Log
 
 PIECES = 8
@@ -71,7 +70,7 @@ class Mechanical:
 
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
-    some, why = slice(window.first, None), why_never_stationary(log)
+    some, why = slice(window.first, None), nonstationary_reason(log)
     faces = [(face, _holding(gauge, face, window)) for face in gauge.faces(window.edges)]
     balances = None if why else _balances(log, gauge, window, faces)
     return Mechanical(

@@ -7,11 +7,11 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import drift
+from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
-from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory

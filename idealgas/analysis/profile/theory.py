@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.equilibrium import column_temperature, known_ensemble
+from idealgas.analysis.core.ensemble import column_temperature, known_ensemble
 from idealgas.analysis.profile.conduction import conduct
 from idealgas.analysis.theory.values import Theory
 from idealgas.log import Log

@@ -13,11 +13,11 @@ from typing import Annotated
 import numpy as np
 from scipy import optimize
 
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
-from idealgas.analysis.core.window import span
+from idealgas.analysis.core.stream import span
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance
 from idealgas.analysis.relaxation.speeds import SpeedDistributions, speed_distributions
 from idealgas.analysis.relaxation.velocities import (

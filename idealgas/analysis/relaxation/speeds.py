@@ -7,10 +7,10 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.statistics import ks_distance
-from idealgas.analysis.core.window import span
+from idealgas.analysis.core.stream import span
 from idealgas.analysis.relaxation.acceptance import last_trial
 from idealgas.analysis.relaxation.velocities import (
     check_steady,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.analysis.core.equilibrium import Ensemble
+from idealgas.analysis.core.ensemble import Ensemble
 from idealgas.errors import UserError
 from idealgas.log import Log
 

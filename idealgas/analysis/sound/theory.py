@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.sound.law import Decay, Fluid
 from idealgas.analysis.theory import hard_discs
 from idealgas.log import Log

@@ -7,13 +7,12 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import known_ensemble
+from idealgas.analysis.core.ensemble import known_ensemble, nonequilibrium_reason, nonstationary_reason
+from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.settling import why_never_stationary, why_no_equilibrium
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.window import Window, measure
 from idealgas.analysis.theory.conserved import is_ergodic
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
@@ -80,9 +79,9 @@ def temperature(
     events are read. Raises UserError if there are no events in the window, and NotApplicableError if no start is given
     and the gas has no equilibrium.
     """
-    if start is None and len(log.scene.properties.temperatures) > 1 and not why_never_stationary(log):
+    if start is None and len(log.scene.properties.temperatures) > 1 and not nonstationary_reason(log):
         raise NotApplicableError(
-            f"{log.path}: no equilibrium, as {why_no_equilibrium(log)}: "
+            f"{log.path}: no equilibrium, as {nonequilibrium_reason(log)}: "
             "`idealgas profile` shows T in strips; --from T sets a start by hand"
         )
     moments = Moments(log.gravity)

@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.analysis.core.collisions import ExpectedRates
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.equilibrium import Ensemble, kept_momentum
+from idealgas.analysis.core.ensemble import Ensemble, kept_momentum
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.log import Log

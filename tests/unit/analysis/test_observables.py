@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, judge
 from idealgas.analysis.core.style import save
-from idealgas.analysis.core.window import measure
 from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
 from idealgas.analysis.heat_capacity.figure import heat_capacity_figure
 from idealgas.analysis.heat_capacity.measure import CLOSED, heat_capacity

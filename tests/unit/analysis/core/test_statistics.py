@@ -118,7 +118,7 @@ def test_bootstrap_error_of_a_mean():
 def test_statistics_import_little_of_scipy():
     """The rest of it would be half of the time in which most analyses start."""
     code = (
-        "import sys\nfrom idealgas.analysis.core import equilibrium, statistics, steadiness\n"
+        "import sys\nfrom idealgas.analysis.core import ensemble, equilibration, statistics\n"
         "assert not {'scipy.stats', 'scipy.optimize'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -46,7 +46,7 @@ def starts(log, *names):
 def test_one_start_for_all_analyses(log_of):
     log = log_of(BOX + LIGHT_AND_HEAVY + RUN)
     (start,) = starts(log, "temperature", "pressure", "transport", "profile", "histogram")
-    assert 0 < start < 0.2 * log.end_time  # a heavy disc takes some 25 collisions to become as hot as the light ones
+    assert 0 < start < 0.5 * log.end_time  # the heavy discs take some 25 of 150 collisions for a factor e
     with open_log(log.path) as opened:
         assert starts(opened, "profile") == {start}  # which no other analysis has found before
 
@@ -100,7 +100,7 @@ def test_gas_that_still_changes_at_the_end(log_of):
         "count = 400\nradius = 0.005\ntemperature = 1\nregion = [0, 0, 1, 1]\n"
     )
     log = log_of("[box]\nsize = [2, 1]\n" + slit + "[run]\nuntil = 15\n")
-    with pytest.raises(NotApplicableError, match="still changes at the end"):
+    with pytest.raises(NotApplicableError, match="still changes in the second half"):
         analyse(log, "temperature")
 
 

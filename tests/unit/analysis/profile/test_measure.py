@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.equilibrium import column_temperature
+from idealgas.analysis.core.ensemble import column_temperature
 from idealgas.analysis.profile.conduction import conduct
 from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.profile.theory import expected_profile, natural_axis

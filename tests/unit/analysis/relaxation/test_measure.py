@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from crafted import craft, put
 
-from idealgas.analysis.core.equilibrium import ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation import measure as module
 from idealgas.analysis.relaxation.acceptance import acceptance

@@ -1,15 +1,30 @@
-"""Conserved quantities of a gas, and the ensemble of its equilibrium: how the energy is shared among the discs."""
+"""Conserved quantities of a gas, and its equilibrium: whether it comes to one, and how discs share the energy there."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import special
 
 from idealgas.analysis.core.composition import Composition, composition
+from idealgas.analysis.core.statistics import mean
 from idealgas.analysis.theory import conserved
 from idealgas.analysis.theory.barometric import barometric_temperature
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
+
+UNLIKELY = 1e-5
+"""Probability that a gas in equilibrium is refused because of its mean temperatures."""
+
+FAR = 2.0
+"""Largest deviation of a mean temperature from its theory, in standard deviations of the temperature at an instant.
+
+Beyond it, energy is exchanged more slowly than the log is long, and error bars from the log are too small.
+"""
+
+ROUNDING = 1e-9
+"""Relative change below which a quantity is constant."""
 
 
 @dataclass(frozen=True)
@@ -115,3 +130,89 @@ def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
     energy += abs(g) * float(gas.mass @ (above - gas.radius))
     height = log.box[axis] - 2 * discs.radius
     return barometric_temperature(energy, freedom, discs.mass, discs.number, abs(g), height)
+
+
+def nonstationary_reason(log: Log) -> str:
+    """Why a gas never comes to a stationary state, as part of a sentence; empty if nothing is known to prevent it.
+
+    Such a gas is driven by a moving wall, or loses energy that no wall gives back.
+    """
+    scene, properties = log.scene, log.scene.properties
+    if properties.driven:
+        return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
+    if not properties.lossless and properties.isolated:
+        return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
+    return ""
+
+
+def nonequilibrium_reason(log: Log) -> str:
+    """Why a gas never comes to equilibrium, as part of a sentence; empty if nothing is known to prevent it."""
+    if why := nonstationary_reason(log):
+        return why
+    scene, properties = log.scene, log.scene.properties
+    if len(properties.temperatures) > 1:
+        sources = "walls" if properties.bath is None else "walls and heat bath"
+        return f"{sources} have {len(properties.temperatures)} temperatures"
+    if not properties.lossless:
+        return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
+    return ""
+
+
+def equipartition_violation(log: Log, energies: np.ndarray) -> str:
+    """Why the energy of a gas is not shared as in equilibrium, as part of a sentence; empty if it may be.
+
+    energies: (B, S, 2), sums of m vx² and of m vy² over the discs of each species in blocks of time, energy; or
+    (B, 1, 2), over all discs. Velocities are relative to the gas as a whole where nothing stops that.
+    """
+    ensemble, gas = known_ensemble(log), composition(log.discs)
+    if ensemble is None or not conserved.is_ergodic(log.scene, log.discs):
+        return ""
+    if len(log.discs) == 1 and ensemble.dof < math.inf:  # it has no other to share with
+        return ""
+    number = gas.number[:, None]
+    expected, names = number * ensemble.of_axes, [f" of {name}" for name in gas.name]
+    if energies.shape[1] == 1:
+        expected, number, names = expected.sum(axis=0, keepdims=True), number.sum(keepdims=True), [""]
+    for s, name in enumerate(names):
+        for axis, letter in enumerate("xy"):
+            theory = float(expected[s, axis] / number[s, 0])
+            found = mean(energies[:, s, axis] / number[s], theory)
+            dof, deviation = max(found.independent_samples - 1, 1.0), abs(found.deviation or 0.0)
+            far = FAR * theory * math.sqrt(2.0 / number[s, 0]) + ROUNDING * ensemble.temperature
+            if abs(found.value - theory) > far or special.stdtr(dof, -deviation) < UNLIKELY / 2:
+                return f"m v{letter}²{name} is {found.value:.4g} on average, and {theory:.4g} in equilibrium"
+    return ""
+
+
+def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
+    """Refuse a log whose scene lacks a needed property, or, without a given start, whose gas never becomes stationary.
+
+    Raises:
+        NotApplicableError: in both cases.
+    """
+    if strange := log.scene.lacking(*needs):
+        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+    if start is None and (why := nonstationary_reason(log)):
+        raise not_steady(log, why)
+
+
+def must_be_shared(log: Log, energies: np.ndarray) -> None:
+    """Refuse a log whose gas looks steady but does not have the temperatures of equilibrium.
+
+    energies: see `equipartition_violation`.
+    """
+    if why := equipartition_violation(log, energies):
+        raise not_steady(log, why)
+
+
+def kind_of_state(log: Log) -> str:
+    """State that a gas reaches: "equilibrium", or "steady state" if energy flows through it."""
+    return "steady state" if nonequilibrium_reason(log) else "equilibrium"
+
+
+def not_steady(log: Log, why: str) -> NotApplicableError:
+    """Error for a gas that does not reach its state, with the commands that apply; why: part of a sentence."""
+    state = "equilibrium" if nonstationary_reason(log) else kind_of_state(log)
+    return NotApplicableError(
+        f"{log.path}: no {state}, as {why}: `idealgas evolution` follows it in time; --from T sets a start by hand"
+    )

@@ -1,0 +1,347 @@
+"""Window of time that an analysis uses: given by the user, or from the time on at which equilibrium is detected.
+
+The start of a run is tested against the rest, as by Heidelberger & Welch (Oper. Res. 31, 1109 (1983)), with errors from
+autoregressive models of the last blocks. A transient of a gas can be as short as a few collisions per disc, so that
+means of stretches of 1, 2, 4, … blocks are compared, for each observable of `TimeSeries`.
+
+The start with the largest effective number of samples (Chodera, J. Chem. Theory Comput. 12, 1799 (2016)) leaves out
+these transients too, but more than a tenth of every fourth short run of a steady gas, as the estimate of that number
+fluctuates.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from scipy import special
+
+from idealgas.analysis.core.autoregression import error_of_mean, is_constant, process_of, variance_of_mean
+from idealgas.analysis.core.ensemble import (
+    ROUNDING,
+    kind_of_state,
+    known_ensemble,
+    must_apply,
+    must_be_shared,
+    not_steady,
+)
+from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
+from idealgas.analysis.core.flights import DensityBins, Moments
+from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.stream import Tally, block_edges, stream
+from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
+
+LEAST_TESTED = 16
+"""Least number of blocks in which a transient is looked for."""
+
+LEVEL = 0.05
+"""Largest probability that a steady gas loses a part of its start; that of losing ℓ blocks is proportional to 1/ℓ."""
+
+REFERENCE = 64
+"""Number of last blocks from which fluctuations are known; the last quarter if it has more, at most the last half."""
+
+STARTS = 33
+"""Number of starts that are tried in the first half, evenly spaced in the logarithm of time."""
+
+MARGIN = 2
+"""Ratio of the start to the time at which a transient disappears in the fluctuations, below which it continues."""
+
+MEMORIES = 10.0
+"""Correlation times after which a gas has forgotten its initial positions, where its equilibrium is not known."""
+
+BINS = 4
+"""Number of bins along each axis in which discs are counted for the centre of a species."""
+
+FEWEST_SAMPLES = 4.0
+"""Least number of independent samples with which a series counts as longer than its fluctuations."""
+
+_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float], int]] = WeakKeyDictionary()
+"""Block from which on the gas of a log is steady, by the number of event rows and the end of the window."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
+
+    Attributes:
+        edges: (B + 1,), times between the blocks.
+        first: index of the first block used.
+        detected: whether `first` was found by detection.
+        state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`.
+    """
+
+    edges: Annotated[np.ndarray, OMITTED]
+    first: Annotated[int, OMITTED]
+    detected: Annotated[bool, Key("equilibration_detected")]
+    state: Annotated[str, OMITTED] = "equilibrium"
+
+    @property
+    @reported
+    def start(self) -> float:
+        """Start of the window, time."""
+        return float(self.edges[self.first])
+
+    @property
+    @reported
+    def end(self) -> float:
+        """End of the window, time."""
+        return float(self.edges[-1])
+
+    @property
+    def duration(self) -> float:
+        """Length of the window, time."""
+        return self.end - self.start
+
+    @property
+    def width(self) -> float:
+        """Width of one block, time."""
+        return float(self.edges[1] - self.edges[0])
+
+    def of(self, sums: np.ndarray) -> np.ndarray:
+        """Sums (B, …) of a tally for the blocks of the window, divided by the width of a block: rates per time."""
+        return sums[self.first :] / self.width
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, ready for JSON."""
+        return as_dict(self)
+
+
+def measure(
+    log: Log,
+    tallies: Sequence[Tally],
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    needs: Sequence[str] = (),
+) -> Window:
+    """Read the events of a log between two times into tallies, and return the window of time to use.
+
+    Without `start` the window begins where equilibrium is detected, at one time for all analyses of a log.
+
+    Args:
+        log: the log to read.
+        tallies: sums to collect over the events.
+        start: start of the window, time; None for detected equilibrium.
+        end: end of the window, time; None for the end of the log.
+        progress: called with the number of rows read and the number of all rows.
+        needs: properties of a scene (`idealgas.effects.properties`) that the analysis relies on.
+
+    Raises:
+        UserError: if the window is empty or not covered by the log, if the log has no events, if an effect of the scene
+            takes one of the needed properties away, or if the gas does not become steady.
+    """
+    must_apply(log, start, needs)
+    edges = block_edges(log, start, end)
+    if start is not None:
+        if tallies:
+            stream(log, edges, tallies, progress)
+        return Window(edges, 0, detected=False)
+    known = _KNOWN.setdefault(log, {})
+    key = (len(log), edges[-1])
+    if key not in known:
+        series = TimeSeries(log, tallies)
+        stream(log, edges, series.tallies, progress)
+        first = equilibrated_from(log, edges, list(series.observables()), list(series.centres()))
+        must_be_shared(log, series.moments.flights[first:, :, 1:3] / (edges[1] - edges[0]))
+        known[key] = first
+    elif tallies:
+        stream(log, edges, tallies, progress)
+    return Window(edges, known[key], detected=True, state=kind_of_state(log))
+
+
+# ── what is looked at ──
+
+
+class TimeSeries:
+    """Observables of a gas in blocks of time that are steady in equilibrium, and the tallies that fill them."""
+
+    def __init__(self, log: Log, present: Iterable[Tally] = ()) -> None:
+        """Take the gas of a log; of the tallies that are `present` in an analysis those that fit are used."""
+        self.tallies = list(present)
+        self.moments = self._get(Moments, lambda: Moments(log.gravity))
+        self.impacts: Impacts | None = None
+        self.bins: DensityBins | None = None
+        if log.has_positions:
+            self.impacts = self._get(Impacts, lambda: Impacts(len(log.walls), log.periodic))
+            self.bins = self._get(DensityBins, lambda: DensityBins(BINS))
+
+    def _get(self, kind: type[Any], make: Callable[[], Any]) -> Any:
+        found = next((tally for tally in self.tallies if isinstance(tally, kind)), None)
+        if found is None:
+            found = make()
+            self.tallies.append(found)
+        return found
+
+    def observables(self) -> Iterator[np.ndarray]:
+        """Series (B,): fourth moment, energy of each species, along x less along y, numbers of events, virial."""
+        yield self.moments.flights[:, :, 3].sum(axis=1)
+        energies = self.moments.flights[:, :, 1:3]
+        yield from energies.sum(axis=2).T
+        yield energies.sum(axis=1) @ (1.0, -1.0)
+        yield from self.moments.events.T.astype(float)
+        if self.impacts is not None:
+            yield self.impacts.pair_virial
+
+    def centres(self) -> Iterator[tuple[np.ndarray, float]]:
+        """Sums (B,) of the positions of each species along x and y, in bins, and their variance for independent discs.
+
+        In a dense gas and in a sound wave they fluctuate more slowly than a short log can show.
+        """
+        if self.bins is not None:
+            place = np.arange(self.bins.bins) - (self.bins.bins - 1) / 2
+            for discs in np.moveaxis(self.bins.discs, 0, 2).reshape(-1, *self.bins.discs.shape[::3]):
+                yield discs @ place, float(discs[0].sum() * (place**2).mean())
+
+
+# ── detection ──
+
+
+class _Series(NamedTuple):
+    """Series of n blocks and its fluctuations, which are known from a reference, its last r blocks.
+
+    Attributes:
+        sums: (n + 1,), running sums of the deviations from the mean of the reference.
+        variance: (r,), variances of means of 1 to r blocks.
+        dof: degrees of freedom of the variance of long means.
+        memory: number of blocks per independent one.
+    """
+
+    sums: np.ndarray
+    variance: np.ndarray
+    dof: float
+    memory: float
+
+    def agrees(self, start: int, level: float, floor: float = 0.0) -> bool:
+        """Whether the means of all stretches that begin at `start` agree with the mean of the later half of the rest.
+
+        The variance of a mean of few blocks has more degrees of freedom than that of many: one for each such stretch.
+
+        Args:
+            start: index of a block.
+            level: probability that a steady series disagrees: half of it in one block, a quarter in two, and so on.
+            floor: least variance of a difference.
+        """
+        n, known = len(self.sums) - 1, len(self.variance)
+        middle = (start + n) // 2
+        lengths = 2 ** np.arange((middle - start).bit_length())
+        rest = (self.sums[n] - self.sums[middle]) / (n - middle)
+        difference = (self.sums[start + lengths] - self.sums[start]) / lengths - rest
+        scatter = self.variance[np.minimum(lengths, known) - 1] + self.variance[min(n - middle, known) - 1]
+        dof = np.maximum(self.dof, known / np.maximum(lengths, self.memory) - 1)
+        limit = special.stdtrit(dof, level / lengths / 4)  # half of the level, and of that on either side
+        return bool((difference**2 <= limit**2 * np.maximum(scatter, floor)).all())
+
+
+def detect_equilibration(series: Iterable[np.ndarray], bounded: Iterable[tuple[np.ndarray, float]] = ()) -> int | None:
+    """Index from which on all series are steady.
+
+    Args:
+        series: (n,) each, observables that are steady in equilibrium.
+        bounded: more of them, each with the variance of fluctuations that may be slower than the series is long. Unless
+            its start differs from the rest by more than these explain, the series is ignored.
+
+    Returns:
+        The index; None if the series are not steady from any start in their first half on.
+    """
+    every = [*((values, 0.0) for values in series), *bounded]
+    varied = [(values, floor) for values, floor in every if np.ptp(values) > ROUNDING * np.abs(values).max()]
+    if not varied or (n := len(varied[0][0])) < LEAST_TESTED:
+        return 0
+    level, half = LEVEL / len(varied), n // 2
+    tested = [(_tested(values, max(n // 4, min(half, REFERENCE))), floor) for values, floor in varied]
+    informative = [one for one, floor in tested if not floor or not one.agrees(0, level, floor)]
+    starts = np.unique(np.append(0, np.geomspace(1, half, STARTS).astype(int)))
+    for start in starts.tolist():
+        if all(one.agrees(start, level) for one in informative):
+            return min(MARGIN * start, half)
+    return None
+
+
+def _tested(values: np.ndarray, reference: int) -> _Series:
+    """Series to test, with the fluctuations of its last `reference` blocks about a linear trend."""
+    last = values[len(values) - reference :]
+    sums = np.append(0.0, np.cumsum(values - last.mean()))
+    time = np.arange(reference) - (reference - 1) / 2
+    residual = last - last.mean() - time * float(time @ last) / float(time @ time)
+    rounding = (ROUNDING * float(np.abs(values).max())) ** 2
+    if is_constant(residual):
+        return _Series(sums, np.full(reference, rounding), math.inf, 1.0)
+    process = process_of(residual)
+    samples = process.spread().samples
+    dof = max(samples - 2, 1.0)
+    covariance = process.covariances(reference) * samples / dof  # mean and trend take two degrees of freedom
+    variance = np.maximum(variance_of_mean(covariance), rounding)
+    return _Series(sums, variance, dof, max(reference * variance[-1] / covariance[0], 1.0))
+
+
+def memory_time(series: Iterable[np.ndarray]) -> float:
+    """Longest correlation time of series (n,), number of samples."""
+    varied = [values for values in series if np.ptp(values) > ROUNDING * np.abs(values).max()]
+    return max((error_of_mean(one).error ** 2 * len(one) / (2 * one.var()) for one in varied), default=0.0)
+
+
+def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:
+    """Sentence on a series (n,) at times (n,) whose mean is taken though it is not known to be steady.
+
+    A start of less than a tenth that does not agree with the rest hardly changes the mean.
+    """
+    first, samples = detect_equilibration([series]), error_of_mean(series).samples
+    if first is not None and first > len(series) // 10:
+        return (
+            f"{name} is not steady in the window: only from t = {time[first]:.4g} on do the means of its parts agree. "
+            "It takes a later start or a longer run.",
+        )
+    if first is None or samples < FEWEST_SAMPLES:
+        return (
+            f"{name} changes as slowly as the window is long: its mean and error may be those of one fluctuation, or "
+            "of a change that is not over. It takes a longer run.",
+        )
+    return ()
+
+
+# ── what a log allows ──
+
+
+def equilibrated_from(
+    log: Log, edges: np.ndarray, series: Sequence[np.ndarray], bounded: Sequence[tuple[np.ndarray, float]] = ()
+) -> int:
+    """Index of the first block from which on all series (B,) of a log are steady, after its gates have moved.
+
+    Where its equilibrium is not known, the gas is given MEMORIES correlation times to forget its initial positions.
+
+    Args:
+        log: the log.
+        edges: (B + 1,), times between the blocks, or times of B samples.
+        series: see `detect_equilibration`.
+        bounded: see there.
+
+    Raises:
+        NotApplicableError: if they are not steady from the middle on.
+    """
+    begin = after_gates(log, edges)
+    rest = [values[begin:] for values in series]
+    first = detect_equilibration(rest, [(values[begin:], floor) for values, floor in bounded])
+    if first is None:
+        raise not_steady(log, "it still changes in the second half of the log")
+    if known_ensemble(log) is None:
+        memory = math.ceil(MEMORIES * memory_time(values[first:] for values in rest))
+        first = max(first, min(memory, len(rest[0]) // 2))
+    return begin + first
+
+
+def after_gates(log: Log, edges: np.ndarray) -> int:
+    """Index of the first block after the last gate has opened or closed; 0 without any. edges: (B + 1,), of the blocks.
+
+    Raises:
+        NotApplicableError: if so few blocks are left that nothing can be said of them.
+    """
+    changes = [time for wall in walls_inside(log.scene) for time in wall.absence if edges[0] < time < edges[-1]]
+    if not changes:
+        return 0
+    begin = int(np.searchsorted(edges, max(changes)))
+    if begin > len(edges) - 1 - LEAST_TESTED:
+        raise not_steady(log, f"a gate opens or closes at t = {max(changes):g}, with too little of the log after it")
+    return begin
