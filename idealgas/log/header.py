@@ -21,7 +21,7 @@ class LogHeader:
 
     def __init__(self, file: LogFile) -> None:
         self._file = file
-        file.rules.in_steps = self._in_steps
+        file.rules.has_time_steps = self._has_time_steps
         self.path = file.path
         self.unclosed = file.unclosed
         self.box: tuple[float, float] = tuple(file.fixed("box").tolist())
@@ -58,7 +58,7 @@ class LogHeader:
 
         return self._file.checked(read, "runs/scene")
 
-    def _in_steps(self) -> bool:
+    def _has_time_steps(self) -> bool:
         """Whether discs move in time steps; False if the scene is damaged."""
         try:
             return self.scene.run.dt is not None

@@ -1,6 +1,6 @@
-"""What the datasets of a log may say: types and shapes as declared, numbers that are finite, in range and in order.
+"""Rules for the values of a log: declared types and shapes, and numbers that are finite, in range and in order.
 
-Every column is checked as it is read: no number of a file is used before. What breaks a rule raises ValueError.
+Every column is checked as it is read, before any of its numbers is used. A broken rule raises ValueError.
 """
 
 import math
@@ -35,33 +35,42 @@ NEEDED: dict[str, Sequence[Column]] = {
     "checkpoints": (*CHECKPOINT_COLUMNS, VELOCITY),
     "summary": SUMMARY_COLUMNS,
 }
-"""Columns that a table has in any case; only that of the events may not be there at all."""
+"""Columns that every table of this name has; a log may lack the table of events."""
 
 ORDERED = ("time", "row", "epoch", "step", "trial")
-"""Columns that never decrease, and are never negative."""
+"""Columns that never decrease and are never negative."""
 
 MOST_PACKED = 1100
-"""Bytes that one byte of a file may become: deflate gives no more than 1032."""
+"""Largest number of bytes that one byte of a file may become; deflate yields at most 1032."""
 
 LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST = 1e-100, 1e50, 1e150
-"""Bounds on masses and radii, on these and speeds, and on times, spins and observables: their products, and sums of
-their squares, are finite numbers too."""
+"""Least mass and radius; largest mass, radius and speed; largest time, spin and observable.
+
+Products of them, and sums of their squares, are finite."""
 
 Range = tuple[float, float]
 
 
 class Rules:
-    """The rules for one log."""
+    """The rules for the values of one log.
+
+    Attributes:
+        has_time_steps: function that returns whether discs move in time steps; called if one is outside the box.
+    """
 
     def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int, kicks: bool = False) -> None:
-        """box: width and height, length. discs, species, walls: how many there are.
+        """Declare the columns and ranges of a log.
 
-        kicks: whether a heat bath kicks discs.
+        Args:
+            box: width and height, length.
+            discs: number of discs.
+            species: number of species.
+            walls: number of walls.
+            kicks: whether a heat bath kicks discs.
         """
         self._kicks = kicks
-        self.in_steps: Callable[[], bool] = lambda: False
-        """Whether discs move in steps of time; asked only where one is beyond the box."""
+        self.has_time_steps: Callable[[], bool] = lambda: False
         self._box = box
         self._ranges: dict[str, Range] = {
             **dict.fromkeys(ORDERED, (0, LARGEST)),
@@ -98,7 +107,7 @@ class Rules:
         self._edges: dict[str, tuple[list[int], list[tuple[float, float]]]] = {}
 
     def check_fixed(self, name: str, stored: StoredColumn) -> None:
-        """Type and shape of a dataset that was stored before the run, in one chunk."""
+        """Check the type and shape of a dataset that was stored before the run, in one chunk."""
         column = self._declared[name]
         self._check_type(column, stored)
         if stored.shape != column.shape or stored.chunk != column.shape:
@@ -107,7 +116,7 @@ class Rules:
             raise ValueError(f"names of {stored.dtype.itemsize:,} bytes (allowed up to {MOST_NAME:,})")
 
     def check_table(self, columns: Mapping[str, StoredColumn], rows: int, file_size: int) -> None:
-        """Types, shapes and sizes of the datasets of a table, of which `rows` rows are valid."""
+        """Check the types, shapes and sizes of the datasets of a table with `rows` committed rows."""
         (chunk, *others) = {column.chunk[0] for column in columns.values()}
         if others:
             raise ValueError(f"{next(iter(columns))}: chunks of {chunk} and {others[0]} rows in one table")
@@ -115,7 +124,7 @@ class Rules:
             try:
                 self._check_column(path, stored)
                 if rows > stored.extent:
-                    raise ValueError(f"{rows:,} rows (allowed {stored.extent:,}, as many as there are)")
+                    raise ValueError(f"{rows:,} rows (allowed up to {stored.extent:,})")
                 if stored.extent * math.prod(stored.chunk[1:]) * stored.dtype.itemsize > MOST_PACKED * file_size:
                     raise ValueError(f"{stored.extent:,} rows in a file of {file_size:,} bytes")
             except ValueError as error:
@@ -131,7 +140,7 @@ class Rules:
                 Column(names[0], "", shape) if table == "observables" and names[-1] == "value" else None
             )
         elif column is None and table == "checkpoints" and len(names) == 1:
-            column = Column(names[0], "", stored.chunk[1:])  # of an effect or of a sum
+            column = Column(names[0], "", stored.chunk[1:])  # of an effect or an exact sum
         if column is None:
             raise ValueError("not a column of a log")
         if table == "observables" and stored.dtype.str not in ("<f8", "<i8"):
@@ -151,7 +160,7 @@ class Rules:
             )
 
     def check(self, path: str, data: np.ndarray, start: int = 0) -> None:
-        """The rows of a column from row `start` on."""
+        """Check the values of a column from row `start` on."""
         name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
@@ -160,26 +169,26 @@ class Rules:
         low, high = self._ranges.get(name, self._range_of_others(path))
         in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())
         if name == "position":
-            self._check_places(path, data, start)
+            self._check_positions(path, data, start)
             return
-        if not (in_order and low <= data[0] and data[-1] <= high):  # where the others lie between
+        if not (in_order and low <= data[0] and data[-1] <= high):  # which are then bounds on the others
             _check_range(data, low, high, start)
         if name in ORDERED:
             self._check_order(path, data, start, in_order)
         if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:
             raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0, or from {LEAST:g} on)")
-        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < LEAST:  # whose squares are no numbers
-            raise ValueError(f"no component beyond {largest:g} (allowed from {LEAST:g} on, or all 0)")
+        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < LEAST:  # whose squares underflow
+            raise ValueError(f"largest component {largest:g} (allowed from {LEAST:g} on, or 0)")
 
     def _range_of_others(self, path: str) -> Range:
-        """What values of a column may be that has no rule of its own."""
+        """Range of a column without a rule of its own."""
         if path.startswith("observables/"):
             return -LONGEST, LONGEST
-        unknown = path not in self._declared and path.startswith("checkpoints/")  # may be minus infinity: never yet
+        unknown = path not in self._declared and path.startswith("checkpoints/")  # minus infinity means never
         return (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST)
 
-    def _check_places(self, path: str, data: np.ndarray, start: int) -> None:
-        """Positions: in the box at the start, and later too unless steps of time carry discs beyond it."""
+    def _check_positions(self, path: str, data: np.ndarray, start: int) -> None:
+        """Check that positions are in the box, except after the start of a run with time steps."""
         width, height = self._box
         try:
             if width == height:
@@ -188,26 +197,26 @@ class Rules:
                 for axis, most in enumerate(self._box):
                     _check_range(data[..., axis], 0, most, start)
         except ValueError:
-            if path.startswith("discs/") or not self.in_steps():
+            if path.startswith("discs/") or not self.has_time_steps():
                 raise
             _check_range(data, -MOST, MOST, start)
 
     def _check_order(self, path: str, data: np.ndarray, start: int, in_order: bool) -> None:
-        """Rows of a chunk, unless they are known to be in order, and against the chunks that were read before."""
+        """Check the order of the rows of a chunk, unless it is known, and of the chunks that have been read."""
         if not in_order and (falls := data[1:] < data[:-1]).any():
             raise ValueError(f"decreases in row {start + 1 + int(falls.argmax())}")
         starts, edges = self._edges.setdefault(path, ([], []))
-        place = bisect(starts, start)
-        if place and starts[place - 1] == start:
+        index = bisect(starts, start)
+        if index and starts[index - 1] == start:
             return
-        if (place and edges[place - 1][1] > data[0]) or (place < len(starts) and data[-1] > edges[place][0]):
+        if (index and edges[index - 1][1] > data[0]) or (index < len(starts) and data[-1] > edges[index][0]):
             raise ValueError("decreases from one chunk to the next")
-        starts.insert(place, start)
-        edges.insert(place, (data[0].item(), data[-1].item()))
+        starts.insert(index, start)
+        edges.insert(index, (data[0].item(), data[-1].item()))
 
 
 def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
-    """That all numbers are in a range, and none is nan."""
+    """Check that all numbers are in a range and none is nan."""
     if data.min() >= low and data.max() <= high:
         return
     wrong = ~((data >= low) & (data <= high))
@@ -217,55 +226,55 @@ def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
 
 
 def box_of(data: np.ndarray) -> tuple[float, float]:
-    """Width and height of the box."""
+    """Width and height of the box. Raises ValueError for other data."""
     if data.shape != BOX.shape or data.dtype != np.dtype(BOX.dtype) or not ((data >= LEAST) & (data <= MOST)).all():
-        raise ValueError(f"box: not a width and a height (allowed {LEAST:g} to {MOST:g})")
+        raise ValueError(f"box: invalid width and height (allowed {LEAST:g} to {MOST:g})")
     width, height = data.tolist()
     return width, height
 
 
 def check_names(names: Mapping[str, Sequence[str]]) -> None:
-    """That each table has the columns that it needs. names: of the columns, by table."""
+    """Check that each table has the columns that it needs. names: names of the columns, by table."""
     for table, columns in NEEDED.items():
         if table == "events" and table not in names:
             continue
         if missing := [column.name for column in columns if column.name not in names.get(table, ())]:
-            raise ValueError(f"{table}/{missing[0]}: not there")
+            raise ValueError(f"{table}/{missing[0]}: missing")
     for column in EVENT_COLUMNS if "events" in names else ():
         here, there = column.name in names["events"], column.name in names["checkpoints"]
         if column.when not in ("", TRIALS) and here != there:
-            raise ValueError(f"{'checkpoints' if here else 'events'}/{column.name}: not there")
+            raise ValueError(f"{'checkpoints' if here else 'events'}/{column.name}: missing")
     for table, found in names.items():
         if len(set(found)) != len(found):
-            raise ValueError(f"{table}: a column is there twice")
+            raise ValueError(f"{table}: a column appears twice")
         if table in ("observables", "particles") and not any(name.endswith("/time") for name in found):
             raise ValueError(f"{table}: no times")
 
 
 def check_species(species: np.ndarray, names: Sequence[str]) -> None:
-    """That each species has a disc and a name of its own."""
+    """Check that each species has a disc and a name of its own."""
     if missing := set(range(len(names))) - set(np.unique(species).tolist()):
         raise ValueError(f"no disc of species {min(missing)}")
     if not all(names):
         raise ValueError("a species without a name")
     if len(set(names)) != len(names):
-        raise ValueError("two species of one name")
+        raise ValueError("two species with the same name")
 
 
 def check_boundary(words: object) -> None:
-    """What the box says of its sides along x and y."""
+    """Check the boundary conditions of the box along x and y."""
     if not isinstance(words, list) or len(words) != 2 or not set(words) <= {b"none", b"periodic"}:
-        raise ValueError("attribute boundary: not none or periodic along x and along y")
+        raise ValueError("attribute boundary: invalid (allowed none or periodic, along x and along y)")
 
 
 def check_images(periodic: bool, names: Sequence[str]) -> None:
-    """That discs have images where sides are periodic, and nowhere else. names: of the columns of checkpoints."""
+    """Check that discs have images if and only if sides are periodic. names: names of the columns of checkpoints."""
     if periodic != (IMAGE.name in names):
-        raise ValueError(f"{'not there, with' if periodic else 'there, without'} periodic sides")
+        raise ValueError(f"{'missing, with' if periodic else 'present, without'} periodic sides")
 
 
 def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:
-    """That the first walls are the sides of the box, and the others segments in it."""
+    """Check that the first walls are the sides of the box, and the others segments in it."""
     for wall, ends in zip(walls, side_ends(box), strict=False):
         if (wall.start, wall.end) != ends:
             raise ValueError(f"not the sides of a box of {box[0]:g} by {box[1]:g} (got {wall.start} to {wall.end})")
@@ -276,10 +285,10 @@ def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:
 
 
 def check_sizes(discs: int, species: int, walls: int, file_size: int) -> None:
-    """That there are as many discs, species and walls as a log may have."""
+    """Check the numbers of discs, species and walls."""
     if not 1 <= discs <= file_size:
         raise ValueError(f"discs/id: {discs:,} discs in a file of {file_size:,} bytes")
     if not 1 <= species <= discs:
         raise ValueError(f"discs/species_name: {species} names of {discs} discs")
     if walls < len(SIDES):
-        raise ValueError(f"walls/name: {walls} walls (allowed {len(SIDES)} and more)")
+        raise ValueError(f"walls/name: {walls} walls (allowed from {len(SIDES)} on)")

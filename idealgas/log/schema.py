@@ -1,8 +1,8 @@
-"""The layout of a log: every dataset with its type, unit and chunk, and the making of an empty file.
+"""The schema of a log: every dataset with its type, unit and chunk, and the creation of an empty file.
 
-Rows come in tables, a dataset for each column: `runs`, whose last row has the scene that the log is of; `events`;
-`checkpoints`; `observables`; the snapshots in `particles`; and `summary`, whose rows say that the run came to its end,
-and how. How many rows of each hold is in the commit record (`commit.py`), nowhere else.
+A table has a dataset for each column. The tables are `runs`, whose last row has the scene of the log, `events`,
+`checkpoints`, `observables`, the snapshots in `particles`, and `summary`, which has rows once the run has reached its
+end. Only the commit record (`commit.py`) has the number of valid rows of each table.
 """
 
 import importlib.metadata
@@ -29,11 +29,17 @@ VERSION = 1
 H5MD_VERSION = (1, 1)
 FILE_OPTIONS: dict = {"libver": ("v110", "v110")}
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
-"""Small blocks never lie across two pages of the file, so that a process cannot die between two halves of one."""
+"""Small blocks do not extend over two pages of the file, so that a killed process leaves no half of one."""
 
 
 class Wall(NamedTuple):
-    """A wall as events refer to it: wall k is partner -1 - k."""
+    """A wall of the box or inside it; wall k is partner -1 - k of events.
+
+    Attributes:
+        name: name of the wall.
+        start: (x, y) of its first end, length.
+        end: (x, y) of its other end, length.
+    """
 
     name: str
     start: tuple[float, float]
@@ -41,17 +47,17 @@ class Wall(NamedTuple):
 
 
 CHECKPOINT_COLUMNS = (Column("time", "f8", (), "time"), Column("row", "i8"), Column("epoch", "i8"))
-"""What every checkpoint has: its time, the event rows before it, and the number of epochs before it."""
+"""Columns of all checkpoints: time, and the numbers of event rows and of epochs before it."""
 CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
-"""What a checkpoint has of each disc."""
+"""Default columns of a checkpoint with an entry for each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
-"""Shared by all observables, whose step is the number of epochs, and by all that snapshots have of a disc."""
+"""Columns that all observables share, with the number of epochs as step, and all elements of snapshots."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
-"""Texts of each run that wrote into the log."""
+"""Texts of the run, and of each run that resumed it."""
 KICKS = "kicks"
-"""Column of checkpoints, a number of events, that a log has if a heat bath kicks its discs."""
+"""Column of checkpoints, the number of kicks, in logs with a heat bath; other logs have no events of that kind."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
-"""One row for each thing that a run tells of itself at its end; the values are JSON."""
+"""Columns of the summary, with a row for each field; the values are JSON."""
 DISC_COLUMNS = (
     POSITION,
     VELOCITY,
@@ -63,42 +69,50 @@ ID = Column("id", "u4")
 BOX, GRAVITY = Column("box", "f8", (2,), "length"), Column("gravity", "f8", (2,), "length/time^2")
 ENDPOINTS = Column("endpoints", "f8", (2, 2), "length")
 NAME = Column("name", "S")
-"""What is known before a run: of each disc, of the whole, and of each wall; species have names too."""
+"""Columns of the header: of the discs, the box, the walls, and names of walls and species."""
 MOST_NAME = 1024
-"""Bytes of a name, enough for any word of a scene: tables repeat it in every row."""
+"""Largest size of a name, bytes. Tables of other programs repeat it in every row."""
 
 ROOT_ATTRIBUTES = ("format", "format_version", "seed", "created")
 PACKAGES = ("numpy", "numba", "h5py", "isal")
 VERSIONS = ("idealgas", "python", *PACKAGES, "hdf5", "trajectory")
-"""Attributes of the root and of `versions` that say what made a log."""
+"""Attributes of the root and of the group `versions`."""
 
 SHORTEST_CHUNK = 8192
-"""Rows of events in a chunk of a run that cannot have many; another one may resume its log."""
+"""Least number of event rows in a chunk; a short run may be resumed to a later end."""
 DISC_RECORDS = 4096
-"""A chunk of checkpoints or snapshots holds about as many disc records, and at least one state."""
+"""Approximate number of disc records in a chunk of checkpoints or snapshots, which has at least one state."""
 SAMPLES = 1024
+"""Number of rows in a chunk of `observables`."""
 SUMMARY_ROWS = 64
-"""Rows of `observables` and of `summary` in a chunk."""
+"""Number of rows in a chunk of `summary`."""
 SCENE_SLACK = 256
+"""Bytes by which the text of a scene may grow when its run gets another end."""
 COMMAND_SIZE = 1024
-"""Bytes by which the text of a scene may grow as its run gets a new end, and of a command."""
+"""Largest size of a command, bytes."""
 
 
 def box_walls(box: tuple[float, float]) -> list[Wall]:
-    """The four sides of the box."""
+    """Sides of the box as walls: left, right, bottom, top."""
     return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
 
 
 @dataclass(frozen=True)
 class LogLayout:
-    """What a log has room for, and what a disc flies in, as both are known before the run.
+    """Everything about a log that is known before its run.
 
-    walls: wall k of the events. boundary: of each axis, "none" or "periodic". gravity: acceleration between events,
-    length/time². disc_columns: (N,) further constants and start values.
-    event_columns: of an event's row; without any no events are kept. checkpoint_arrays, checkpoint_values: what a
-    checkpoint has of each disc, and of the whole. observables: of a sample. snapshot_arrays: what a snapshot has of
-    each disc; without any there are none. most_rows: how many event rows the run may have, if that is less than a full
-    chunk. compression: "gzip" or "none".
+    Attributes:
+        walls: walls by their numbers in events.
+        boundary: "none" or "periodic", along x and along y.
+        gravity: acceleration between events, length/time².
+        disc_columns: (N,) further constants and start values of the discs.
+        event_columns: columns of events; without any the log has no events.
+        checkpoint_arrays: columns of checkpoints with an entry for each disc.
+        checkpoint_values: other columns of checkpoints.
+        observables: columns of samples.
+        snapshot_arrays: columns of snapshots with an entry for each disc; without any the log has no snapshots.
+        most_rows: largest number of event rows of the run, if that is less than a full chunk.
+        compression: "gzip" or "none".
     """
 
     walls: Sequence[Wall]
@@ -115,7 +129,7 @@ class LogLayout:
 
 
 def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajectory: int) -> None:
-    """What is known before the run: versions, box, discs and walls."""
+    """Write the header: versions, box, discs and walls."""
     objects = Objects(file.id, layout.compression)
     set_attributes(
         file.id,
@@ -143,9 +157,9 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
 
 
 def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:
-    """Empty tables and the commit record, which lists the tables' datasets. A table without columns does not exist.
+    """Create empty tables, without those that have no columns, and the commit record, which lists their datasets.
 
-    text_sizes: bytes of each text in a row of `runs`.
+    text_sizes: size of each text in a row of `runs`, bytes.
     """
     objects = Objects(file.id, layout.compression)
     paths: list[str] = []
@@ -160,7 +174,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
         paths.append(path)
 
     def add_elements(group: str, columns: Sequence[Column], rows: int) -> None:
-        """As H5MD has them, with times and steps in common."""
+        """Add elements of H5MD with common steps and times."""
         first = f"{group}/{columns[0].name}"
         for shared in SAMPLE_COLUMNS:
             add(f"{first}/{shared.name}", shared, rows)
@@ -192,7 +206,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
 
 
 def _describe_particles(file: h5py.File, objects: Objects) -> None:
-    """What H5MD asks for beside the snapshots: the box, and what stays the same, which is there already."""
+    """Add what H5MD requires for snapshots: the box, and links to the constants of the discs."""
     box = objects.group("particles/discs/box")
     set_attributes(box, dimension=2, boundary=file["box"].attrs["boundary"])
     objects.link("particles/discs/box/edges", "box")
@@ -202,14 +216,14 @@ def _describe_particles(file: h5py.File, objects: Objects) -> None:
 
 @cache
 def _versions() -> dict[str, np.bytes_]:
-    """Of the programs that make a log."""
+    """Versions of the programs that write the log."""
     packages = {name: importlib.metadata.version(name) for name in PACKAGES}
     versions = {"idealgas": __version__, "python": platform.python_version(), **packages}
     return {name: np.bytes_(version) for name, version in {**versions, "hdf5": h5py.version.hdf5_version}.items()}
 
 
 def _text(texts: Sequence[str]) -> np.ndarray:
-    """UTF-8 strings of fixed length: what has variable length lies in a heap without checksums."""
+    """UTF-8 strings of fixed length, as HDF5 stores those of variable length without checksums."""
     coded = [text.encode() for text in texts]
     size = max([1, *map(len, coded)])
     return np.array(coded, h5py.string_dtype("utf-8", size))

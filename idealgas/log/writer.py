@@ -1,4 +1,4 @@
-"""Writing a log while the run goes on: buffers go round between an engine and a thread that stores them."""
+"""Writing a log during its run: buffers circulate between the engine and a thread that stores them."""
 
 import errno
 import json
@@ -25,12 +25,23 @@ from idealgas.log.schema import LogLayout
 from idealgas.state import Gas
 
 BUFFERS = 8
+"""Number of buffers of event rows."""
 FLUSH_ROWS = 4 * BLOCK
+"""Number of event rows after which a log is committed."""
 FLUSH_SECONDS = 1.0
+"""Time after which a log is committed, s."""
 
 
 class _Rows(NamedTuple):
-    """Rows `start` to `stop` of the data for a table, on their way to the thread; `buffer` goes back to the pool."""
+    """Rows for a table, queued for the thread.
+
+    Attributes:
+        table: writer of the table.
+        start: first row in the data.
+        stop: row after the last one in the data.
+        data: columns of the table.
+        buffer: buffer of the data that returns to the pool, if any.
+    """
 
     table: TableWriter
     start: int
@@ -43,12 +54,15 @@ _END = object()
 
 
 class LogWriter:
-    """A log being written; a context manager that closes it as interrupted unless `close` came first.
+    """A log that is being written; a context manager that closes it as interrupted unless `close` is called first.
 
-    Batches are stored in order. It is committed every 2¹⁸ rows or every second, whichever comes first:
-    what is committed survives the death of the process, and with `fsync` that of the machine. Failures to store (a full
-    disk, a file that was removed) come up as OutputError with exit code 1 in the next call; what was committed before a
-    disk was full stays readable.
+    Data are stored in the order of the calls, and committed every 2¹⁸ rows or every second. Committed data survive a
+    kill of the process, and with `fsync` a power failure. A failure to store data (a full disk, a removed file) raises
+    OutputError with exit code 1 in the next call; what was committed before remains readable.
+
+    Attributes:
+        path: path of the log.
+        rows: number of event rows written.
     """
 
     def __init__(
@@ -64,9 +78,21 @@ class LogWriter:
         fsync: bool = False,
         force: bool = False,
     ) -> None:
-        """Make the file with all its datasets. An existing log is replaced only with `force`.
+        """Create the file with all its datasets.
 
-        gas: the start state. scene_text: the resolved scene, TOML. trajectory: version of the laws that move the discs.
+        Args:
+            path: path of the log.
+            gas: discs at the start.
+            layout: what the log contains.
+            scene_text: scene with all defaults, TOML.
+            seed: seed of the run.
+            command: command line of the run.
+            trajectory: version of the laws of motion.
+            fsync: whether each commit waits until it is on the disk.
+            force: whether an existing log is overwritten.
+
+        Raises:
+            OutputError: if the file exists (without `force`) or cannot be written.
         """
         path = Path(path)
         check_output(path, LOG, force)
@@ -92,7 +118,7 @@ class LogWriter:
         except (OSError, RuntimeError, ValueError) as error:
             abandon(file)
             part.unlink(missing_ok=True)
-            if isinstance(error, ValueError):  # larger than what is ever read
+            if isinstance(error, ValueError):  # larger than any log that can be read
                 raise OutputError(f"{path}: {error}") from error
             raise storage_error(path, error) from error
         self._start(path, file, tables, commit.sequence + 1, fsync)
@@ -106,11 +132,18 @@ class LogWriter:
         scene_text: str | None = None,
         command: str = "",
     ) -> Self:
-        """Continue a log after one of its checkpoints; later rows, checkpoints, samples and snapshots are cut off.
+        """Continue a log after one of its checkpoints, and remove later rows, checkpoints, samples and snapshots.
 
-        checkpoint: index into `Log.checkpoints`, None to start over. scene_text: of the run as it goes on, if that is a
-        run of its own. Raises LogError where there is no such checkpoint, OutputError where another process is still
-        writing the file.
+        Args:
+            path: path of the log.
+            checkpoint: index into `Log.checkpoints`, None to start again.
+            fsync: whether each commit waits until it is on the disk.
+            scene_text: scene of the run that continues the log, TOML; None if it is not a new run.
+            command: command line of that run.
+
+        Raises:
+            LogError: if there is no such checkpoint.
+            OutputError: if another process is writing the log.
         """
         from idealgas.log.recovery import reopen
 
@@ -127,7 +160,7 @@ class LogWriter:
         self._flushed = self.rows = self._events.stored if self._events else 0
         self._due = math.inf
         self._names = [path.partition("/")[2] for path in self._events.columns] if self._events else []
-        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the last one back is still in the caches
+        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the last one returned is still in the caches
         for _ in range(BUFFERS if self._events else 0):
             self._free.put(empty_batch(BLOCK + 1, columns_named(self._names)))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)
@@ -138,9 +171,9 @@ class LogWriter:
     # ── the caller's side ──
 
     def batch(self) -> EventBatch:
-        """A buffer to fill; one at a time. Waits while all are in use.
+        """A buffer to fill, one at a time. Waits while all are in use.
 
-        It ends a row behind the chunk in the file, for the second row of a pair, and begins where the chunk has got to.
+        It has room for the rest of the chunk in the file, and one row more for the second row of a pair.
         """
         self._lent = self._free.get()
         self._raise()
@@ -148,12 +181,12 @@ class LogWriter:
 
     @property
     def behind(self) -> bool:
-        """Whether more than one buffer is still to be stored."""
+        """Whether more than one buffer waits to be stored."""
         return self._events is not None and self._free.qsize() < BUFFERS - 1
 
     def write(self, rows: int) -> None:
-        """Hand over the first `rows` rows of the buffer that `batch` gave, not to be touched any more."""
-        assert self._events is not None, "this log keeps no events"
+        """Store the first `rows` rows of the buffer from `batch`, which may not be used afterwards."""
+        assert self._events is not None, "this log has no events"
         start = self.rows % BLOCK
         self.rows += rows
         data = [getattr(self._lent, name) for name in self._names]
@@ -162,25 +195,31 @@ class LogWriter:
     def checkpoint(
         self, time: float, epoch: int, arrays: Mapping[str, np.ndarray], values: Mapping[str, float] | None = None
     ) -> None:
-        """The state after the rows written so far; names as declared. The arrays are copied.
+        """Store a checkpoint after the event rows written so far, and after the sample of the same time.
 
-        Comes after the sample of the same instant: a resumed log goes on after its checkpoint.
+        Args:
+            time: time of the state.
+            epoch: number of epochs before it.
+            arrays: values of each disc, and other arrays, by declared name; they are copied.
+            values: single numbers, by declared name.
         """
         given = {"time": time, "row": self.rows, "epoch": epoch, **arrays, **(values or {})}
         self._put_row("checkpoints", given)
 
     def observe(self, time: float, epoch: int, values: Mapping[str, float]) -> None:
-        """One sample of every observable."""
+        """Store a sample of all observables, by declared name. epoch: number of epochs before it."""
         self._put_row("observables", {"time": time, "step": epoch, **values})
 
     def snapshot(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
-        """All discs at a time, by the names declared. The arrays are copied."""
+        """Store a snapshot of all discs, by declared name. step: its number. The arrays are copied."""
         self._put_row("particles", {"time": time, "step": step, **arrays})
 
     def close(self, summary: Mapping[str, Any] | None = None) -> None:
-        """Store what is left and close the file; without a summary (JSON values) the run counts as interrupted.
+        """Store all queued data and close the file.
 
-        The summary's `end_time` is the time up to which the log is complete.
+        Args:
+            summary: fields of the summary, JSON values; without it the run counts as interrupted. Its `end_time` is the
+                time up to which the log covers the motion.
         """
         if not self._thread.is_alive():
             return
@@ -211,7 +250,7 @@ class LogWriter:
         names, values = list(summary), [json.dumps(value) for value in summary.values()]
         sizes = [np.dtype(column.dtype).itemsize for column in schema.SUMMARY_COLUMNS]
         if not summary or max(map(len, names)) > sizes[0] or max(map(len, values)) > sizes[1]:
-            raise ValueError("a summary has at least one entry, and short ones")
+            raise ValueError("a summary needs at least one field, and all have to be short")
         return _Rows(self._tables["summary"], 0, len(summary), [np.array(names, "S"), np.array(values, "S")])
 
     def _put_row(self, name: str, given: Mapping[str, Any]) -> None:
@@ -250,13 +289,13 @@ class LogWriter:
                 self._free.put(item.buffer)
 
     def _store(self, item: object) -> None:
-        """Take one item's rows, if there is one, and commit when it is time, at once what a run can go on from."""
+        """Store the rows of an item, if any, and commit when it is due; a first checkpoint is due immediately."""
         if isinstance(item, _Rows):
             item.table.append(item.start, item.stop, item.data)
-            patience = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
-            self._due = min(self._due, time.monotonic() + patience)
+            delay = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
+            self._due = min(self._due, time.monotonic() + delay)
         if item is _END:
-            for _ in range(2):  # both slots of the record say how it ended
+            for _ in range(2):  # so that both slots of the record have the end
                 self._commit(tails=True, last=True)
         elif time.monotonic() >= self._due:
             self._commit(tails=True)
@@ -264,7 +303,7 @@ class LogWriter:
             self._commit(tails=False)
 
     def _commit(self, tails: bool, last: bool = False) -> None:
-        """Commit all rows, or, without `tails`, of the events those in full chunks."""
+        """Commit all rows; without `tails` only event rows in full chunks. last: whether it is the end of the log."""
         if not os.fstat(self._file.id.get_vfd_handle()).st_nlink:
             raise FileNotFoundError(errno.ENOENT, "the file was removed")
         for table in self._tables.values():
@@ -278,7 +317,7 @@ class LogWriter:
 
 
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:
-    """A row of `runs`. A command may be cut off, a scene not."""
+    """A row of `runs`, with a truncated command. Raises ValueError for a scene that does not fit."""
     scene_size, command_size = (column.dtype.itemsize for column in runs.columns.values())
     scene, cut = scene_text.encode(), command.encode()[:command_size].decode(errors="ignore").encode()
     if len(scene) > scene_size:

@@ -1,4 +1,4 @@
-"""Logs as files that other programs read: tables of events or discs, and frames of all discs."""
+"""Export of logs for other programs: tables of events or discs, and frames of all discs."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -15,9 +15,13 @@ from idealgas.log.reader import Log
 
 
 class Format(NamedTuple):
-    """A kind of file. write_events is None where it can only hold frames; both write and return the number written.
+    """A file format.
 
-    streams: whether they write to an open binary file from its beginning to its end; the others take a path.
+    Attributes:
+        ending: file name extension.
+        write_frames: function that writes frames at some times and returns their number.
+        write_events: function that writes all events and returns the number of rows; None without events.
+        streams: whether these functions write to an open binary file from start to end; otherwise they take a path.
     """
 
     ending: str
@@ -42,16 +46,26 @@ def export(
     times: Sequence[float] | None = None,
     force: bool = False,
 ) -> int:
-    """Write the states at some times, or without `times` all events, to a file of one of FORMATS.
+    """Write the states at some times, or all events, to a file.
 
-    output: a path, where the file appears when it is whole, and an existing one of its kind is replaced only with
-    `force`; or an open binary file, such as a pipe, for a kind that streams. Returns the number of frames or event
-    rows. Raises LogError for what this kind of file or this log does not have, or when a package is missing, and
-    OutputError if the file cannot be written.
+    Args:
+        log: log to export.
+        kind: name of one of FORMATS.
+        output: path, where the file appears when it is complete; or an open binary file, such as a pipe, for a format
+            that streams.
+        times: times of the frames in increasing order; None for events.
+        force: whether an existing file of the same format is overwritten.
+
+    Returns:
+        Number of frames or event rows.
+
+    Raises:
+        LogError: if the format or the log lacks the requested data, or a package is missing.
+        OutputError: if the file cannot be written.
     """
     made = FORMATS[kind]
     if times is None and made.write_events is None:
-        raise LogError(f"{kind} has no room for events (allowed frames; events go into csv or parquet)")
+        raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
     if times is None and not log.has_events:
         raise LogError(f"{log.path}: has no events (made with log.events = false)")
     if times is not None and kind not in ("csv", "parquet") and not log.has_positions:
@@ -70,7 +84,7 @@ def export(
 def _target(
     made: Format, kind: str, output: str | os.PathLike[str] | BinaryIO, force: bool, log: Log
 ) -> Iterator[Path | BinaryIO]:
-    """What a format writes to."""
+    """Path or file for a format to write to."""
     if isinstance(output, (str, os.PathLike)):
         with written(output, made.ending, force, [log.path]) as part:
             if not made.streams:
@@ -80,8 +94,8 @@ def _target(
                 yield file
         return
     if not made.streams:
-        able = ", ".join(name for name, each in FORMATS.items() if each.streams)
-        raise LogError(f"{kind} needs a file of its own (allowed for a pipe {able})")
+        allowed = ", ".join(name for name, each in FORMATS.items() if each.streams)
+        raise LogError(f"{kind} cannot be written to a pipe (allowed {allowed})")
     try:
         yield output
         output.flush()
@@ -92,7 +106,7 @@ def _target(
 
 
 def frame_times(log: Log, choice: str) -> np.ndarray:
-    """Times of frames: `N` of them from the start to the end of the log, or `every=DT`. LogError for anything else."""
+    """Times of frames for `N`, so many from start to end of the log, or `every=DT`. Raises LogError otherwise."""
     every, equals, text = choice.rpartition("=")
     start, end = log.start_time, log.end_time
     try:
@@ -102,4 +116,4 @@ def frame_times(log: Log, choice: str) -> np.ndarray:
             return np.linspace(start, end, number)
     except (ValueError, OverflowError, MemoryError):
         pass
-    raise LogError(f"no choice of frames (got {choice}; allowed a number of them, or every=DT with a time > 0)")
+    raise LogError(f"invalid choice of frames (got {choice}; allowed their number, or every=DT with a time > 0)")

@@ -19,16 +19,16 @@ from idealgas.log.reader import Log
 
 
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
-    """HOOMD's schema of GSD: two dimensions, the origin in the middle of the box, float32.
+    """Write GSD with HOOMD's schema: two dimensions, the origin in the middle of the box, float32.
 
-    GSD knows no walls: its box counts as periodic. Its names are ASCII.
+    GSD has no walls, so its box counts as periodic. Its names are ASCII.
     """
     import gsd.hoomd
 
     try:
         with gsd.hoomd.open(str(path), "w") as file:
             _append_gsd(file, log, times)
-    except RuntimeError as error:  # so gsd calls it where the end of a file cannot be written
+    except RuntimeError as error:  # raised by gsd if the end of a file cannot be written
         raise OSError(errno.EIO, str(error)) from error
     return len(times)
 
@@ -49,7 +49,7 @@ def _append_gsd(file: Any, log: Log, times: Sequence[float]) -> None:
         particles.velocity = _with_zeros(state.velocity)
         if state.image is not None:
             particles.image = _with_zeros(state.image)
-        if step == 0:  # frames without them have those of the first
+        if step == 0:  # other frames inherit them
             particles.types = [name.encode("ascii", "backslashreplace").decode() for name in discs.species_names]
             particles.typeid, particles.mass, particles.diameter = discs.species, discs.mass, 2 * discs.radius
         file.append(frame)
@@ -66,13 +66,13 @@ ELEMENTS = frozenset(
 """Symbols of the chemical elements."""
 
 PROPERTIES = "id:I:1:type:S:1:species:S:1:tags:I:1:pos:R:3:velo:R:3:momenta:R:3:radius:R:1:mass:R:1:masses:R:1"
-"""Columns of extended XYZ. OVITO reads `type`, `velo` and `mass`, ASE `species`, `tags`, `momenta` and `masses`."""
+"""Columns of extended XYZ: OVITO reads `type`, `velo` and `mass`, ASE `species`, `tags`, `momenta` and `masses`."""
 
 
 def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
-    """Extended XYZ: 17 digits, so every float64 comes back. The box's depth is the largest diameter.
+    """Write extended XYZ with 17 digits, so that every float64 is exact. The depth of the box is the largest diameter.
 
-    `species` is the symbol of a chemical element where the species has the name of one, and else X, of no element.
+    `species` is a species' name if that is the symbol of a chemical element, and otherwise X.
     """
     discs, (width, height) = log.discs, log.box
     pbc = " ".join("T" if periodic else "F" for periodic in (*log.periodic, False))
@@ -93,9 +93,9 @@ def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
 
 
 def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
-    """H5MD 1.1 with a third coordinate, zero, in a group of the name that MDAnalysis looks for.
+    """Write H5MD 1.1 with a third coordinate, zero, in the group that MDAnalysis expects.
 
-    A box without periodic sides has no edges there: they would be taken for periodic.
+    A box without periodic sides has no edges, as MDAnalysis would regard them as periodic.
     """
     with _Target(path) as target, h5py.File(target, "w", libver=("v110", "v110")) as file:
         _fill_h5md3d(file, log, times)
@@ -105,35 +105,39 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
 
 
 class _Target(io.RawIOBase):
-    """A file for HDF5, which crashes where writing fails: this one continues without effect and keeps `failure`."""
+    """A file for HDF5, which crashes if a write fails; after a failure this file ignores all calls.
+
+    Attributes:
+        failure: error of the failed call; None without one.
+    """
 
     def __init__(self, path: Path) -> None:
         self._file = path.open("w+b")
         self.failure: OSError | None = None
 
     def write(self, data: memoryview) -> int:  # type: ignore[override]
-        """As any file."""
+        """Write bytes at the current position."""
         self._try(lambda: self._file.write(data))
         return len(data)
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
-        """As any file."""
+        """Read bytes into a buffer."""
         return self._try(lambda: self._file.readinto(buffer))
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """As any file."""
+        """Change the position in the file."""
         return self._try(lambda: self._file.seek(offset, whence))
 
     def truncate(self, size: int | None = None) -> int:
-        """As any file."""
+        """Set the size of the file."""
         return self._try(lambda: self._file.truncate(size))
 
     def flush(self) -> None:
-        """As any file."""
+        """Flush the file."""
         self._try(self._file.flush)
 
     def close(self) -> None:
-        """As any file."""
+        """Close the file."""
         super().close()  # which flushes
         with suppress(OSError):
             self._file.close()
@@ -172,11 +176,11 @@ def _fill_h5md3d(file: h5py.File, log: Log, times: Sequence[float]) -> None:
 
 
 def _share_times(group: h5py.Group, name: str) -> None:
-    """Let an element have the times of the positions."""
+    """Link the steps and times of an element to those of the positions."""
     for shared in ("step", "time") if name != "position" else ():
         group[f"{name}/{shared}"] = group[f"position/{shared}"]
 
 
 def _with_zeros(vectors: np.ndarray) -> np.ndarray:
-    """(N, 3) from (N, 2)."""
+    """Vectors (N, 3) with a third component 0, from (N, 2)."""
     return np.pad(vectors, ((0, 0), (0, 1)))

@@ -1,4 +1,4 @@
-"""CSV and Parquet by pyarrow, a block of rows at a time."""
+"""CSV and Parquet, written block by block with pyarrow."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -12,23 +12,23 @@ from idealgas.log.reader import Log
 
 
 def write_csv_events(log: Log, file: BinaryIO) -> int:
-    """One row for each event row."""
+    """Write CSV with a row for each event row."""
     return _write(file, _event_columns(log), _csv_writer)
 
 
 def write_csv_frames(log: Log, times: Sequence[float], file: BinaryIO) -> int:
-    """One row for each disc and time."""
+    """Write CSV with a row for each disc and time."""
     _write(file, _frame_columns(log, times), _csv_writer)
     return len(times)
 
 
 def write_parquet_events(log: Log, path: Path) -> int:
-    """One row for each event row."""
+    """Write Parquet with a row for each event row."""
     return _write(path, _event_columns(log), _parquet_writer)
 
 
 def write_parquet_frames(log: Log, times: Sequence[float], path: Path) -> int:
-    """One row for each disc and time."""
+    """Write Parquet with a row for each disc and time."""
     _write(path, _frame_columns(log, times), _parquet_writer)
     return len(times)
 
@@ -46,7 +46,7 @@ def _parquet_writer(path: Path, schema: Any) -> AbstractContextManager[Any]:
 
 
 def _write(target: Path | BinaryIO, blocks: Iterable[Columns], make_writer: Callable[[Any, Any], Any]) -> int:
-    """The first of the blocks, which may be empty, names the columns."""
+    """Write blocks of rows, of which the first one, which may be empty, has the columns. Returns the number of rows."""
     import pyarrow
 
     writer, rows = None, 0
