@@ -134,11 +134,10 @@ def test_one_log_in_one_picture_twice_is_no_average(made):
 
 
 def test_a_sweep_counts_once(made, tmp_path):
-    """Points of a sweep know their runs from their scenes, and those stored before have no premises in them."""
+    """Points of a sweep know their runs from their scenes."""
     analysis, log = registry.find("heat-capacity"), made()
     found = analysis.analyse(log)
-    before = {key: value for key, value in found.as_dict().items() if key != "premises"}
-    point = analysis.restored(before, "a point", premises.origin_of(log.scene, "sweep, point 0"))
+    point = analysis.restored(found.as_dict(), "a point", premises.origin_of(log.scene, "sweep, point 0"))
     assert (point.premises, point.energy) == ((), found.energy)
     with pytest.raises(UserError, match=r"sweep, point 0: the run of .* again"):
         analysis.combined([found, point])
@@ -165,7 +164,7 @@ def test_heat_capacities_of_different_gases_are_kept_apart(made):
     assert apart.refused["dE/dT"] == "it takes logs of one gas at several energies"
     alike = combined("heat-capacity", *logs[:2])
     assert alike.premises == ()
-    assert [(r.name, r.gas) for r in alike.routes] == [("dE/dT", ""), ("E/T", "")]
+    assert [(r.name, r.gas) for r in alike.routes] == [("dE/dT", None), ("E/T", None)]
 
 
 def test_the_equation_of_state_says_which_gases(made):

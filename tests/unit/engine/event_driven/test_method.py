@@ -28,7 +28,7 @@ def rows_of(engine, effects, each=1000):
 @several
 @pytest.mark.parametrize("in_any_order", [0, 4096], ids=["sorted", "as they were"])
 def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_order, monkeypatch):
-    monkeypatch.setattr(method, "IN_ANY_ORDER", in_any_order)
+    monkeypatch.setattr(method, "MAX_UNSORTED", in_any_order)
     for a, b in zip(rows_of(EventDriven(), effects), rows_of(BruteForce(), effects), strict=True):
         assert np.array_equal(a, b)
 
