@@ -64,8 +64,8 @@ until = 1
 def source(tmp_path_factory):
     """A copy of what is packaged, so that building leaves no trace in the tree."""
     folder = tmp_path_factory.mktemp("source")
-    for name in ("idealgas", "cli", "configs", "tests", ".packages"):
-        shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("idealgas", "cli", "configs", "tests"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "README.md"):
         shutil.copy(ROOT / name, folder)
     return folder
@@ -153,8 +153,8 @@ def test_wheel(source, tmp_path):
         for p in (ROOT / "idealgas").rglob("*")
         if p.is_file() and p.suffix not in (".pyc", ".md")
     }
-    expected |= {f"idealgas_scenes/{path.name}" for path in (ROOT / "configs").glob("*.toml")}
-    expected |= {"idealgas_scenes/scene.schema.json"}
+    scenes = [path for kind in ("toml", "json", "ipynb") for path in (ROOT / "configs").rglob(f"*.{kind}")]
+    expected |= {f"idealgas_scenes/{path.relative_to(ROOT / 'configs').as_posix()}" for path in scenes}
     expected |= {f"idealgas_cli/{p.name}" for p in (ROOT / "cli").glob("*.py")}
     assert code == expected
     assert "idealgas = idealgas_cli.main:main" in entry_points
