@@ -38,7 +38,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
 
 
 def craft(path: Path, edit: Edit, rows: dict[str, int] | None = None) -> Path:
-    """Change a log in place, and make its commit record fit. rows: of tables, if the record is to have others."""
+    """Change a log in place, and update its commit record. rows: other numbers of rows for the record, by table."""
     with opened(path) as file:
         record = Commit.read(file)
         edit(file)
@@ -69,12 +69,12 @@ def _tail(dataset: h5py.Dataset, rows: int) -> int:
 
 
 def put(path: str, index: object, value: object) -> Edit:
-    """Other values in a dataset."""
+    """Write other values to a dataset."""
     return lambda file: file[path].__setitem__(index, value)
 
 
 def swap(path: str, **options: object) -> Edit:
-    """Another dataset in place of one, of which the options (of `create_dataset`) say all that differs."""
+    """Replace a dataset by one with other options of `create_dataset`."""
 
     def edit(file: h5py.File) -> None:
         old = file[path]
@@ -87,7 +87,7 @@ def swap(path: str, **options: object) -> Edit:
 
 
 def link(path: str, target: object) -> Edit:
-    """A link in place of an object."""
+    """Replace an object by a link."""
 
     def edit(file: h5py.File) -> None:
         if path in file:
@@ -98,7 +98,7 @@ def link(path: str, target: object) -> Edit:
 
 
 def read_all(log: Log) -> None:
-    """Read everything that a log has."""
+    """Read all data of a log."""
     for name in ("attributes", "runs", "discs", "walls", "inertia", "observables", "snapshot_times", "summary"):
         getattr(log, name)
     list(log.checkpoints)
@@ -108,7 +108,7 @@ def read_all(log: Log) -> None:
 
 
 def read_path(path: Path) -> None:
-    """Open a log and read everything."""
+    """Open a log and read all its data."""
     with open_log(path) as log:
         read_all(log)
 

@@ -1,4 +1,4 @@
-"""Logs with known contents: row k of the events is a function of k alone. As a script: write such a log until killed.
+"""Logs with known contents: event row k is a function of k alone. As a script: write such a log until it is killed.
 
 log_samples.py PATH gzip|none [ROWS A BATCH]
 """
@@ -41,7 +41,7 @@ def gas(discs: int = DISCS) -> Gas:
 
 @lru_cache(64)
 def rows(start: int, stop: int) -> EventBatch:
-    """Event rows `start` to `stop`: hits of walls, at multiples of a power of two."""
+    """Event rows `start` to `stop`: wall hits at multiples of a power of two."""
     k = np.arange(start, stop)
     noise = np.sin(np.outer(k + 1, [12.9898, 78.233, 39.425, 27.17])) * 43758.5453
     noise -= np.floor(noise)
@@ -65,11 +65,11 @@ def new_writer(path: Path, **options) -> LogWriter:
 
 
 def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) -> None:
-    """Go on to row `stop` in batches of these sizes, each with a sample and a checkpoint before it."""
+    """Write rows up to `stop` in batches of these sizes, each after a sample and a checkpoint."""
     for size in (size for _ in count() for size in sizes):
         if writer.rows >= stop:
             return
-        mark(writer)
+        write_checkpoint(writer)
         batch = writer.batch()
         size = min(size, stop - writer.rows, len(batch.time))
         for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
@@ -78,7 +78,7 @@ def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) 
         writer.write(size)
 
 
-def mark(writer: LogWriter) -> None:
+def write_checkpoint(writer: LogWriter) -> None:
     row = writer.rows
     writer.observe(row * STEP, row, {"kinetic_energy": row / 3, "hits": row})
     writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, KICKS: 0})
@@ -96,7 +96,7 @@ def write_log(path: Path, stop: int, summary: dict | None = None, **options) -> 
 
 
 def check(log: Log) -> int:
-    """Assert that a log holds the first rows, samples and checkpoints and nothing else; returns the rows."""
+    """Assert that a log has exactly the first rows, samples and checkpoints; returns the number of rows."""
     row = 0
     for block in log.chunks():
         expected = rows(row, row + len(block.time))

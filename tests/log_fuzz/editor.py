@@ -1,4 +1,4 @@
-"""Sound logs, and their changes through h5py; the commit record then has the checksums of what was written."""
+"""Sound logs and their changes through h5py; the commit record gets the checksums of the new values."""
 
 import lzma
 import tempfile
@@ -44,7 +44,7 @@ class Effect(NamedTuple):
     """One change of a log.
 
     paths: datasets of which a command must read all to be bound to refuse the log. Without any, the log obeys all
-    rules, and whatever numbers come out are right.
+    rules, and any result is right.
     """
 
     what: str

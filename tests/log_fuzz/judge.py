@@ -68,7 +68,7 @@ def fault(form: Form, effects: Sequence[Effect]) -> str:
 
 
 def _disorder(done: Result) -> str:
-    """What no command may do, whatever the log."""
+    """Fault that is one on any log; empty if there is none."""
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         return "".join(traceback.format_exception(done.exception)[-3:])
     if done.exit_code not in (0, 2):

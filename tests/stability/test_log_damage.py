@@ -1,6 +1,6 @@
 """Logs with changed, zeroed or missing bytes: a clear error or the same data, never anything else.
 
-Of a log whose writer died, fewer rows are right too: damage can hide its last commit, and the one before it holds.
+A log of a killed writer may also have fewer rows: damage can hide its last commit, and the previous one is then read.
 """
 
 import os
@@ -22,7 +22,7 @@ SAMPLES = ROOT / "tests" / "log_samples.py"
 ROWS = 70_000
 
 
-def left_by_a_dead_writer(path: Path, compression: str) -> None:
+def left_by_a_killed_writer(path: Path, compression: str) -> None:
     child = subprocess.Popen([sys.executable, SAMPLES, path, compression, "20000"])
     while True:
         time.sleep(0.05)
@@ -43,7 +43,7 @@ def whole(request, tmp_path_factory):
     if state == "closed":
         write_log(path, ROWS, compression=compression)
     else:
-        left_by_a_dead_writer(path, compression)
+        left_by_a_killed_writer(path, compression)
     with open_log(path) as log:
         return path.read_bytes(), len(log), state == "dead"
 

@@ -1,4 +1,4 @@
-"""A writer killed at a random moment: what a reader saw before is there after, and the log can be gone on with."""
+"""A writer killed at a random moment: no row that a reader has seen is lost, and the log can be continued."""
 
 import signal
 import subprocess
@@ -21,7 +21,7 @@ IN_CI, BY_HAND = 6, 100
 
 
 def rows_in(path: Path) -> int:
-    """Rows committed now, 0 before the file is there."""
+    """Number of committed rows, 0 before the file exists."""
     try:
         with open_log(path) as log:
             return len(log)
@@ -49,13 +49,13 @@ def test_nothing_committed_is_lost(case, tmp_path):
         child.send_signal(signal.SIGKILL)
         child.wait()
     with open_log(path) as log:
-        held = check(log)
-        assert held >= seen
+        rows = check(log)
+        assert rows >= seen
         checkpoints = len(log.checkpoints)
     if case % 2:
-        assert recover(path) == held
+        assert recover(path) == rows
         with open_log(path) as log:
-            assert check(log) == held
+            assert check(log) == rows
     with LogWriter.resume(path, int(random.integers(checkpoints))) as writer:
         stop = writer.rows + int(random.integers(2 * BLOCK))
         write_rows(writer, stop)

@@ -1,4 +1,4 @@
-"""Logs opened for writing again: after their writer died, and to go on from a checkpoint."""
+"""Logs opened for writing again: after their writer was killed, and to continue from a checkpoint."""
 
 import os
 import signal
@@ -59,7 +59,7 @@ def assert_plain(path, stop):
         assert len({len(column) for column in file["checkpoints"].values()}) == 1
 
 
-def test_a_living_writer_is_left_alone(tmp_path):
+def test_a_live_writer_is_not_disturbed(tmp_path):
     path = tmp_path / "run.h5"
     child = start_writer(path)
     try:
@@ -79,7 +79,7 @@ def test_a_living_writer_is_left_alone(tmp_path):
         assert not log.live
 
 
-def test_a_dead_writers_log_is_read_as_it_is(left):
+def test_the_log_of_a_killed_writer_is_read_unchanged(left):
     before = left.read_bytes()
     with open_log(left) as log:
         assert check(log) > 2000
@@ -114,7 +114,7 @@ def test_recovery_of_a_copy(left, tmp_path):
 
 @pytest.mark.parametrize("torn", ["events/velocity", "checkpoints/position"])
 def test_a_chunk_torn_while_it_was_rewritten(left, tmp_path, torn):
-    """Beyond the committed rows anything may stand."""
+    """Bytes beyond the committed rows do not matter."""
     path = copied(left, tmp_path)
     with h5py.File(path, swmr=True) as file, open_log(path) as log:
         stop, count = check(log), log.commit.rows[torn.partition("/")[0]]
@@ -135,7 +135,7 @@ def test_a_chunk_torn_while_it_was_rewritten(left, tmp_path, torn):
 @pytest.mark.parametrize("compression", ["gzip", "none"])
 @pytest.mark.parametrize("checkpoint", [0, 3, -1])
 @pytest.mark.parametrize("more", [0, 10, 3 * BLOCK])
-def test_going_on_after_a_checkpoint(tmp_path, compression, checkpoint, more):
+def test_continued_after_a_checkpoint(tmp_path, compression, checkpoint, more):
     path = write_log(tmp_path / "run.h5", 100_000, compression=compression)
     with open_log(path) as log:
         chosen = log.checkpoints[checkpoint]
@@ -157,7 +157,7 @@ def test_going_on_after_a_checkpoint(tmp_path, compression, checkpoint, more):
     assert_plain(path, stop)
 
 
-def test_going_on_after_a_death(left, tmp_path):
+def test_continued_after_a_kill(left, tmp_path):
     path = copied(left, tmp_path)
     with LogWriter.resume(path) as writer:
         start = writer.rows
@@ -168,7 +168,7 @@ def test_going_on_after_a_death(left, tmp_path):
     assert_plain(path, start + 1000)
 
 
-def test_going_on_needs_a_checkpoint(tmp_path):
+def test_to_continue_needs_a_checkpoint(tmp_path):
     path = write_log(tmp_path / "run.h5", 0)
     with pytest.raises(LogError, match="no checkpoint -1 among 0"):
         LogWriter.resume(path)

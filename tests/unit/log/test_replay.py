@@ -1,4 +1,4 @@
-"""States between events, beside the engine's own snapshots; and snapshots as H5MD."""
+"""States between events, compared with the engine's own snapshots; and snapshots as H5MD."""
 
 import subprocess
 from pathlib import Path

@@ -205,7 +205,7 @@ NOT_OF_PARTNER = "events/kind: not that of its partner in row 17"
     ],
 )
 def test_kicks(tmp_path, partner, kind, expected):
-    """A kick has the heat bath as its partner; what a log without kicks may say of it is in VALUES."""
+    """A kick has the heat bath as its partner; VALUES has the cases of logs without kicks."""
     path = craft(write_log(tmp_path / "run.h5", STOP, checkpoint_values=BATH_VALUES), kicked(partner, kind))
     if expected:
         assert re.search(expected, refused(path))
@@ -304,7 +304,7 @@ def test_pairs(run, tmp_path):
         assert re.search(f"events/partner: no pair in row ({first}|{first + 1})|events/time", refused(path))
 
 
-def test_what_is_missing_is_said(sound, tmp_path):
+def test_missing_data_are_named(sound, tmp_path):
     with open_log(sound) as log:
         for table, name in (("observables", "momentum"), ("summary", "trials")):
             with pytest.raises(LogError, match=f"^{sound}: damaged: {table}: has no {name}$"):
@@ -312,7 +312,7 @@ def test_what_is_missing_is_said(sound, tmp_path):
 
 
 def test_chunks_in_order(tmp_path):
-    """Times are compared with those of the chunks that were read before, in whatever order that was."""
+    """Times are compared with those of the chunks that have been read, in any order."""
     path = write_log(tmp_path / "run.h5", 200_000)
 
     def edit(file: h5py.File) -> None:

@@ -1,4 +1,4 @@
-"""Crafted logs, whose check sums are right: each is refused in one line that names what is wrong."""
+"""Crafted logs with correct checksums: each is refused with one line that names the fault."""
 
 import os
 import re
@@ -152,13 +152,13 @@ def test_structure(path, case):
 
 
 def test_no_other_file_is_opened(path, tmp_path):
-    os.mkfifo(tmp_path / "other.h5")  # whoever opens it waits for ever
+    os.mkfifo(tmp_path / "other.h5")  # a program that opens it waits indefinitely
     message = refused(craft(path, link("discs/mass", h5py.ExternalLink(str(tmp_path / "other.h5"), "/x"))))
     assert "an external link" in message
 
 
 def test_a_chunk_beyond_the_end_of_the_file(path):
-    """In the log of a dead writer, to which HDF5 knows no end; the record says that it is shorter."""
+    """In the log of a killed writer, whose end HDF5 does not know; the commit record is of a shorter file."""
     with h5py.File(path, "r+", libver=("v110", "v110")) as file:
         place = file["events/velocity"].id.get_chunk_info(0).byte_offset
         seal(file, Commit.read(file)._replace(file_size=0))

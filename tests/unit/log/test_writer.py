@@ -1,4 +1,4 @@
-"""Logs written: round trips, what a plain HDF5 reader sees, and what is refused."""
+"""Written logs: round trips, contents for other HDF5 programs, and refusals."""
 
 import errno
 import json
@@ -12,7 +12,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from log_samples import DISCS, STEP, check, gas, mark, new_writer, rows, write_log, write_rows
+from log_samples import DISCS, STEP, check, gas, new_writer, rows, write_checkpoint, write_log, write_rows
 
 import idealgas.log.writer as log_writer
 from idealgas.errors import OutputError
@@ -152,7 +152,7 @@ def test_further_columns(tmp_path):
 
 def test_without_events(tmp_path):
     with new_writer(tmp_path / "run.h5", event_columns=()) as writer:
-        mark(writer)
+        write_checkpoint(writer)
         writer.close({"end_time": 5.0})
     with open_log(tmp_path / "run.h5") as log:
         assert not log.has_events
@@ -277,7 +277,7 @@ def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
                 writer.batch()
                 writer.write(10)
             else:
-                mark(writer)
+                write_checkpoint(writer)
             time.sleep(0.01)
 
     with pytest.raises(OutputError, match=r"cannot be written: No space left on device") as caught:

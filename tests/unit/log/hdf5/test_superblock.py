@@ -1,4 +1,4 @@
-"""The superblock of HDF5 files: checksum, marks and locks."""
+"""The superblock of HDF5 files: checksum, file consistency flags and locks."""
 
 import h5py
 import pytest
