@@ -13,7 +13,7 @@ from log_fuzz.commands import NAME, SLOW, Form, forms, reading_commands
 from log_fuzz.editor import SOUND, Editor, Effect, broken, edited
 from log_fuzz.judge import fault
 
-CASES, CASES_IN_CI = 3000, 200
+CASES, CASES_IN_CI = 1000, 200
 FAMILIES, SHARES = (values, headers, texts), (0.6, 0.2, 0.2)
 SINGLE = 0.65
 """Fraction of the logs that have one change; the others have two to four."""
