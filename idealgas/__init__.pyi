@@ -1,4 +1,4 @@
-"""Names of the package; written by tests/write_stub.py."""
+"""Names of the package; written by tests/helpers/write_stub.py."""
 
 from idealgas._version import __version__ as __version__
 from idealgas.analysis.cooling.measure import cooling as cooling

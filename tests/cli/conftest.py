@@ -1,9 +1,9 @@
 """Report pages, and the browser that opens them."""
 
 import pytest
-from report_pages import FULL, QUICK, SCENES
+from helpers.report_pages import FULL, QUICK, SCENES
+from helpers.support import called, program
 from selenium import webdriver
-from support import called, program
 
 from idealgas.analysis import registry
 from idealgas.run.simulate import simulate

@@ -4,7 +4,7 @@ import csv
 import json
 
 import pytest
-from support import ROOT, called, idealgas
+from helpers.support import ROOT, called, idealgas
 
 SMALL = """
 [box]

@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from support import ROOT, called, idealgas
+from helpers.support import ROOT, called, idealgas
 
 from idealgas.effects import EFFECT_NAMES
 from idealgas.scene import load_scene

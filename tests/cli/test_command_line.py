@@ -8,8 +8,8 @@ import sys
 import click
 import pytest
 from click.testing import CliRunner
+from helpers.support import IDEALGAS, ROOT, called, idealgas
 from idealgas_cli.main import EXAMPLES, Commands, first_sentence, main
-from support import IDEALGAS, ROOT, called, idealgas
 
 from idealgas import __version__
 from idealgas.analysis import registry

@@ -4,7 +4,7 @@ import json
 import tomllib
 
 import pytest
-from support import ROOT, called, idealgas
+from helpers.support import ROOT, called, idealgas
 
 from idealgas.scene import parse_scene
 

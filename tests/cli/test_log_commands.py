@@ -8,7 +8,7 @@ from functools import partial
 
 import h5py
 import pytest
-from support import IDEALGAS, ROOT, called, idealgas
+from helpers.support import IDEALGAS, ROOT, called, idealgas
 
 from idealgas.log import LogError, open_log
 

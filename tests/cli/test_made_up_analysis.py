@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 pytestmark = pytest.mark.slow
 

@@ -11,7 +11,7 @@ import sys
 from textwrap import dedent
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 pytestmark = pytest.mark.slow
 

@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 NOTEBOOK = ROOT / "configs" / "notebooks" / "first-steps.ipynb"
 

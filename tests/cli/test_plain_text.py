@@ -8,9 +8,9 @@ import shutil
 from html.parser import HTMLParser
 
 import pytest
+from helpers.support import ROOT, called
 from idealgas_cli._tables import print_tables
 from idealgas_cli._terminal import echo, terminal
-from support import ROOT, called
 
 from idealgas.analysis.core.style import name_rows, panels, save, show_names
 from idealgas.analysis.core.tables import Table

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from support import ROOT, called
+from helpers.support import ROOT, called
 
 TWO = """
 box.size = [1, 1]

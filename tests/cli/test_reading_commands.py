@@ -4,7 +4,7 @@ import shutil
 
 import h5py
 import pytest
-from support import ROOT, called, idealgas
+from helpers.support import ROOT, called, idealgas
 
 COMMANDS = ("info", "histogram", "temperature", "pressure", "heat-capacity")
 

@@ -13,9 +13,7 @@ from typing import get_args
 import click
 import h5py
 import pytest
-from idealgas_cli.main import main
-from pydantic import BaseModel
-from readme_pages import (
+from helpers.readme_pages import (
     LINK,
     PAGES,
     PICTURE,
@@ -29,7 +27,9 @@ from readme_pages import (
     shown_outputs,
     words,
 )
-from support import ROOT
+from helpers.support import ROOT
+from idealgas_cli.main import main
+from pydantic import BaseModel
 
 from idealgas.scene import Scene
 

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 import pytest
-from report_pages import FULL, PLAIN, picture, seek
+from helpers.report_pages import FULL, PLAIN, picture, seek
+from helpers.support import ROOT, called
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
-from support import ROOT, called
 
 from idealgas.log import open_log
 from idealgas.report import player as player_module

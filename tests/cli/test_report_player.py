@@ -5,8 +5,8 @@ import io
 
 import numpy as np
 import pytest
+from helpers.report_pages import SCENES, assert_positions, picture, seek
 from PIL import Image
-from report_pages import SCENES, assert_positions, picture, seek
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from helpers.support import IDEALGAS, ROOT, called, idealgas, same_rows
 from idealgas_cli.main import main
-from support import IDEALGAS, ROOT, called, idealgas, same_rows
 
 from idealgas.log import open_log
 

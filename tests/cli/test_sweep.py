@@ -14,7 +14,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from support import IDEALGAS, called, idealgas
+from helpers.support import IDEALGAS, called, idealgas
 
 from idealgas.sweep.run import Outcome, Progress
 

@@ -1,7 +1,7 @@
 """Runs of shipped scenes."""
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate

@@ -5,7 +5,7 @@ import math
 import h5py
 import numpy as np
 import pytest
-from against_theory import LEAST_P, STANDARD_ERRORS, agrees, kinetic_at_even_times, of_runs
+from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, kinetic_at_even_times, of_runs
 from scipy import stats
 
 from idealgas.analysis.core.autoregression import inefficiency

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from helpers.support import batches
 from scipy import stats
-from support import batches
 
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import mean

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from log_compare import differences
-from support import ROOT
+from helpers.log_compare import differences
+from helpers.support import ROOT
 
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.info import info

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.pressure.measure import PAIRS, WALLS, pressure

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from against_theory import LEAST_P, STANDARD_ERRORS, agrees, of_runs
+from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, of_runs
 from scipy import stats
 
 from idealgas.analysis.core.autoregression import inefficiency

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from virials import mean_and_error, virials
+from helpers.virials import mean_and_error, virials
 
 from idealgas.analysis.theory.hard_discs import finite_speed_factor
 from idealgas.analysis.theory.two_discs import two_discs

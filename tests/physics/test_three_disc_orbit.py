@@ -5,8 +5,8 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from helpers.support import ROOT, record
 from mpmath import mpf
-from support import ROOT, record
 
 from idealgas.accuracy.orbit import columns_at, is_on_orbit, orbit_gas, study_orbit, survival, three_disc_orbit
 from idealgas.engine.multiprecision import PreciseBruteForce

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from support import gas_of
+from helpers.support import gas_of
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation

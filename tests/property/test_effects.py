@@ -5,7 +5,7 @@ from itertools import combinations
 import numba
 import numpy as np
 import pytest
-from effect_samples import NAMES, allowed, log_of, make_effects, make_gas
+from helpers.effect_samples import NAMES, allowed, log_of, make_effects, make_gas
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven

@@ -4,9 +4,9 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from helpers.support import called
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
-from support import called
 
 from idealgas.toml.dump import toml_value
 from idealgas.toml.table import LARGEST, SMALLEST

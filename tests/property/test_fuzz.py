@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fuzz_scenes import scene_and_gas, scene_texts
+from helpers.fuzz_scenes import scene_and_gas, scene_texts
+from helpers.invariants import InvariantChecker, MaxErrors
+from helpers.support import ROOT, batches, joined, record, same_rows
 from hypothesis import HealthCheck, example, given, settings
-from invariants import InvariantChecker, MaxErrors
-from support import ROOT, batches, joined, record, same_rows
 
 from idealgas.effects.bundle import Effects, inner_energy
 from idealgas.engine.brute_force import BruteForce

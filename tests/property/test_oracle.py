@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from helpers.support import record, same_rows
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from support import record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven

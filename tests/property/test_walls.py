@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from helpers.random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
+from helpers.support import batches
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
-from support import batches
 
 from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments

@@ -27,9 +27,9 @@ import h5py
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from helpers.log_fuzz.commands import NAME, Form, forms, reading_commands
+from helpers.support import ROOT
 from idealgas_cli.main import main
-from log_fuzz.commands import NAME, Form, forms, reading_commands
-from support import ROOT
 
 import idealgas.log.writer as log_writer
 from idealgas import load_scene, open_log, parse_scene

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from log_samples import check, write_log
-from support import ROOT
+from helpers.log_samples import check, write_log
+from helpers.support import ROOT
 
 from idealgas.log import LogError, open_log, recover
 

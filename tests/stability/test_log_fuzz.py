@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from log_fuzz import headers, texts, values
-from log_fuzz.commands import NAME, SLOW, Form, forms, reading_commands
-from log_fuzz.editor import SOUND, Editor, Effect, broken, edited
-from log_fuzz.judge import fault
+from helpers.log_fuzz import headers, texts, values
+from helpers.log_fuzz.commands import NAME, SLOW, Form, forms, reading_commands
+from helpers.log_fuzz.editor import SOUND, Editor, Effect, broken, edited
+from helpers.log_fuzz.judge import fault
 
 CASES, CASES_IN_CI = 1000, 200
 FAMILIES, SHARES = (values, headers, texts), (0.6, 0.2, 0.2)

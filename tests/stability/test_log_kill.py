@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from log_samples import check, write_rows
-from support import ROOT
+from helpers.log_samples import check, write_rows
+from helpers.support import ROOT
 
 from idealgas.events import BLOCK
 from idealgas.log import LogError, LogWriter, open_log, recover

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import idealgas
+from helpers.support import idealgas
 
 from idealgas import open_log, parse_scene, simulate
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from log_compare import NO_END, differences
-from support import IDEALGAS, ROOT, idealgas
+from helpers.log_compare import NO_END, differences
+from helpers.support import IDEALGAS, ROOT, idealgas
 
 from idealgas.log import open_log
 

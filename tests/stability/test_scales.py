@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import batches, gas_of, record, same_rows, within
+from helpers.support import batches, gas_of, record, same_rows, within
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from log_compare import differences, scene_of
-from support import ROOT
-from thread_samples import EAGER, SMALLEST_CELLS, late_threads
+from helpers.log_compare import differences, scene_of
+from helpers.support import ROOT
+from helpers.thread_samples import EAGER, SMALLEST_CELLS, late_threads
 
 from idealgas.bench.bench import bench_scene
 from idealgas.engine.event_driven.method import EventDriven

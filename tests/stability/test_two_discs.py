@@ -11,7 +11,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from support import gas_of, record, within
+from helpers.support import gas_of, record, within
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven

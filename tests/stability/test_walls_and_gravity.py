@@ -6,7 +6,7 @@ import warnings
 import mpmath
 import numpy as np
 import pytest
-from support import batches, gas_of, record, within
+from helpers.support import batches, gas_of, record, within
 
 from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments

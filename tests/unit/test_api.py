@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 import pytest
-from support import ROOT
-from write_stub import STUB, stub
+from helpers.support import ROOT
+from helpers.write_stub import STUB, stub
 
 import idealgas
 from idealgas.analysis import registry
@@ -87,7 +87,7 @@ def test_dir_shows_every_name():
 
 
 def test_type_checkers_see_every_name():
-    """The stub is made from the names; `python tests/write_stub.py` writes it again."""
+    """The stub is made from the names; `PYTHONPATH=tests python -m helpers.write_stub` writes it again."""
     assert STUB.read_text(encoding="utf-8") == stub()
 
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from log_samples import new_writer, write_rows
+from helpers.log_samples import new_writer, write_rows
 
 from idealgas.errors import OutputError
 from idealgas.files import LOG, check_output, written

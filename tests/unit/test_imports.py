@@ -5,7 +5,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 FREE = {"_version", "errors", "events", "files", "sides", ""}
 """Version, errors of the user and plain text, files to write, columns of events and numbers of walls are for all."""

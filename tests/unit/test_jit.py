@@ -7,8 +7,8 @@ from pathlib import Path
 from types import FunctionType
 
 import pytest
-from fresh_python import python, start
-from support import ROOT
+from helpers.fresh_python import python, start
+from helpers.support import ROOT
 
 from idealgas.jit import sources
 

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 FILES = sorted(
     {

@@ -3,7 +3,7 @@
 import ast
 
 import pytest
-from support import ROOT
+from helpers.support import ROOT
 
 from idealgas.effects import EFFECTS, NAMES
 from idealgas.effects.bundle import ENERGIES, Effects

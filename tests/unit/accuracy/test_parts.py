@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import gas_of
+from helpers.support import gas_of
 
 from idealgas.accuracy.cases import Case, Start, compared_cases
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance

@@ -3,7 +3,7 @@
 import zlib
 
 import pytest
-from small_gases import GAS
+from helpers.small_gases import GAS
 
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate

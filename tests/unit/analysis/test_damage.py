@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from log_compare import scene_of
+from helpers.log_compare import scene_of
 
 from idealgas.analysis import status as module
 from idealgas.analysis.status import status

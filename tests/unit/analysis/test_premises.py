@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_gases import GAS, PERIODIC, SLIT, TWO, WHOLE, only, silent
+from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, WHOLE, only, silent
 
 from idealgas.analysis import registry
 from idealgas.analysis.core import premises

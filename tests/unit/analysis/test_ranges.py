@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from small_gases import GAS, PERIODIC, SLIT, TWO, only, silent
+from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, only, silent
 
 from idealgas.analysis import registry
 from idealgas.analysis.heat_capacity.energy_series import energy_series

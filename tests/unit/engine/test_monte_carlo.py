@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import gas_of, record
+from helpers.support import gas_of, record
 
 from idealgas.engine.monte_carlo import MonteCarlo
 from idealgas.engine.simulation import Simulation, Stop

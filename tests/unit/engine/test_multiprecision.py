@@ -5,8 +5,8 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from helpers.support import gas_of, record, same_rows
 from mpmath import mpf
-from support import gas_of, record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.multiprecision import Columns, PreciseBruteForce

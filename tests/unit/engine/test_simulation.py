@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import record
+from helpers.support import record
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven

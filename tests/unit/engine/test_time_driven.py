@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from log_compare import differences
-from support import gas_of, record, same_rows
+from helpers.log_compare import differences
+from helpers.support import gas_of, record, same_rows
 
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation, Stop

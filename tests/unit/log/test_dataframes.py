@@ -4,8 +4,8 @@ import sys
 
 import numpy as np
 import pytest
-from log_compare import scene_of
-from log_samples import write_log
+from helpers.log_compare import scene_of
+from helpers.log_samples import write_log
 
 from idealgas.events import Kind
 from idealgas.log import LogError, open_log

@@ -5,8 +5,8 @@ import re
 import h5py
 import numpy as np
 import pytest
-from log_compare import scene_of
-from log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
+from helpers.log_compare import scene_of
+from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
 
 import idealgas.log.reader as log_reader
 from idealgas.events import BLOCK, Kind

@@ -9,8 +9,8 @@ import time
 import h5py
 import numpy as np
 import pytest
-from log_samples import STEP, check, rows, write_log, write_rows
-from support import ROOT
+from helpers.log_samples import STEP, check, rows, write_log, write_rows
+from helpers.support import ROOT
 
 from idealgas.errors import OutputError
 from idealgas.events import BLOCK, EventBatch

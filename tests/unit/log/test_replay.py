@@ -6,8 +6,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from log_compare import scene_of
-from support import program
+from helpers.log_compare import scene_of
+from helpers.support import program
 
 import idealgas
 from idealgas.log import LogError

@@ -6,9 +6,9 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from crafted import craft, put, read_path, refused, swap
-from log_compare import scene_of
-from log_samples import BATH_VALUES, write_log
+from helpers.crafted import craft, put, read_path, refused, swap
+from helpers.log_compare import scene_of
+from helpers.log_samples import BATH_VALUES, write_log
 
 from idealgas.events import BATH, Kind
 from idealgas.log import LogError, open_log

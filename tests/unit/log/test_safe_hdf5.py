@@ -9,9 +9,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from crafted import craft, link, put, read_path, refused, seal, swap
+from helpers.crafted import craft, link, put, read_path, refused, seal, swap
+from helpers.log_samples import write_log
 from isal import isal_zlib
-from log_samples import write_log
 
 from idealgas.errors import OutputError
 from idealgas.log import LogError, LogWriter, open_log, recover

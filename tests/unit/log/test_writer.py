@@ -12,7 +12,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from log_samples import DISCS, STEP, check, gas, new_writer, rows, write_checkpoint, write_log, write_rows
+from helpers.log_samples import DISCS, STEP, check, gas, new_writer, rows, write_checkpoint, write_log, write_rows
 
 import idealgas.log.writer as log_writer
 from idealgas.errors import OutputError
@@ -291,7 +291,7 @@ def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
 FULL = """
 import resource, sys
 from pathlib import Path
-from log_samples import new_writer, write_rows
+from helpers.log_samples import new_writer, write_rows
 from idealgas.errors import OutputError
 writer = new_writer(Path(sys.argv[1]), compression=sys.argv[2])
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000_000, resource.RLIM_INFINITY))

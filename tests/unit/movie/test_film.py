@@ -6,8 +6,8 @@ import subprocess
 
 import numpy as np
 import pytest
+from helpers.support import program
 from PIL import Image
-from support import program
 
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas

@@ -5,7 +5,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from rounding import exact, gamma
+from helpers.rounding import exact, gamma
 
 from idealgas.physics.ballistic import stays_above, time_to_plane
 from idealgas.physics.motion import NEVER

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from rounding import gamma
+from helpers.rounding import gamma
 
 from idealgas.analysis.theory.hard_discs import collision_rate, mean_relative_speed
 from idealgas.physics.collision_rates import contact_value, mean_trial_time

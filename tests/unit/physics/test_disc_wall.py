@@ -3,7 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, exact, gamma
+from helpers.rounding import body, exact, gamma
 
 from idealgas.physics.disc_wall import arrival_delay, centre_range, inward_normal, side_contact
 from idealgas.physics.gravity import Gravity

@@ -3,7 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, exact, gamma
+from helpers.rounding import body, exact, gamma
 
 from idealgas.physics.gravity import Gravity, acceleration_along
 from idealgas.physics.motion import advance, position_after, velocity_after

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from rounding import body, gamma
+from helpers.rounding import body, gamma
 
 from idealgas.physics.periodic import (
     NO_IMAGES,

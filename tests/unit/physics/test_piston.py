@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, exact, gamma
+from helpers.rounding import body, exact, gamma
 
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER

@@ -6,7 +6,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from rounding import exact, gamma
+from helpers.rounding import exact, gamma
 
 from idealgas.physics.motion import NEVER
 from idealgas.physics.polynomial import cubic, cubic_extrema, first_contact_root, gap, parabola, quadratic_roots

@@ -3,7 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, copy_of, exact, gamma
+from helpers.rounding import body, copy_of, exact, gamma
 
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.disc_wall import collide_with_wall

@@ -3,7 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, copy_of, exact, gamma
+from helpers.rounding import body, copy_of, exact, gamma
 
 from idealgas.physics.rotation import Rotation, moment_of_inertia, tangential_impulse, tangential_impulse_at_wall
 

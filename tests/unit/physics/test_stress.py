@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from effect_samples import make_flow
+from helpers.effect_samples import make_flow
+from helpers.support import gas_of
 from scipy.integrate import quad
-from support import gas_of
 
 from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments

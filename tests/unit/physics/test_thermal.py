@@ -3,7 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, exact, gamma
+from helpers.rounding import body, exact, gamma
 
 from idealgas.physics.disc_wall import collide_with_wall
 from idealgas.physics.rotation import Rotation

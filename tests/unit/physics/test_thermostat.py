@@ -5,7 +5,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from rounding import body, exact, gamma
+from helpers.rounding import body, exact, gamma
 from scipy import stats
 
 from idealgas.physics.rotation import Rotation

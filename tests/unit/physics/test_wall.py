@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import mpmath
 import numpy as np
 import pytest
-from rounding import U, body, exact, gamma
+from helpers.rounding import U, body, exact, gamma
 
 from idealgas.physics.disc_wall import collide_with_wall
 from idealgas.physics.gravity import Gravity

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from log_compare import contents, differences
+from helpers.log_compare import contents, differences
 
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.transport.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, Currents

@@ -6,8 +6,8 @@ from itertools import count
 
 import numpy as np
 import pytest
-from crafted import craft, put
-from log_compare import differences, scene_of
+from helpers.crafted import craft, put
+from helpers.log_compare import differences, scene_of
 
 import idealgas.run.resume as going_on
 from idealgas.engine.simulation import TRAJECTORY

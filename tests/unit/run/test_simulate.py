@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from log_compare import differences
-from support import ROOT
+from helpers.log_compare import differences
+from helpers.support import ROOT
 
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
 from idealgas.log import LogWriter, open_log

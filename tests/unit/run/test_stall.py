@@ -1,7 +1,7 @@
 """Runs whose events do not come end, runs that have an end in time reach it, and neither fills a disk on the way."""
 
 import pytest
-from log_compare import differences
+from helpers.log_compare import differences
 
 from idealgas.errors import UserError
 from idealgas.log import open_log

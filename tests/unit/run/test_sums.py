@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from log_compare import differences, scene_of
+from helpers.log_compare import differences, scene_of
 
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts

@@ -4,8 +4,8 @@ import json
 
 import pytest
 from click.testing import CliRunner
+from helpers.support import ROOT
 from idealgas_cli.main import main
-from support import ROOT
 
 from idealgas.run import warm_up as module
 from idealgas.scene import load_scene, parse_scene

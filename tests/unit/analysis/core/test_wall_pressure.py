@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from crafted import craft
+from helpers.crafted import craft
 
 from idealgas.analysis.core.impacts import WallImpulses
 from idealgas.analysis.core.moving_wall import moving_wall

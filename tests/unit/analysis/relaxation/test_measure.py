@@ -5,7 +5,7 @@ import shutil
 
 import numpy as np
 import pytest
-from crafted import craft, put
+from helpers.crafted import craft, put
 
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.statistics import ks_distance

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from effect_samples import make_effects, make_gas
-from support import batches, joined, record, same_rows
+from helpers.effect_samples import make_effects, make_gas
+from helpers.support import batches, joined, record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven import method

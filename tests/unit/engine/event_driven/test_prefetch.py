@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from effect_samples import log_of, make_effects, make_gas
-from thread_samples import compare, lattice, tall_scene
+from helpers.effect_samples import log_of, make_effects, make_gas
+from helpers.thread_samples import compare, lattice, tall_scene
 
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven

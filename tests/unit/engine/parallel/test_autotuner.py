@@ -2,7 +2,7 @@
 
 import time
 
-from thread_samples import EAGER, SMALLEST_CELLS, log_with, tall_scene
+from helpers.thread_samples import EAGER, SMALLEST_CELLS, log_with, tall_scene
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.parallel.autotuner import ThreadAutotuner

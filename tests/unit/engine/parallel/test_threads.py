@@ -5,11 +5,9 @@ from itertools import cycle
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from log_compare import differences
-from support import batch_for
-from thread_samples import (
+from helpers.log_compare import differences
+from helpers.support import batch_for
+from helpers.thread_samples import (
     EAGER,
     EFFECTS,
     SMALLEST_CELLS,
@@ -21,6 +19,8 @@ from thread_samples import (
     tie_with_a_late_migrant,
     wind,
 )
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.parallel.autotuner import ThreadAutotuner

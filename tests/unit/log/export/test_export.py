@@ -7,7 +7,7 @@ import warnings
 import h5py
 import numpy as np
 import pytest
-from log_compare import scene_of
+from helpers.log_compare import scene_of
 
 from idealgas.errors import OutputError
 from idealgas.log import LogError, open_log

@@ -5,9 +5,9 @@ import zlib
 import h5py
 import numpy as np
 import pytest
+from helpers.log_samples import rows
 from hypothesis import given
 from hypothesis import strategies as st
-from log_samples import rows
 
 from idealgas.log.hdf5 import chunks
 

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from support import record
 
+from helpers.support import record
 from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments
 from idealgas.engine.simulation import Simulation, Stop

@@ -11,9 +11,9 @@ from unittest.mock import patch
 from click.testing import CliRunner, Result
 from idealgas_cli.main import main
 
+from helpers.log_fuzz.commands import NAME, Form
+from helpers.log_fuzz.editor import Effect
 from idealgas.log.log_file import LogFile
-from log_fuzz.commands import NAME, Form
-from log_fuzz.editor import Effect
 
 NOTICES = re.compile(r"^[^\n]*: (?:is being written|was not closed)[^\n]*\n|^caveat: [^\n]*\n", re.MULTILINE)
 """Lines on stderr that are not errors."""

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from hypothesis import reject
 from hypothesis import strategies as st
-from random_walls import HEIGHT, WIDTH, distances, some_walls
 
+from helpers.random_walls import HEIGHT, WIDTH, distances, some_walls
 from idealgas.initial.build import make_gas
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.sides import SIDES

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.random import Generator
 
+from helpers.log_fuzz.editor import Change, Editor, Effect, broken, some
 from idealgas.events import EVENT_COLUMNS, Kind
 from idealgas.log.schema import CHECKPOINT_COLUMNS
-from log_fuzz.editor import Change, Editor, Effect, broken, some
 
 NOT_FINITE = (np.nan, np.inf, -np.inf)
 STRANGE = (5e-324, -5e-324, 1e-310, 1e-200, -0.0, 1e154, -1e154, 1e300, -1.7e308)

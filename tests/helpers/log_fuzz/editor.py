@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from crafted import opened, seal, swap
-from log_compare import scene_of
 from numpy.random import Generator
-from support import ROOT
 
+from helpers.crafted import opened, seal, swap
+from helpers.log_compare import scene_of
+from helpers.support import ROOT
 from idealgas.log.hdf5.commit import DATASET, Commit, table_of
 from idealgas.run.simulate import simulate
 

@@ -1,8 +1,7 @@
 """Writes the stub by which type checkers know the names of the package, those of analyses included."""
 
-from support import ROOT
-
 import idealgas
+from helpers.support import ROOT
 from idealgas.analysis import registry
 
 STUB = ROOT / "idealgas" / "__init__.pyi"
@@ -15,7 +14,7 @@ def stub() -> str:
     }
     homes |= {name: registry.find(name).measure.__module__ for name in registry.names()}
     lines = sorted(f"from {home} import {name} as {name}" for name, home in homes.items())
-    return "\n".join(['"""Names of the package; written by tests/write_stub.py."""', "", *lines, ""])
+    return "\n".join(['"""Names of the package; written by tests/helpers/write_stub.py."""', "", *lines, ""])
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-from support import ROOT
+from helpers.support import ROOT
 
 
 def start(program, folder, **environment):

@@ -1,6 +1,6 @@
 """Pages of documentation: their blocks of code, how they are run, and the outputs that they show.
 
-`python tests/readme_pages.py` runs all commands whose output a page shows, and puts the present output into the page.
+`PYTHONPATH=tests python -m helpers.readme_pages` runs all commands whose output a page shows, and updates the page.
 """
 
 import contextlib
@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 from click.testing import CliRunner
 from idealgas_cli.main import main
-from support import ROOT
+
+from helpers.support import ROOT
 
 PAGES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ For each estimate of each analysis: the root mean square of (value - truth)/erro
 little more where they are known from few samples, and the share of the stated 95 % intervals that hold the truth. The
 truth is exact theory where there is one, else the mean over all seeds.
 
-    python tests/calibration.py --seeds 2000 --folder FOLDER
+    PYTHONPATH=tests python -m helpers.calibration --seeds 2000 --folder FOLDER
 
 continues from what it has stored in the folder, and prints the table of `calibration.csv`.
 """
@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from calibration_cases import CASES, Case
 from scipy import stats
 
+from helpers.calibration_cases import CASES, Case
 from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.core.equilibration import measure as read_window
 from idealgas.errors import NotApplicableError

@@ -14,8 +14,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from random_walls import crossings, distances
 
+from helpers.random_walls import crossings, distances
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation
 from idealgas.events import BATH, EventBatch, Kind

@@ -8,8 +8,8 @@ from itertools import cycle
 from unittest.mock import patch
 
 import numpy as np
-from support import gas_of, record
 
+from helpers.support import gas_of, record
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.parallel.decomposition import _Slab

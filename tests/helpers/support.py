@@ -19,7 +19,7 @@ from idealgas.events import BLOCK, EventBatch, empty_batch
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
 
 

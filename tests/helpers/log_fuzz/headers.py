@@ -4,8 +4,8 @@ import h5py
 import numpy as np
 from numpy.random import Generator
 
+from helpers.log_fuzz.editor import Change, Editor, Effect, broken, some
 from idealgas.log.hdf5.commit import DATASET
-from log_fuzz.editor import Change, Editor, Effect, broken, some
 
 ATTRIBUTES = (
     ("/", "format"), ("/", "format_version"), ("/", "seed"), ("/", "created"), ("versions", "trajectory"),

@@ -2,10 +2,10 @@
 
 import h5py
 import numpy as np
-from crafted import swap
 from numpy.random import Generator
 
-from log_fuzz.editor import Change, Editor, Effect, broken, some
+from helpers.crafted import swap
+from helpers.log_fuzz.editor import Change, Editor, Effect, broken, some
 
 ESCAPE = "\x1b[31;1mred\x1b]0;title\x07"
 ODD = (

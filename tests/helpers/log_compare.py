@@ -4,8 +4,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from support import ROOT
 
+from helpers.support import ROOT
 from idealgas.log import open_log
 from idealgas.scene import Scene, load_scene
 
