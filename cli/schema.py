@@ -14,6 +14,6 @@ def schema(kind: str) -> None:
     """
     from idealgas.scene import Scene
     from idealgas.sweep.plan import Tables
-    from idealgas.toml.schema import schema_text
+    from idealgas.toml.table import schema_text
 
     data(schema_text(Scene if kind == "scene" else Tables), nl=False)

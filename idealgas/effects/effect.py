@@ -9,7 +9,7 @@ import numpy as np
 from idealgas.effects.properties import ActiveEffect
 from idealgas.events import Arrays, Column, Values
 from idealgas.state import Gas
-from idealgas.toml.error import Issue
+from idealgas.toml.issues import Issue
 from idealgas.toml.table import Table
 
 

@@ -11,7 +11,7 @@ from idealgas.events import Column
 from idealgas.physics import gravity as law
 from idealgas.sides import SIDES, sides_across
 from idealgas.state import Gas
-from idealgas.toml.error import Issue, Key
+from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Table, Vector
 
 NAME = "gravity"

@@ -9,7 +9,7 @@ from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.events import IMAGE
 from idealgas.physics import periodic as law
 from idealgas.sides import SIDES, sides_across
-from idealgas.toml.error import Issue, Key
+from idealgas.toml.issues import Issue, Key
 
 NAME = "periodic sides"
 

@@ -8,7 +8,7 @@ from itertools import zip_longest
 from typing import Any
 
 from idealgas.sides import SIDES
-from idealgas.toml.error import Key
+from idealgas.toml.issues import Key
 
 
 def _sums(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:

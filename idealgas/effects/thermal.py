@@ -8,7 +8,7 @@ from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.events import Column
 from idealgas.physics import thermal as law
 from idealgas.sides import SIDES
-from idealgas.toml.error import Key
+from idealgas.toml.issues import Key
 from idealgas.toml.table import Positive, Table
 
 NAME = "thermal walls"

@@ -12,7 +12,7 @@ from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
 from idealgas.sides import SIDES
-from idealgas.toml.error import Issue, Key
+from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Positive, Table, Vector, Word
 
 NAME = "wall segments"

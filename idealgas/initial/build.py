@@ -8,7 +8,7 @@ from idealgas.initial.contacts import static_contact_issues
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas, rng
-from idealgas.toml.error import Issue
+from idealgas.toml.issues import Issue
 
 
 def make_gas(scene: Scene) -> Gas:

@@ -14,7 +14,7 @@ import numpy as np
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
 from idealgas.sides import OUTWARD, SIDES, axis_of, is_upper
-from idealgas.toml.error import Issue, Key
+from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.state import Gas

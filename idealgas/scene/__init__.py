@@ -9,11 +9,9 @@ from idealgas.effects.thermostat import Thermostat
 from idealgas.effects.wall import Wall
 from idealgas.scene.defaults import RestingDisc
 from idealgas.scene.loader import load_scene, parse_scene
-from idealgas.scene.model import Scene
-from idealgas.scene.tables.box import Box
-from idealgas.scene.tables.discs import Disc, Species
-from idealgas.scene.tables.run import Header, Log, Run
-from idealgas.toml.messages import SceneError
+from idealgas.scene.scene import Scene
+from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species
+from idealgas.toml.issues import SceneError
 
 __all__ = [
     "Box",

@@ -11,8 +11,7 @@ from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mea
 
 if TYPE_CHECKING:
     from idealgas.effects.restitution import Restitution
-    from idealgas.scene.tables.discs import Disc, Species
-    from idealgas.scene.tables.run import Run
+    from idealgas.scene.tables import Disc, Run, Species
     from idealgas.toml.table import Rectangle, Vector
 
 

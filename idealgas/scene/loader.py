@@ -6,13 +6,11 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from idealgas.scene.checks.issues import issues
-from idealgas.scene.model import Scene
-from idealgas.toml.error import Issue, Key
-from idealgas.toml.messages import SceneError, as_issues, table_at
-from idealgas.toml.origin import Origin
+from idealgas.scene.checks import issues
+from idealgas.scene.scene import Scene
+from idealgas.toml.issues import Issue, Key, SceneError, as_issues, table_at
 from idealgas.toml.overrides import OverrideError, apply
-from idealgas.toml.text import parse_document, read_text
+from idealgas.toml.text import Origin, parse_document, read_text
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:

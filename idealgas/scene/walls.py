@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from idealgas.sides import FIRST_SEGMENT, SIDES, Point, side_ends
 
 if TYPE_CHECKING:
-    from idealgas.scene.model import Scene
+    from idealgas.scene.scene import Scene
 
 
 class NumberedWall(NamedTuple):

@@ -17,12 +17,10 @@ from idealgas.analysis import registry
 from idealgas.scene import Scene, SceneError
 from idealgas.scene.loader import make_scene
 from idealgas.toml.dump import toml_value
-from idealgas.toml.error import Issue, Key
-from idealgas.toml.messages import as_issues
-from idealgas.toml.origin import Origin
+from idealgas.toml.issues import Issue, Key, as_issues
 from idealgas.toml.overrides import OverrideError, apply
 from idealgas.toml.table import Number, Positive, Table
-from idealgas.toml.text import parse_document, read_text
+from idealgas.toml.text import Origin, parse_document, read_text
 
 PHI, BASE = "phi", "base"
 """Keys of axes beside those of a scene: packing fraction, by scaling the box, and path of the base scene."""

@@ -3,7 +3,7 @@
 import tomllib
 from typing import Any
 
-from idealgas.toml.error import Key
+from idealgas.toml.issues import Key
 
 
 class OverrideError(ValueError):

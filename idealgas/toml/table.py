@@ -1,12 +1,16 @@
-"""What all tables of a scene share: how strict they are, and the kinds of numbers in them."""
+"""What all tables of a scene share: how strict they are, the kinds of numbers in them, and their JSON Schema."""
 
-from typing import Annotated
+import json
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 SMALLEST, LARGEST = 1e-60, 1e30
 """Bounds on the size of every number but 0, so that no product of a few of them underflows or overflows."""
+
+SCHEMA_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+"""Keywords of JSON Schema for the bounds that pydantic writes under its own names behind a validator."""
 
 
 def _not_tiny(number: float) -> float:
@@ -38,3 +42,14 @@ class Table(BaseModel):
     """A TOML table: no key beyond its own, no value of another type, nothing changed later."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def schema_text(model: type[BaseModel]) -> str:
+    """JSON Schema of the documents of a model, as text; what is asked across tables is not in it."""
+    return json.dumps(_standard(model.model_json_schema(by_alias=True)), indent=1, ensure_ascii=False) + "\n"
+
+
+def _standard(node: Any) -> Any:
+    if isinstance(node, dict):
+        return {SCHEMA_BOUNDS.get(key, key): _standard(value) for key, value in node.items()}
+    return [_standard(entry) for entry in node] if isinstance(node, list) else node

@@ -1,13 +1,18 @@
-"""TOML text from a file, and its plain values."""
+"""A TOML text: reading it, and the line of each of its keys, which `tomllib` does not report."""
 
 import re
 import tomllib
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from idealgas.files import HEAD, describe_file_type
-from idealgas.toml.messages import SceneError
+from idealgas.toml.issues import Issue, Key, SceneError
 
 
 def read_text(path: str | PathLike[str]) -> str:
@@ -36,3 +41,140 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         if match := re.fullmatch(r"(.*) \(at line (\d+), column \d+\)", what, re.DOTALL):
             what, line = match[1], int(match[2])
         raise SceneError([f"{name}:{line}: not TOML: {what}"]) from None
+
+
+_BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\]|\\.)*"|'[^']*'""")
+_VALUE = re.compile(r'''"""(?:[^\\]|\\.)*?"{3,5}|\'{3}.*?\'{3,5}|"(?:[^"\\]|\\.)*"|'[^']*'|[^,\[\]{}#\n]+''', re.DOTALL)
+
+
+def key_lines(text: str) -> dict[Key, int]:
+    """Line of every table, key and array element of a text that `tomllib` accepts."""
+    return _Scanner(text).lines
+
+
+class _Scanner:
+    """Walks over valid TOML; what values mean is left to `tomllib`."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.position = 0
+        self.newlines = [match.start() for match in re.finditer("\n", text)]
+        self.lines: dict[Key, int] = {}
+        self.tables: dict[Key, int] = {}  # arrays of tables, and the index of the latest of each
+        table: Key = ()
+        while self.skip_blank() < len(text):
+            if self.take("[["):
+                *above, name = self.key()
+                array = (*self.current(above), name)
+                index = self.tables[array] = self.tables.get(array, -1) + 1
+                table = (*array, index)
+                self.mark(table)
+                self.take("]]")
+            elif self.take("["):
+                table = self.current(self.key())
+                self.mark(table)
+                self.take("]")
+            else:
+                self.pair(table)
+
+    def skip_blank(self) -> int:
+        if match := _BLANK.match(self.text, self.position):
+            self.position = match.end()
+        return self.position
+
+    def take(self, token: str) -> bool:
+        self.skip_blank()
+        found = self.text.startswith(token, self.position)
+        self.position += len(token) * found
+        return found
+
+    def match(self, pattern: re.Pattern[str]) -> str:
+        self.skip_blank()
+        match = pattern.match(self.text, self.position)
+        assert match, "tomllib accepted this text"
+        self.position = match.end()
+        return match.group()
+
+    def mark(self, key: Key) -> None:
+        line = bisect_left(self.newlines, self.position) + 1
+        for length in range(1, len(key) + 1):
+            self.lines.setdefault(key[:length], line)
+
+    def key(self) -> list[str]:
+        parts: list[str] = []
+        while not parts or self.take("."):
+            part = self.match(_KEY)
+            parts.append(tomllib.loads(f"key = {part}")["key"] if part[0] in "\"'" else part)
+        return parts
+
+    def current(self, names: list[str]) -> Key:
+        """Path of a table, with the index of the latest one after each array of tables."""
+        path: Key = ()
+        for name in names:
+            path = (*path, name)
+            if path in self.tables:
+                path = (*path, self.tables[path])
+        return path
+
+    def pair(self, table: Key) -> None:
+        key = (*table, *self.key())
+        self.mark(key)
+        self.take("=")
+        self.value(key)
+
+    def value(self, key: Key) -> None:
+        if self.take("{"):
+            while not self.take("}"):
+                self.pair(key)
+                self.take(",")
+        elif self.take("["):
+            index = 0
+            while not self.take("]"):
+                self.mark((*key, index))
+                self.value((*key, index))
+                self.take(",")
+                index += 1
+        else:
+            self.match(_VALUE)
+
+
+@dataclass
+class Origin:
+    """A text, its file's name, the places of overrides by the key they set, and the key of the scene in the text.
+
+    All origins are equal, as they are no part of a scene.
+    """
+
+    text: str = field(default="", compare=False)
+    name: str = field(default="", compare=False)
+    overridden: Mapping[Key, str] = field(default_factory=dict, compare=False)
+    above: Key = field(default=(), compare=False)
+
+    def report(self, issues: Sequence[Issue]) -> list[str]:
+        """One line for each issue, in the order of the file's lines; issues of overrides come last."""
+        lines = []
+        for issue in issues:
+            blamed = next((o for key in issue.keys if (o := self._override(key)) is not None), None)
+            line = self.line(issue.keys[0])
+            place = f"{blamed}: " if blamed is not None else f"{self.name}:{line}: " if self.name else ""
+            lines.append((blamed is not None, line, f"{place}{issue}"))
+        return [text for *_, text in sorted(lines, key=lambda item: item[:2])]
+
+    def _override(self, key: Key) -> str | None:
+        """Place of the override that sets the key, or something in a table around it that the text does not have."""
+        tables = [key[:n] for n in range(1, len(key) + 1)]
+        absent = [table for table in tables if (*self.above, *table) not in self._lines][:1]
+        set_by = self.overridden.items()
+        exact = (place for k, place in set_by if key[: len(k)] == k)
+        around = (place for k, place in set_by for table in absent if k[: len(table)] == table)
+        return next(chain(exact, around), None)
+
+    def line(self, key: Key) -> int:
+        """Line of the key or of the closest table above it; the first line if there is none."""
+        key = (*self.above, *key)
+        return next((self._lines[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self._lines), 1)
+
+    @cached_property
+    def _lines(self) -> dict[Key, int]:
+        return key_lines(self.text)

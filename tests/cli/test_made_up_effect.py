@@ -33,7 +33,7 @@ EFFECT = '''
     from idealgas.effects.effect import EffectSpec, Sample
     from idealgas.effects.properties import ActiveEffect, Properties
     from idealgas.physics.tilt import tilted
-    from idealgas.toml.error import Issue
+    from idealgas.toml.issues import Issue
     from idealgas.toml.table import Number, Positive, Table
 
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from idealgas.scene import parse_scene
 from idealgas.toml.dump import dump_document, toml_value
-from idealgas.toml.lines import key_lines
 from idealgas.toml.table import LARGEST, SMALLEST
+from idealgas.toml.text import key_lines
 
 WIDTH, HEIGHT = 1000.0, 500.0
 

@@ -16,7 +16,7 @@ ALLOWED = {
     "toml": set(),
     "physics": {"jit"},
     "effects": {"jit", "state", "toml", "physics"},  # a scene stands on its effects
-    "scene": {"effects", "toml", "physics", "initial"},  # defaults that follow from a law; room for a lattice
+    "scene": {"effects", "toml", "physics"},  # defaults that follow from a law
     "initial": {"jit", "state", "toml", "scene", "physics"},  # discs are placed by the nearest image's distance
     "engine": {"effects", "jit", "state", "initial", "physics"},
     "log": {"jit", "state", "initial", "scene", "physics"},  # states between two events are free flight
@@ -86,7 +86,7 @@ PACKAGE = [name for name in MODULES if name.split(".")[0] == "idealgas"]
 
 
 def part(name: str, depth: int = 1) -> str:
-    """scene for idealgas.scene.model; nothing for the package itself."""
+    """scene for idealgas.scene.scene; nothing for the package itself."""
     parts = name.split(".")
     return parts[depth] if len(parts) > depth else ""
 

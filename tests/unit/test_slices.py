@@ -7,25 +7,26 @@ from helpers.support import ROOT
 
 from idealgas.effects import EFFECTS, NAMES
 from idealgas.effects.bundle import ENERGIES, Effects
-from idealgas.scene.tables.document import Document
+from idealgas.scene.document import Document
 
 PLACES = ("physics", "effects")
 
 NAMED = {
     "scene/__init__.py": ({*NAMES} - {"periodic"}, "hands out the classes of the tables"),
-    "scene/tables/box.py": ({"periodic"}, "the word for a side"),
-    "scene/tables/document.py": ({*NAMES} - {"thermal", "gravity"}, "defaults that follow from other tables"),
+    "scene/tables.py": ({"periodic"}, "the word for a side"),
+    "scene/document.py": ({*NAMES} - {"thermal", "gravity"}, "defaults that follow from other tables"),
     "scene/defaults.py": ({"restitution"}, "the default of its contact duration"),
-    "scene/checks/issues.py": (
+    "scene/checks/__init__.py": (
         {"rotation", "restitution", "wall", "thermostat", "gravity", "piston"},
         "checks of several tables",
     ),
     "scene/checks/piston.py": ({"gravity", "periodic", "piston", "wall", "thermal"}, "checks of several tables"),
-    "scene/model.py": ({"piston", "restitution"}, "defaults that follow from other tables"),
+    "scene/scene.py": ({"piston", "restitution"}, "defaults that follow from other tables"),
     "scene/walls.py": ({"piston", "wall", "periodic"}, "lists the walls: sides, segments, and what stands for a side"),
-    "scene/geometry.py": ({"periodic", "wall"}, "images of a disc in a box while other tables may not be valid"),
-    "scene/checks/discs.py": ({"periodic", "piston"}, "discs in a box while other tables may not be valid"),
-    "scene/checks/placement.py": ({"periodic", "wall"}, "a lattice goes on through periodic sides, and among no walls"),
+    "scene/checks/discs.py": (
+        {"periodic", "piston", "wall"},
+        "discs in a box while other tables may not be valid, and what lattices do not allow",
+    ),
     "initial/contacts.py": ({"piston"}, "what discs may rest on, which shows once they are placed"),
     "log/schema.py": ({"gravity"}, "names in the file"),
     "log/header.py": ({"gravity"}, "names in the file"),

@@ -11,7 +11,7 @@ from idealgas.analysis.theory import conserved, time_steps
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.scene import Scene
-from idealgas.scene.identity import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
+from idealgas.scene.scene import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
 
 MOST = 6
 """Largest number of sentences that are taken over from single logs where many are combined."""

@@ -1,1 +1,118 @@
-"""What is wrong with a scene: faults between its tables."""
+"""Everything that is wrong between the tables of a scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
+from typing import TYPE_CHECKING, TypeVar
+
+from idealgas.effects import EFFECTS
+from idealgas.effects.wall import wall_issues
+from idealgas.scene.checks import piston
+from idealgas.scene.checks.discs import (
+    distance_to_wall,
+    images,
+    overlap_issues,
+    placement_issues,
+    room_issues,
+    species_issues,
+)
+from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
+from idealgas.scene.defaults import number_of_discs
+from idealgas.toml.issues import Issue, Key
+
+if TYPE_CHECKING:
+    from idealgas.scene.document import Document
+
+
+Item = TypeVar("Item")
+
+MOST_KICKS = 1e10
+"""Bound on the kicks of a run: hours."""
+
+
+def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator[Issue]:
+    """Faults between the tables of a scene, and between the keys of one.
+
+    Tables named in `invalid`, and None in an array of tables, have issues of their own and are left out.
+    """
+    kinds, discs = _valid(scene.species), _valid(scene.disc)
+    box = None if "box" in invalid else scene.box
+    if not scene.species and not scene.disc:
+        yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]]")
+    yield from species_issues(kinds)
+    yield from overlap_issues(discs, box)
+    if "rotation" not in invalid:
+        yield from _spin_issues(scene, invalid)
+    if not {"restitution", "species", "disc", "box", "gravity", "piston"} & invalid:
+        yield from _contact_issues(scene)
+    if box is not None:
+        for effect in EFFECTS:
+            yield from effect.check(scene.tables_of(effect))
+        yield from _discs_in_walls(scene)
+    yield from piston.issues(scene, invalid)
+    if not invalid:
+        yield from _kick_issues(scene)
+    if box is not None:
+        yield from room_issues(box, scene.room, kinds, discs, invalid)
+        yield from placement_issues(scene, kinds)
+    if not {"run", "species", "disc", "gravity", "piston"} & invalid:
+        yield from endless_issues(scene)
+        if box is not None and (scene.species or scene.disc):
+            yield from number_issues(scene, invalid)
+    if "run" not in invalid:
+        yield from method_issues(scene, invalid)
+
+
+def _valid(items: Sequence[Item | None]) -> list[tuple[int, Item]]:
+    """The valid tables of an array, with their numbers; None stands in the place of the others."""
+    return [(i, item) for i, item in enumerate(items) if item is not None]
+
+
+def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
+    """Spins without rotation, and rotation without effect on any spin."""
+    rotation = scene.rotation
+    for table, items in (("species", scene.species), ("disc", scene.disc)):
+        for i, item in _valid(items):
+            given = [key for key in ("angular_velocity", "spin_temperature") if getattr(item, key, None) is not None]
+            keys: tuple[Key, ...] = tuple((table, i, key) for key in given)
+            if given and rotation is None:
+                yield Issue((*keys, ("rotation",)), "a spin without rotation", given[0], "it with a table [rotation]")
+            elif len(given) > 1:
+                yield Issue(keys, "two spins", " and ".join(given), "one of them")
+    smooth = rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1
+    if smooth and scene.thermostat is None and "thermostat" not in invalid:
+        keys = (("rotation", "roughness"), ("rotation", "wall_roughness"))
+        allowed = "no [rotation], or a roughness > -1"
+        yield Issue(keys, "spins that nothing changes", "smooth discs and smooth walls", allowed)
+
+
+def _contact_issues(scene: Document) -> Iterator[Issue]:
+    """A contact duration that has no default."""
+    if (scene.species or scene.disc) and math.isinf(scene.contact_duration):
+        keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
+        yield Issue(keys, "no default where nothing moves at the start", "nothing", "a time > 0")
+
+
+def _discs_in_walls(scene: Document) -> Iterator[Issue]:
+    """Explicit discs that overlap a wall that is present at the start."""
+    box = scene.box
+    walls = [(i, wall) for i, wall in _valid(scene.wall) if not list(wall_issues(box.size, i, wall))]
+    for k, d in _valid(scene.disc):
+        for i, wall in walls:
+            distance = min(distance_to_wall(centre, wall) for centre in images(d.position, d.radius, box))
+            if wall.there_at_start and distance < d.radius:
+                keys: tuple[Key, ...] = (("disc", k, "position"), ("disc", k, "radius"), ("wall", i))
+                yield Issue(keys, f"overlaps wall {i}", f"a distance of {distance} to it", f">= {d.radius}, the radius")
+
+
+def _kick_issues(scene: Document) -> Iterator[Issue]:
+    """A thermostat whose kicks take too long, in a run with an end in time."""
+    thermostat, until = scene.thermostat, scene.run.until
+    if thermostat is None or until is None:
+        return
+    kicks = thermostat.rate * until * number_of_discs(scene.species, scene.disc)
+    if kicks > MOST_KICKS:
+        allowed = f"<= {MOST_KICKS:g}, by a rate <= {thermostat.rate * MOST_KICKS / kicks:.3g}"
+        yield Issue((("thermostat", "rate"), ("run", "until")), "too many kicks", f"about {kicks:.3g}", allowed)

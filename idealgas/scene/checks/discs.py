@@ -1,20 +1,22 @@
-"""Whether the discs fit into the box and move; nothing here makes an array."""
+"""Whether the discs fit into the box, and on their lattices, and move; nothing here makes an array."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.scene.checks.piston import CLOSE_PACKING
-from idealgas.scene.geometry import images, overlaps
-from idealgas.toml.error import Issue, Key
+from idealgas.scene.lattice import triangular_lattice
+from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Rectangle
 
 if TYPE_CHECKING:
-    from idealgas.scene.tables.box import Box
-    from idealgas.scene.tables.discs import Disc, Species
+    from idealgas.effects.wall import Wall
+    from idealgas.scene.document import Document
+    from idealgas.scene.tables import Box, Disc, Species
+
 
 RANDOM_PACKING = 0.65
 """Packing fraction up to which discs are placed at random; see `idealgas.initial.placement`."""
@@ -22,9 +24,16 @@ RANDOM_PACKING = 0.65
 RESOLUTION = 1e-9
 """Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""
 
-
 MOST_OVERLAPS = 1_000
-"""Lines about overlaps after which the others of a scene are not told."""
+"""Number of overlaps that are reported."""
+
+PERIODIC_ONLY = ("triangular", "compressed")
+"""Placements that take the whole of a periodic box."""
+
+NARROWEST = 5.0
+"""Smallest width of a box in which discs are compressed, in radii: a disc must not meet two images of another one."""
+
+Point = tuple[float, float]
 
 
 def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
@@ -151,3 +160,105 @@ def _crowding(
                 f"packing fraction {packing:.4g}",
                 allowed,
             )
+
+
+def placement_issues(scene: Document, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
+    """Species on a triangular lattice or compressed whose box does not suit, and lattices without room."""
+    some = [(i, s) for i, s in kinds if s.placement in PERIODIC_ONLY]
+    for i, s in some:
+        keys: tuple[Key, ...] = (("species", i, "placement"),)
+        if not all(scene.box.periodic):
+            sides = tuple(("box", side) for side in ("left", "right", "bottom", "top"))
+            yield Issue((*keys, *sides), f"{s.placement} in a box with sides", f'"{s.placement}"', "periodic sides")
+        elif s.region is not None:
+            yield Issue(
+                (("species", i, "region"), *keys), f"region for {s.placement} discs", str(list(s.region)), "none"
+            )
+        elif s.placement == "compressed":
+            yield from _compressed(scene, kinds, i)
+    lattice = [(i, s) for i, s in some if s.placement == "triangular"]
+    if lattice and all(scene.box.periodic):
+        yield from _on_lattice(scene.box.size, lattice)
+
+
+def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> Iterator[Issue]:
+    """Compression of a species beside what does not move, or in a box that is too narrow."""
+    key: Key = ("species", i, "placement")
+    others = [f"species.{k}.placement = {s.placement}" for k, s in kinds if s.placement != "compressed"]
+    others += ["[[disc]]"] if scene.disc else []
+    others += ["[[wall]]"] if scene.wall else []
+    if others:
+        allowed = "compressed for all species, and no [[disc]] or [[wall]]"
+        yield Issue((key,), "compressed beside what is not", ", ".join(others), allowed)
+    least = NARROWEST * max(s.radius for _, s in kinds)
+    if min(scene.box.size) < least:
+        got = f"a side of {min(scene.box.size)}"
+        yield Issue((key, ("box", "size")), "box too narrow to compress the discs in it", got, f">= {least}")
+
+
+def _on_lattice(size: tuple[float, float], kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
+    """Discs that do not fit on their triangular lattice."""
+    number, first = sum(s.count for _, s in kinds), kinds[0][0]
+    keys: tuple[Key, ...] = (("species", first, "count"), ("species", first, "placement"), ("box", "size"))
+    lattice = triangular_lattice(number, size)
+    if lattice is None:
+        yield Issue(keys, "no triangular lattice through periodic sides", f"{number} discs", "an even number of discs")
+        return
+    least = 2 * max(s.radius for _, s in kinds)
+    if lattice.nearest < least:
+        got = f"sites {lattice.nearest:.6g} apart, {lattice.columns} in each of {lattice.rows} rows"
+        allowed = f">= {least:.6g}, two radii; box.size = {list(lattice.unstrained)} has no strain"
+        yield Issue(keys, "no room for all discs on a triangular lattice", got, allowed)
+
+
+def images(centre: Point, radius: float, box: Box | None) -> Iterator[Point]:
+    """A disc's centre, and those of its images that reach into the box through periodic sides."""
+    shifts = []
+    for axis in range(2):
+        here = [0.0]
+        if box is not None and box.periodic[axis]:
+            if centre[axis] < radius:
+                here.append(box.size[axis])
+            if centre[axis] > box.size[axis] - radius:
+                here.append(-box.size[axis])
+        shifts.append(here)
+    for dx in shifts[0]:
+        for dy in shifts[1]:
+            yield centre[0] + dx, centre[1] + dy
+
+
+def overlaps(discs: Sequence[tuple[Point, float]]) -> Iterator[tuple[int, int, float]]:
+    """Indices of two discs that overlap, the lower one first, and their distance; each disc is (centre, radius).
+
+    Discs of about one radius, from a power of two to the next, share a grid with cells no smaller than their diameter.
+    Each disc is compared with those of the nine cells around it in the grids of its own size and of larger ones, so
+    the time is that of N log N, unless very many discs overlap.
+    """
+    size = [math.frexp(radius)[1] for _, radius in discs]  # radius < 2^size
+    grids: dict[int, dict[tuple[int, int], list[int]]] = {level: {} for level in sorted(set(size))}
+    for i, (centre, _) in enumerate(discs):
+        grids[size[i]].setdefault(_cell(centre, size[i]), []).append(i)
+    for i, (centre, radius) in enumerate(discs):
+        for level, grid in grids.items():
+            if level < size[i]:
+                continue
+            column, row = _cell(centre, level)
+            for cell in ((column + c, row + r) for c in (-1, 0, 1) for r in (-1, 0, 1)):
+                for k in grid.get(cell, ()):
+                    other, reach = discs[k][0], radius + discs[k][1]
+                    dx, dy = centre[0] - other[0], centre[1] - other[1]
+                    if dx * dx + dy * dy < reach * reach and (k < i or level > size[i]):
+                        yield min(i, k), max(i, k), math.hypot(dx, dy)
+
+
+def _cell(centre: Point, size: int) -> tuple[int, int]:
+    """Column and row of a point in a grid of cells of the width 2 * 2^size."""
+    return math.floor(math.ldexp(centre[0], -size - 1)), math.floor(math.ldexp(centre[1], -size - 1))
+
+
+def distance_to_wall(point: Point, wall: Wall) -> float:
+    """Distance of a point from the nearest point of a wall of some length."""
+    along = (wall.end[0] - wall.start[0], wall.end[1] - wall.start[1])
+    x, y = point[0] - wall.start[0], point[1] - wall.start[1]
+    share = min(max((x * along[0] + y * along[1]) / (along[0] ** 2 + along[1] ** 2), 0.0), 1.0)
+    return math.hypot(x - share * along[0], y - share * along[1])

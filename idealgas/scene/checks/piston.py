@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from idealgas.effects.periodic import PERIODIC
 from idealgas.sides import SIDES, opposite
-from idealgas.toml.error import Issue, Key
+from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.effects.piston import Piston
-    from idealgas.scene.tables.document import Document
+    from idealgas.scene.document import Document
 
 WAY = ", as one with a mass comes as near to the other side as the discs let it"
 

@@ -8,10 +8,10 @@ from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from idealgas.scene.defaults import mean_speed
-from idealgas.toml.error import Issue, Key
+from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
-    from idealgas.scene.tables.document import Document
+    from idealgas.scene.document import Document
 
 MONTE_CARLO, TIME_DRIVEN, BRUTE_FORCE = "monte_carlo", "time_driven", "brute_force"
 OWNERS = {

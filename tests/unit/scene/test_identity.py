@@ -3,7 +3,7 @@
 import pytest
 
 from idealgas.scene import parse_scene
-from idealgas.scene.identity import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
+from idealgas.scene.scene import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
 
 GAS = """
 scene.seed = 3

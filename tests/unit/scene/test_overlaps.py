@@ -7,10 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from idealgas.scene.checks.discs import MOST_OVERLAPS, overlap_issues
-from idealgas.scene.geometry import overlaps
-from idealgas.scene.tables.box import Box
-from idealgas.scene.tables.discs import Disc
+from idealgas.scene.checks.discs import MOST_OVERLAPS, overlap_issues, overlaps
+from idealgas.scene.tables import Box, Disc
 
 WIDTH, HEIGHT = 8.0, 4.0
 FINEST = 64  # of a length: sums and squares of such numbers are exact, and many discs just touch

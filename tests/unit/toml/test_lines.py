@@ -2,7 +2,7 @@ import tomllib
 
 import pytest
 
-from idealgas.toml.lines import key_lines
+from idealgas.toml.text import key_lines
 
 HARD = r'''# a comment with [brackets] = "quotes"
 top = 1

@@ -22,9 +22,7 @@ from idealgas.scene.defaults import (
     trial_time,
 )
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
-from idealgas.scene.tables.box import Box
-from idealgas.scene.tables.discs import Disc, Species
-from idealgas.scene.tables.run import Header, Log, Run
+from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species
 from idealgas.toml.table import Rectangle, Table, Vector
 
 

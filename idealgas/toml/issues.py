@@ -1,8 +1,8 @@
-"""Issues and pydantic's findings as lines for a user: `place: table.key: what is wrong (got …; allowed …)`."""
+"""What is wrong with a document: issues and pydantic's errors, as `table.key: what is wrong (got …; allowed …)`."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -10,7 +10,9 @@ from pydantic_core import ErrorDetails
 
 from idealgas.errors import UserError
 from idealgas.toml.dump import toml_value
-from idealgas.toml.error import Issue, Key
+
+Key = tuple[str | int, ...]
+"""Path of a key in the document: ("species", 0, "radius")."""
 
 _WORDS = {
     "float_type": ("wrong type", "a number"),
@@ -28,6 +30,23 @@ _WORDS = {
     "less_than": ("out of range", "< {lt:g}"),
     "less_than_equal": ("out of range", "<= {le:g}"),
 }
+
+
+class Issue(NamedTuple):
+    """Something wrong: the key to show first, then the others that have a part in it."""
+
+    keys: tuple[Key, ...]
+    wrong: str
+    got: str
+    allowed: str
+
+    def __str__(self) -> str:
+        return f"{dotted(self.keys[0])}: {self.wrong} (got {self.got}; allowed {self.allowed})"
+
+
+def dotted(key: Key) -> str:
+    """A key as it is written in messages and in --set."""
+    return ".".join(map(str, key))
 
 
 class SceneError(UserError, ValueError):

@@ -1,0 +1,170 @@
+"""The tables of a scene that are not of an effect: box, discs, run and log."""
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from idealgas.effects import EFFECTS
+from idealgas.effects.periodic import PERIODIC
+from idealgas.toml.table import NotNegative, Number, Positive, Table, Vector, Whole, Word
+
+WORDS = ("reflecting", *(effect.side for effect in EFFECTS if isinstance(effect.side, str)))
+"""Kinds of sides that are a word."""
+
+TABLES = tuple(effect.side for effect in EFFECTS if isinstance(effect.side, type))
+"""Kinds of sides that are a table with one key."""
+
+
+def _key_of(table: type[Table]) -> str:
+    return next(iter(table.model_fields))
+
+
+def _tag(side: Any) -> str:
+    """Which kind of side it is; a table without the key of any kind counts as the first, which then names all keys."""
+    if not isinstance(side, (dict, *TABLES)):
+        return "(word)"
+    kinds = (
+        _key_of(table)
+        for table in TABLES
+        if isinstance(side, table) or (isinstance(side, dict) and _key_of(table) in side)
+    )
+    return f"({next(kinds, _key_of(TABLES[0]))})"
+
+
+def _kind_of_side() -> Any:
+    kinds: Any = Annotated[Literal[WORDS], Tag("(word)")]
+    for table in TABLES:
+        kinds |= Annotated[table, Tag(f"({_key_of(table)})")]
+    return Annotated[kinds, Discriminator(_tag)]
+
+
+def _description() -> str:
+    *texts, last = ('"reflecting"', *(effect.side_text for effect in EFFECTS if effect.side))
+    return f"{', '.join(texts)} or {last}"
+
+
+if TYPE_CHECKING:
+    Side = Any
+else:
+    Side = _kind_of_side()
+
+_SIDE = _description()
+
+
+class Box(Table):
+    """`[box]`: the corner at the lower left is the origin."""
+
+    size: Annotated[tuple[Positive, Positive], Field(strict=False)] = Field(description="[width, height], length")
+    left: Side = Field(default="reflecting", description=_SIDE)
+    right: Side = Field(default="reflecting", description=_SIDE)
+    bottom: Side = Field(default="reflecting", description=_SIDE)
+    top: Side = Field(default="reflecting", description=_SIDE)
+
+    @property
+    def sides(self) -> tuple[Side, Side, Side, Side]:
+        """Left, right, bottom and top."""
+        return self.left, self.right, self.bottom, self.top
+
+    @property
+    def periodic(self) -> tuple[bool, bool]:
+        """Whether the sides across x, and across y, are periodic."""
+        return self.left == PERIODIC, self.bottom == PERIODIC
+
+
+class Species(Table):
+    """`[[species]]`: discs of one kind. Exactly one of temperature, speed and velocities says how they move."""
+
+    name: Word = Field(description="a word, its own for each species")
+    count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1")
+    radius: Positive = Field(description="radius > 0, length")
+    mass: Positive = Field(default=1.0, description="mass")
+    temperature: NotNegative | None = Field(
+        default=None, description="energy; Gaussian velocities, kinetic energy count * T"
+    )
+    speed: NotNegative | None = Field(default=None, description="length/time; equal speeds, random directions")
+    velocities: Annotated[tuple[Vector, ...], Field(strict=False)] | None = Field(
+        default=None, description="length/time; one [vx, vy] for each disc"
+    )
+    angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
+    spin_temperature: NotNegative | None = Field(
+        default=None, description="energy; with [rotation]: Gaussian spins, rotational energy count * T/2"
+    )
+    placement: Literal["random", "lattice", "triangular", "compressed"] = Field(
+        default="random", description="how the discs are put into the region"
+    )
+    region: Annotated[tuple[Number, Number, Number, Number], Field(strict=False)] | None = Field(
+        default=None,
+        description="[x0, y0, x1, y1], length: whole discs lie in it; if absent the box, up to the piston",
+    )
+
+
+class Disc(Table):
+    """`[[disc]]`: one disc."""
+
+    position: Vector = Field(description="[x, y] of the centre, length")
+    velocity: Vector = Field(default=(0.0, 0.0), description="[vx, vy], length/time")
+    radius: Positive = Field(description="radius > 0, length")
+    mass: Positive = Field(default=1.0, description="mass")
+    angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
+
+
+Threads = Annotated[
+    Annotated[Literal["auto"], Tag("(word)")] | Annotated[int, Field(ge=1, le=256), Tag("(number)")],
+    Discriminator(lambda threads: "(word)" if isinstance(threads, str) else "(number)"),
+]
+
+
+class Header(Table):
+    """`[scene]`: what the scene is called, and the seed of its random numbers."""
+
+    title: str = Field(default="", description="one line for people")
+    seed: Whole = Field(
+        default=0, ge=0, lt=2**63, description="whole number from which all random numbers of the scene follow"
+    )
+
+
+class Run(Table):
+    """`[run]`: the method and when to stop, whichever of the stop rules comes first; at least one is given."""
+
+    method: Literal["event_driven", "brute_force", "time_driven", "monte_carlo"] = Field(
+        default="event_driven", description="how events are found"
+    )
+    until: Positive | None = Field(default=None, description="time")
+    events: Whole | None = Field(default=None, ge=1, lt=2**63, description="number of pair collisions and wall hits")
+    collisions_per_disc: Positive | None = Field(
+        default=None, description="average number of pair collisions per disc (2 * collisions / N)"
+    )
+    trials: Whole | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
+    dt: Positive | None = Field(default=None, description="with time_driven, and required there: step, time")
+    precision: Literal["float32", "float64", "double-double"] | None = Field(
+        default=None, description="with brute_force: of its numbers, about 7, 16 (as if absent) or 32 digits"
+    )
+    v_ref: Positive | None = Field(
+        default=None,
+        description="with monte_carlo: relative speed at which a pair of the largest discs collides for certain; "
+        "if absent 5 times the largest speed at the start",
+    )
+    impact: Literal["symmetric", "one_sided"] | None = Field(
+        default=None, description="with monte_carlo: whether impact parameters have both signs, as if absent, or one"
+    )
+    threads: Threads = Field(
+        default=1,
+        exclude=True,
+        description='whole number, or "auto"; with event_driven, how many threads share the work: the log is the same',
+    )
+
+
+class Log(Table):
+    """`[log]`: what the run writes."""
+
+    events: bool = Field(default=True, description="every event on record; without, the checkpoints only")
+    compression: Literal["gzip", "none"] = Field(default="gzip", description="of the event columns")
+    pressure: bool = Field(
+        default=False, description="momentum that flows and that walls take, in every sample: pressure without events"
+    )
+    heat_flow: bool | None = Field(
+        default=None, description="with pressure: heat that flows, in every sample, for its conductivity without events"
+    )
+    checkpoint_every: Whole = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
+    snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")
+    fsync: bool = Field(default=False, description="whether what is flushed also survives a loss of power")
