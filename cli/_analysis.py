@@ -169,8 +169,8 @@ def _analyse(
     elif as_csv:
         from idealgas.analysis.core import tables
 
-        for sentence in result.premises:
-            echo(f"premise: {sentence}", err=True)
+        for sentence in result.caveats:
+            echo(f"caveat: {sentence}", err=True)
         data(tables.as_csv(analysis.shown_tables(result)), nl=False)
     else:
         print_tables(analysis.shown_tables(result))

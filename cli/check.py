@@ -60,8 +60,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         echo(_lattice_line(lattice))
     if expected.rough:
         echo(f"about: {expected.rough}")
-    for sentence in expected.premises:
-        echo(f"premise: {sentence}")
+    for sentence in expected.caveats:
+        echo(f"caveat: {sentence}")
     if expected.beyond:
         echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
     if expected.rest:

@@ -66,7 +66,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
         rows[name] = "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}"
     rows["KS distance of speeds"] = "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}"
     table = as_rich(facts(f"{log.path}: {log.run_state}", rows), width)
-    return Group(*(f"premise: {sentence}" for sentence in seen.premises), *table, _histogram(seen))
+    return Group(*(f"caveat: {sentence}" for sentence in seen.caveats), *table, _histogram(seen))
 
 
 def _histogram(seen: "Status") -> str:

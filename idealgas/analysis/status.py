@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.caveats import of_log
 from idealgas.analysis.core.ensemble import drift
-from idealgas.analysis.core.premises import of_log
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
@@ -30,8 +30,8 @@ class Status:
     (energy/length²) and Z = PA/NT from the virial of the latest pair collisions; None if they cannot be measured.
     ks_distance: Kolmogorov-Smirnov distance of the speeds, in units of √(T/m), from Maxwell-Boltzmann's distribution;
     None if no disc moves. edges: (BINS + 1,), edges of the bins of these speeds. density: (BINS,), their measured
-    probability density, None if no disc moves. expected: (BINS,), Maxwell-Boltzmann's density. premises: sentences on
-    what does not hold for averages over this gas.
+    probability density, None if no disc moves. expected: (BINS,), Maxwell-Boltzmann's density. caveats: those of
+    averages over this gas.
     """
 
     time: float
@@ -44,7 +44,7 @@ class Status:
     edges: np.ndarray
     density: np.ndarray | None
     expected: np.ndarray
-    premises: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 def status(log: Log) -> Status:
@@ -67,7 +67,7 @@ def status(log: Log) -> Status:
         edges=edges,
         density=None if speeds is None else np.histogram(speeds, edges)[0] / len(speeds) / np.diff(edges),
         expected=np.diff(_reduced_speed_cdf(edges)) / np.diff(edges),
-        premises=of_log(log),
+        caveats=of_log(log),
     )
 
 

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from idealgas.analysis.core.premises import origin_of
+from idealgas.analysis.core.caveats import origin_of
 from idealgas.analysis.core.result import Origin
 from idealgas.errors import UserError
 from idealgas.files import replacing
@@ -21,7 +21,7 @@ KEYS = {"point", "seed", "combination", "replicate", "values", "scene", "summary
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
 
 
-RESULT = ("analysis", "quantity", *ESTIMATE, "premises")
+RESULT = ("analysis", "quantity", *ESTIMATE, "caveats")
 """Columns of results.csv after those that identify the point."""
 
 
@@ -101,9 +101,9 @@ def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
         if isinstance(value, bool | int | float):
             yield {**labels, "analysis": "run", "quantity": name, "value": float(value)}
     for analysis, found in point["analyses"].items():
-        premises = {"premises": " ".join(found["premises"])}
+        caveats = {"caveats": " ".join(found["caveats"])}
         for quantity, estimate in _estimates(found):
-            yield {**labels, "analysis": analysis, "quantity": quantity, **estimate, **premises}
+            yield {**labels, "analysis": analysis, "quantity": quantity, **estimate, **caveats}
 
 
 def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict[str, float | None]]]:

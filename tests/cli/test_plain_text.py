@@ -31,7 +31,7 @@ def test_control_characters_are_written_out():
 
 def test_tables_and_lines_on_a_terminal(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "400")
-    print_tables([Table(NASTY, (NASTY, "n"), [(NASTY, "[bold]1")], [f"premise: {NASTY}"])])
+    print_tables([Table(NASTY, (NASTY, "n"), [(NASTY, "[bold]1")], [f"caveat: {NASTY}"])])
     echo(NASTY)
     terminal().print(NASTY)
     said = capsys.readouterr().out

@@ -127,7 +127,7 @@ def test_a_dry_run_has_the_axes_in_their_order_also_as_json(plan, tmp_path):
 
 @pytest.mark.slow
 def test_all_that_people_want_of_a_sweep(plan, tmp_path):
-    """Every kind of analysis in the table, its premises, the time beside its estimate, JSON, and a picture."""
+    """Every kind of analysis in the table, its caveats, the time beside its estimate, JSON, and a picture."""
     text = SWEEP.replace('["pressure"]', '["pressure", "profile", "evolution"]')
     plan.write_text(text.replace("replicates = 3", "replicates = 2"))
     done = called("sweep", plan, "-o", tmp_path / "out", "--workers", 1, "--plot", tmp_path / "z.png")
@@ -141,7 +141,7 @@ def test_all_that_people_want_of_a_sweep(plan, tmp_path):
     with (tmp_path / "out" / "results.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert {row["analysis"] for row in rows} == {"run", "pressure", "profile", "evolution"}
-    assert list(rows[0])[-1] == "premises"
+    assert list(rows[0])[-1] == "caveats"
     again = called("sweep", plan, "-o", tmp_path / "out", "--json")
     found = json.loads(again.stdout)
     assert (found["ran"], found["before"], len(found["results"])) == (0, 4, len(rows))

@@ -1,4 +1,4 @@
-"""Small gases that violate premises of analyses or not, as overrides of one scene, and what is asked of sentences."""
+"""Small gases that meet the conditions of analyses or not, as overrides of one scene, and tests of caveats."""
 
 GAS = """
 box.size = [8, 8]
@@ -19,9 +19,9 @@ WHOLE = ("species.gas.region=[0, 0, 4, 8]", "wall=[{from=[4, 0], to=[4, 8], open
 
 def only(found, words):
     """The sentence of a result that has these words; there is one."""
-    (sentence,) = (each for each in found.premises if words in each)
+    (sentence,) = (each for each in found.caveats if words in each)
     return sentence
 
 
 def silent(found, words):
-    return not any(words in each for each in found.premises)
+    return not any(words in each for each in found.caveats)

@@ -197,4 +197,4 @@ def test_sound_of_a_fluid(run):
     (wave,) = found.waves
     agrees(wave.speed, 0.05)
     agrees(wave.damping, 0.3)
-    assert found.premises == ()
+    assert found.caveats == ()

@@ -35,6 +35,7 @@ PATTERNS = {
     r"Maxwell and Boltzmann": "Maxwell-Boltzmann",
     r"(?:events|rows|hits|collisions|kicks|bounces|digits|file|row|column|entry|line|core) an? "
     r"(?:disc|law|analysis|effect|row|column|core|second|process|species|point)": "per",
+    r"premises?": "caveat, condition",
     r"on another day|an earlier version|at the time of writing|this evening": "present tense, no diary",
 }
 """Regular expressions of words, and what to write instead."""

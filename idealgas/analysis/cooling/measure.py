@@ -16,8 +16,8 @@ from idealgas.analysis.cooling.theory import (
     expected_course,
     grains_of,
 )
+from idealgas.analysis.core.caveats import narrow
 from idealgas.analysis.core.ensemble import degrees_of_freedom, drift
-from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
 from idealgas.analysis.core.stream import span
@@ -139,10 +139,10 @@ def cooling(
         early,
         late,
         together,
-        premises=(
+        caveats=(
             *_untested(log, grains),
             *narrow(log),
-            *_premises(early.value, late.value, together.value, counted.number),
+            *_caveats(early.value, late.value, together.value, counted.number),
         ),
     )
 
@@ -195,7 +195,7 @@ def _untested(log: Log, grains: Grains) -> Iterator[str]:
         yield f"There is no theory of collisions that lose more than those with e = {granular.TESTED_FROM:g}."
 
 
-def _premises(early: float, late: float, flow: float, cells: int) -> Iterator[str]:
+def _caveats(early: float, late: float, flow: float, cells: int) -> Iterator[str]:
     """What tells that the gas is not uniform at the end, beyond what chance allows in single states of M cells.
 
     There scatter has an error of √(2/(M - 1)) of itself, and flow one of 1/√M.

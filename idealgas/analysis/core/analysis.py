@@ -5,8 +5,8 @@ is the help of the command `idealgas NAME`. The command with `--json` and `--csv
 of a sweep and the function `idealgas.NAME` are made from the class.
 
 Results are dataclasses that inherit `Result`; their fields are the plain values for JSON (`core/fields.py`). A
-condition that a number needs and that does not hold is a sentence in `premises` of the result, which tables, reports
-and JSON show.
+condition that a number needs and that is not met is a sentence in `caveats` of the result, which tables, reports and
+JSON show.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -16,7 +16,7 @@ from inspect import signature
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from idealgas.analysis.core import premises
+from idealgas.analysis.core import caveats
 from idealgas.analysis.core.result import Origin, Result
 from idealgas.analysis.core.tables import Table
 from idealgas.errors import UserError, unknown
@@ -175,8 +175,8 @@ class Analysis:
             known[name].check(value)
         values = {name: option.default for name, option in known.items()} | options
         found = cls.measure(log, start=start, end=end, progress=progress, **values)
-        origin = premises.origin_of(log.scene, str(log.path))
-        return replace(found, premises=(*premises.of_log(log), *found.premises), origin=origin, title=origin.title)
+        origin = caveats.origin_of(log.scene, str(log.path))
+        return replace(found, caveats=(*caveats.of_log(log), *found.caveats), origin=origin, title=origin.title)
 
     @classmethod
     def function(cls) -> Callable[..., Any]:
@@ -199,12 +199,12 @@ class Analysis:
         if cls.combine is None:
             (result,) = results
             return result
-        independent = premises.of_averages(results) if cls.averages else ()
+        independent = caveats.of_averages(results) if cls.averages else ()
         combined = cls.combine(results)
         if len(results) == 1 and combined is results[0]:
             return combined
-        sentences = (*premises.of_several(results), *independent, *combined.premises)
-        return replace(combined, premises=sentences, title=premises.title_of(results))
+        sentences = (*caveats.of_several(results), *independent, *combined.caveats)
+        return replace(combined, caveats=sentences, title=caveats.title_of(results))
 
     @classmethod
     def restored(cls, found: dict[str, Any], label: str, origin: Origin | None = None) -> Any:
@@ -217,13 +217,13 @@ class Analysis:
         """
         assert cls.restore is not None
         title = origin.title if origin else label
-        return replace(cls.restore(found, label), premises=tuple(found["premises"]), origin=origin, title=title)
+        return replace(cls.restore(found, label), caveats=tuple(found["caveats"]), origin=origin, title=title)
 
     @classmethod
     def shown_tables(cls, combined: Any) -> list[Table]:
-        """Tables of a combined result; the first one has a note for each premise that does not hold."""
+        """Tables of a combined result; the first one has a note for each caveat."""
         first, *others = cls.tables(combined)
-        notes = (*(f"premise: {sentence}" for sentence in combined.premises), *first.notes)
+        notes = (*(f"caveat: {sentence}" for sentence in combined.caveats), *first.notes)
         return [replace(first, notes=notes), *others]
 
     @classmethod

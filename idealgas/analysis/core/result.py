@@ -1,4 +1,4 @@
-"""What the results of all analyses have in common: premises that do not hold, the run, tables and a picture."""
+"""What the results of all analyses have in common: caveats, the run, tables and a picture."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -35,15 +35,15 @@ class Origin:
 class Result:
     """Base of the results of all analyses.
 
-    premises: one sentence for each premise of the numbers that does not hold, or that people should know of; empty if
-    none was found. Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from
+    caveats: one sentence per condition of the numbers that is not met, or that readers should know of; empty if none
+    was found. Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from
     several runs, or if the analysis was not called by `Analysis.analyse`. title: name of the run or runs in pictures.
     """
 
     analysis: ClassVar[Any]
     """The analysis that the result belongs to, a subclass of `Analysis`."""
 
-    premises: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     origin: Annotated[Origin | None, OMITTED] = None
     title: Annotated[str, OMITTED] = ""
 

@@ -118,10 +118,10 @@ def effusion(
     said = (inside,) if gate.others else ()
     here = (str(log.path), number / inner, equilibrium.temperature, time, beyond)
     if ends:
-        return Effusion(*here, None, replace(found, theory=None, theory_error=0.0), premises=(*ends, *said))
+        return Effusion(*here, None, replace(found, theory=None, theory_error=0.0), caveats=(*ends, *said))
     rate = expected * slit
     course = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
-    return Effusion(*here, course, found, premises=said)
+    return Effusion(*here, course, found, caveats=said)
 
 
 def _no_law(paths: float, phi: float) -> tuple[str, ...]:

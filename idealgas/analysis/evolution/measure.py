@@ -112,7 +112,7 @@ def evolution(
         {name: values[inside] for name, values in dissipated.items()},
         pressure,
         _rest(log, pressure, law),
-        premises=law.premises if law else (),
+        caveats=law.caveats if law else (),
     )
 
 

@@ -32,8 +32,8 @@ class Law:
     """Law of the temperature of a gas at F times.
 
     text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
-    coordinate of the piston at rest, length. pressure: outer pressure on it, energy/length². premises: sentences on
-    what it takes and does not hold. piston_error: error of the coordinate, length.
+    coordinate of the piston at rest, length. pressure: outer pressure on it, energy/length². caveats: conditions
+    of the law that are not met. piston_error: error of the coordinate, length.
     """
 
     text: str
@@ -41,7 +41,7 @@ class Law:
     spin: float | None = None
     piston: float | None = None
     pressure: Annotated[float | None, OMITTED] = None
-    premises: Annotated[tuple[str, ...], OMITTED] = ()
+    caveats: Annotated[tuple[str, ...], OMITTED] = ()
     piston_error: Annotated[float, OMITTED] = 0.0
 
 
@@ -104,7 +104,7 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     tau = haff_time(log)
     said = "Haff's law is that of a uniform gas; `idealgas cooling` tells whether this one remains so."
     temperature = _kinetic(log) / len(log.discs) / (1 + time / tau) ** 2
-    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", temperature, premises=(said,))
+    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", temperature, caveats=(said,))
 
 
 def _kinetic(log: Log) -> float:
@@ -182,7 +182,7 @@ def _adiabat(log: Log, time: np.ndarray) -> Law | None:
     share = fastest / hard_discs.mean_speed(at_first, float(log.discs.mass[0]))
     said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
     text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
-    return Law(text, at_first * np.exp(exponent), premises=(said,) if share > SLOW else ())
+    return Law(text, at_first * np.exp(exponent), caveats=(said,) if share > SLOW else ())
 
 
 def _at_rest(log: Log, one: np.ndarray) -> Law | None:

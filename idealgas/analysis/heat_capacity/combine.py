@@ -57,7 +57,7 @@ def combine_heat_capacity(logs: Sequence[Measured]) -> HeatCapacity:
     routes += _gammas(tuple(routes), groups)
     used = {route.name for route in routes}
     refused = {name: why for name, why in ROUTES.items() if name not in used}
-    return HeatCapacity(tuple(routes), refused, tuple(logs), premises=tuple(_apart(groups)))
+    return HeatCapacity(tuple(routes), refused, tuple(logs), caveats=tuple(_apart(groups)))
 
 
 Groups = dict[tuple[str, str], list[Measured]]

@@ -90,7 +90,7 @@ def heat_capacity(
 
     A closed box gives E/T, with T from the pressure on its walls; a heat bath Var(E)/T²; discs with spin, gravity or a
     piston the fluctuations of the kinetic energy at fixed total energy (Lebowitz, Percus & Verlet, Phys. Rev. 153, 250,
-    1967). Fluctuations in fewer than LEAST_SAMPLES independent samples give none; `premises` says so.
+    1967). Fluctuations in fewer than LEAST_SAMPLES independent samples give none; `caveats` says so.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if there is no equilibrium, or none known: walls of two temperatures, collisions
@@ -125,7 +125,7 @@ def heat_capacity(
     lacking = too_few(route, found, len(fluctuating) / inefficiency(fluctuating))
     routes, measured = {} if lacking else {route: found}, (_mean_energy(series.energy / n), temperature, thermometer)
     value, error = (None, 0.0) if capacity is None else (capacity.value, capacity.error)
-    return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, value, excess, error, premises=lacking)
+    return Measured(str(log.path), ", ".join(kinds), n, *measured, routes, value, excess, error, caveats=lacking)
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:
@@ -199,9 +199,9 @@ def _closed_box(
     error = energy * t.standard_error / t.value**2
     per_disc = Estimate(energy / t.value, error, t.independent_samples, expected, relative * expected)
     exact = Estimate(energy, 0.0, math.inf)
-    routes, how, said = {"E/T": per_disc}, "pressure on the walls", measured.premises
+    routes, how, said = {"E/T": per_disc}, "pressure on the walls", measured.caveats
     theory = expected, None, relative * expected
-    return Measured(str(log.path), CLOSED, n, exact, t, how, routes, *theory, premises=said)
+    return Measured(str(log.path), CLOSED, n, exact, t, how, routes, *theory, caveats=said)
 
 
 def _bath_fluctuations(series: EnergySeries, n: int, bath: float, capacity: Theory | None, piston: bool) -> Estimate:

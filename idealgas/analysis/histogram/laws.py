@@ -17,7 +17,7 @@ FEWEST_DOF = 3
 
 
 @dataclass(frozen=True)
-class Premise:
+class Expectation:
     """What is known before the events of a log are read: its ensemble, or whether it comes to an equilibrium.
 
     ensemble: of a gas whose energy of motion is conserved or set by walls; None for others. temperature: of the walls
@@ -48,7 +48,7 @@ class Premise:
         return {name: velocity_laws(quantity, temperature or 0.0, mass, np.inf)[MAXWELL]}
 
 
-def premise(log: Log, start: float | None, end: float | None) -> Premise:
+def expectation(log: Log, start: float | None, end: float | None) -> Expectation:
     """What is known of the gas of a log between two times before its events are read.
 
     Raises:
@@ -60,13 +60,13 @@ def premise(log: Log, start: float | None, end: float | None) -> Premise:
             raise UserError(f"{log.path}: no disc moves")
         if ensemble.dof <= FEWEST_DOF:
             few = f"{ensemble.dof} degrees of freedom are too few for a law"
-            return Premise(None, None, ensemble.temperature, few)
-        return Premise(ensemble, ensemble.temperature, ensemble.temperature, "")
+            return Expectation(None, None, ensemble.temperature, few)
+        return Expectation(ensemble, ensemble.temperature, ensemble.temperature, "")
     why_not = nonequilibrium_reason(log)
     if len(log.discs) == 1 and not why_not:
         why_not = "a single disc shares its energy with no other"
     temperature = None if why_not else min(log.scene.properties.temperatures, default=None)
-    return Premise(None, temperature, _highest(log, start, end), why_not)
+    return Expectation(None, temperature, _highest(log, start, end), why_not)
 
 
 def _highest(log: Log, start: float | None, end: float | None) -> float:

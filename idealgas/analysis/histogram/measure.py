@@ -22,7 +22,7 @@ from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, Velocit
 from idealgas.analysis.core.intervals import FreeFlights, Waits
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
-from idealgas.analysis.histogram.laws import premise
+from idealgas.analysis.histogram.laws import expectation
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
@@ -136,7 +136,7 @@ def histogram(
         for each in found
         if each.tests and each.samples < FEWEST_SAMPLES
     ]
-    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law or None, premises=tuple(few))
+    return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law or None, caveats=tuple(few))
 
 
 Found = tuple[Window, list[Distribution], str]
@@ -147,7 +147,7 @@ Found = tuple[Window, list[Distribution], str]
 
 
 def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress) -> Found:
-    gas, discs, known = log.discs, composition(log.discs), premise(log, start, end)
+    gas, discs, known = log.discs, composition(log.discs), expectation(log, start, end)
     thermal = np.sqrt(known.scale / discs.mass)
     high = np.full(len(thermal), 12 * known.scale) if quantity == "energy" else 5 * thermal
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
@@ -228,7 +228,7 @@ def _free_flight_rates(
 
     Without a law they are means over the gas that only set the range of the histogram.
     """
-    known = premise(log, start, end)
+    known = expectation(log, start, end)
     why_not = known.why_not
     if uneven := log.scene.lacking("uniform"):
         why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"

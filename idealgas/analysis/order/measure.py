@@ -104,7 +104,7 @@ def order(
         correlation_error=error,
         structure=waves.structure(np.array(factors), number) if factors else None,
         compressibility=_compressibility(log),
-        premises=unsteady("|Ψ₆| of all discs", whole[first:], times[first:]),
+        caveats=unsteady("|Ψ₆| of all discs", whole[first:], times[first:]),
     )
 
 

@@ -120,7 +120,7 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     if len(found.kinds) == 1:
         return found
     sentence = f"The states are of different gases, each in a row of its own: {'; '.join(found.kinds)}."
-    return replace(found, premises=(sentence,))
+    return replace(found, caveats=(sentence,))
 
 
 def _state(kind: str, runs: Sequence[Sample]) -> State:

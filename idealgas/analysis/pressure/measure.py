@@ -155,7 +155,7 @@ def pressure(
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
         no_theory=theory.why_not or None,
-        premises=_slow(gas, window, impacts),
+        caveats=_slow(gas, window, impacts),
     )
 
 
@@ -197,7 +197,7 @@ def _without_theory(
         free_paths=(),
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
         mechanical=found,
-        premises=_ends(log),
+        caveats=_ends(log),
     )
 
 

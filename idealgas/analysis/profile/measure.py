@@ -103,12 +103,12 @@ def profile(
     spinning = log.inertia is not None
     species = tuple(_of_species(name, sums[:, s], edges, strip, expected, s, spinning) for s, name in enumerate(names))
     law = None if expected is None else expected.law
-    premises = (
+    caveats = (
         *_unknown_strips(species),
         *_not_dilute(log, axis, float(edges[1] - edges[0]), species, expected),
         *_few(log, axis, expected),
     )
-    return Profile(window, "xy"[axis], edges, strip, len(sums), law, species, _heat(log, window), premises=premises)
+    return Profile(window, "xy"[axis], edges, strip, len(sums), law, species, _heat(log, window), caveats=caveats)
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:

@@ -150,7 +150,7 @@ def relaxation(
         first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
         acceptance=acceptance(log),
         speeds=None if every is None else speed_distributions(log, every, start, end),
-        premises=(
+        caveats=(
             *_doubts(in_collisions, float(collisions[-1]), number, float(kurtosis[0])),
             *_late(in_collisions, first > log.start_time),
         ),

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.caveats import narrow
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.premises import narrow
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.trajectories import sample_trajectories
@@ -109,8 +109,8 @@ def sound(
         times = np.minimum(window.start + step * np.arange(int(window.duration / step) + 1), window.end)
         waves.append(_wave(log, axes, expected, step * np.arange(lags), _amplitudes(log, times, axes, progress)))
         frames += len(times)
-    premises = [sentence for wave in waves for sentence in _premises(log, window, wave)]
-    return Sound(window, frames, tuple(waves), premises=(*narrow(log), *premises))
+    caveats = [sentence for wave in waves for sentence in _caveats(log, window, wave)]
+    return Sound(window, frames, tuple(waves), caveats=(*narrow(log), *caveats))
 
 
 def _steps(log: Log, window: Window, expected: Expected) -> tuple[float, int]:
@@ -181,7 +181,7 @@ def _wave(log: Log, axes: tuple[int, ...], expected: Expected, lag: np.ndarray, 
     )
 
 
-def _premises(log: Log, window: Window, wave: Wave) -> Iterator[str]:
+def _caveats(log: Log, window: Window, wave: Wave) -> Iterator[str]:
     """Sentences on what does not hold for a wave."""
     gas, k, fluid = log.discs, wave.fitted.k, wave.fitted.fluid
     diameter = 2 * float(gas.radius[0])

@@ -1,6 +1,6 @@
 """Conserved motion of a gas: total momentum, the motion as a whole that goes with it, and states that are not reached.
 
-What does not hold here is a premise of every analysis; `premises` says it in sentences.
+What is not met here is a caveat of every analysis; `caveats` has the sentences.
 """
 
 import numpy as np
@@ -85,8 +85,8 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
     return bool(np.abs(speeds[0] - speeds[1]).max() > 1e-9 * speeds.max())
 
 
-def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Sentences on what the start of a gas, `gas`, takes from every average over time."""
+def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
+    """Caveats of every average over time that follow from the start of a gas, `gas`."""
     found = []
     if len(gas) == 1 and not is_ergodic(scene, gas):
         if not all(scene.properties.periodic):

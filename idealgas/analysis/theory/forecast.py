@@ -57,8 +57,8 @@ class Forecast:
     discs per time. pair_collision_rate, wall_hit_rate, kick_rate: pair collisions, wall hits and kicks of the whole gas
     per time. duration: simulated time at the end of the run. events: number of events. rows: number of event rows in
     the log. bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from
-    them, are approximate; empty if their error is below 2 %. premises: sentences on what the start of the gas takes
-    from averages over time, and on its motion as a whole. rest: what discs do that have come to rest; None if none can.
+    them, are approximate; empty if their error is below 2 %. caveats: those of averages over time, by the start
+    of the gas and its method. rest: behaviour of discs that have come to rest; None if none can.
     """
 
     number: int
@@ -75,7 +75,7 @@ class Forecast:
     bytes: float | None
     species: tuple[SpeciesForecast, ...]
     rough: str = ""
-    premises: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     rest: RestingDisc | None = None
 
 
@@ -147,10 +147,10 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         bytes=_bytes(scene, len(gas), rows, duration),
         species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
         rough=rates.rough if rates else "",
-        premises=(
-            *conserved.premises(scene, gas),
+        caveats=(
+            *conserved.caveats(scene, gas),
             *conserved.lost_motion(scene, gas),
-            *time_steps.premises(scene, gas),
+            *time_steps.caveats(scene, gas),
             *_slow_bath(scene, gas, duration),
         ),
         rest=scene.rest,

@@ -1,4 +1,4 @@
-"""What time steps take from the numbers of a gas."""
+"""Caveat of gases that move by time steps."""
 
 import math
 
@@ -7,10 +7,10 @@ from idealgas.scene import Scene
 from idealgas.state import Gas
 
 
-def premises(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Sentence on the time steps by which a gas moves, with how far two discs do so in one at its start, `gas`.
+def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
+    """Caveat on the length of time steps, by the relative displacement of two discs per step at the start, `gas`.
 
-    Discs that are at rest there tell nothing of later steps.
+    From discs that start at rest no such length follows.
     """
     if scene.run.method != "time_driven" or scene.run.dt is None:
         return ()

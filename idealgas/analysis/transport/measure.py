@@ -156,7 +156,7 @@ def transport(
         diffusion=diffusion,
         collective=whole,
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
-        premises=(
+        caveats=(
             *_short_lags(rates, diffusion),
             *_short_currents(whole, longest / free_time, window.duration / longest),
             *_reflected(log, diffusion),
@@ -187,7 +187,7 @@ def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: flo
         diffusion=(),
         collective=whole,
         pair_distributions=(),
-        premises=tuple(_short_currents(whole, longest / free_time, window.duration / longest)),
+        caveats=tuple(_short_currents(whole, longest / free_time, window.duration / longest)),
     )
 
 

@@ -28,7 +28,7 @@ def make(request, tmp_path):
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """Logs of `small_gases.GAS` with overrides, each made once. Unless given, the seed follows from the overrides."""
-    folder, logs = tmp_path_factory.mktemp("premises"), {}
+    folder, logs = tmp_path_factory.mktemp("caveats"), {}
 
     def run(*overrides):
         if overrides not in logs:

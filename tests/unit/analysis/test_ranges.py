@@ -42,7 +42,7 @@ def test_effusion_takes_empty_chambers_and_an_open_gate(made):
     more = SLIT[2].replace("wall=[", "wall=[{name='plate', from=[5, 3], to=[5, 5]}, ")
     only(registry.analyse(made(*SLIT[:2], more, *SLIT[3:]), "effusion"), "there is plate.")
     beside = SLIT[2].replace("from=[4, 0], to=[4, 3]", "from=[4.001, 3], to=[4.001, 0]")
-    assert registry.analyse(made(*SLIT[:2], beside, *SLIT[3:]), "effusion").premises == ()
+    assert registry.analyse(made(*SLIT[:2], beside, *SLIT[3:]), "effusion").caveats == ()
     closing = SLIT[2].replace("opens_at=1.0", "opens_at=1.0, closes_at=6.0")
     found = registry.analyse(made(*SLIT[:2], closing, *SLIT[3:]), "effusion", start=0.0)
     assert (found.time[0], found.time[-1]) == (1.0, 6.0)
@@ -161,14 +161,14 @@ def test_a_heat_bath_takes_time(made):
     hot = "species=[{name='gas', count=40, radius=0.1, temperature=100}]"
     for bath, rate, slow in ((1, 0.001, True), (1, 10.0, False), (100, 0.001, False)):
         scene = parse_scene(GAS, overrides=(hot, f"thermostat={{temperature={bath}, rate={rate}}}"))
-        assert any("heat bath takes some" in said for said in forecast(scene, make_gas(scene)).premises) == slow
+        assert any("heat bath takes some" in said for said in forecast(scene, make_gas(scene)).caveats) == slow
 
 
 def test_currents_and_heavy_discs_take_long_lags(made):
     log = made(PERIODIC, "species.gas.radius=0.3", "run.collisions_per_disc=400")
     short = registry.analyse(log, "transport", start=0.0, end=log.end_time / 40)
     only(short, "currents are followed for")
-    assert registry.analyse(log, "transport").premises == ()
+    assert registry.analyse(log, "transport").caveats == ()
     light, heavy = (
         "{name='a', count=36, radius=0.3, temperature=1}",
         "{name='b', count=4, radius=0.3, mass=50, temperature=1}",

@@ -113,7 +113,7 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
     result = analysis.combined([measured])
     assert isinstance(measured, Result)
     assert isinstance(result, Result)
-    assert isinstance(result.as_dict()["premises"], list)
+    assert isinstance(result.as_dict()["caveats"], list)
     tables = analysis.shown_tables(result)
     assert any(table.rows for table in tables)
     rows = list(csv.DictReader(io.StringIO(as_csv(tables))))

@@ -22,7 +22,7 @@ run.collisions_per_disc = 70
 def test_a_uniform_gas_cools_as_theory_says(make):
     """Within 4 standard errors, and resolved to 3 %."""
     found = cooling(make())
-    assert found.premises == ()
+    assert found.caveats == ()
     for estimate, resolution in ((found.loss, 0.03), (found.haff, 0.06), (found.fourth, 2.0)):
         assert estimate.standard_error < resolution * abs(estimate.theory)
         assert abs(estimate.deviation) < 4
@@ -52,7 +52,7 @@ def test_spins_come_to_a_ratio_of_their_own(make):
 def test_clusters_are_said(make):
     log = make("restitution.normal=0.5", "species.0.count=1200", "species.0.radius=0.12", "run.collisions_per_disc=60")
     found = cooling(log)
-    untested, clusters, flow = found.premises
+    untested, clusters, flow = found.caveats
     assert "no theory of collisions that lose more" in untested
     assert clusters.startswith("Clusters form: numbers of discs in small cells scatter ")
     assert flow.startswith("Discs move together: ")

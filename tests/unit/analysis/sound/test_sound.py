@@ -92,7 +92,7 @@ def test_a_wave_in_a_small_box_is_said_to_be_no_wave_of_a_fluid(tmp_path):
         found = sound(log, start=0.0)
     (wave,) = found.waves
     assert (wave.axes, wave.wavelength) == ("x", 10.0)
-    assert any("mean free paths or diameters long" in sentence for sentence in found.premises)
+    assert any("mean free paths or diameters long" in sentence for sentence in found.caveats)
 
 
 def test_a_speed_that_is_hardly_known_is_said_to_be(tmp_path, monkeypatch):
@@ -102,4 +102,4 @@ def test_a_speed_that_is_hardly_known_is_said_to_be(tmp_path, monkeypatch):
         part = max(wave.speed.standard_error / wave.speed.value for wave in sound(log, start=0.0).waves)
         for rough, said in ((0.99, True), (1.01, False)):
             monkeypatch.setattr(measure, "ROUGH", rough * part)
-            assert any("is known to" in sentence for sentence in sound(log, start=0.0).premises) == said
+            assert any("is known to" in sentence for sentence in sound(log, start=0.0).caveats) == said

@@ -31,9 +31,9 @@ def made(text, *overrides):
 def test_two_discs_without_momentum_between_walls_are_not_ergodic():
     scene, gas = made(TWO)
     assert not conserved.is_ergodic(scene, gas)
-    (sentence,) = conserved.premises(scene, gas)
+    (sentence,) = conserved.caveats(scene, gas)
     assert sentence.startswith("Two equal discs that start without total momentum between walls")
-    assert forecast(scene, gas).premises == (sentence,)
+    assert forecast(scene, gas).caveats == (sentence,)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_two_discs_without_momentum_between_walls_are_not_ergodic():
 def test_other_few_discs_are_ergodic(overrides):
     scene, gas = made(TWO, *overrides)
     assert conserved.is_ergodic(scene, gas)
-    assert conserved.premises(scene, gas) == ()
+    assert conserved.caveats(scene, gas) == ()
 
 
 def test_a_flow_that_nothing_stops_is_no_temperature():
@@ -64,7 +64,7 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
     found = forecast(scene, gas)
     assert found.species[0].temperature == pytest.approx(0.005, rel=1e-9)
     assert found.temperature == pytest.approx(0.04 / 6, rel=1e-9)
-    (sentence,) = found.premises
+    (sentence,) = found.caveats
     assert "moves as a whole with the velocity (3, 0), 99.9% of its kinetic energy" in sentence
 
 
@@ -74,10 +74,10 @@ def test_a_flow_that_walls_stop_becomes_heat():
     found = forecast(scene, gas)
     assert found.species[0].temperature == pytest.approx(0.005, rel=1e-9)
     assert found.temperature == pytest.approx(4.505, rel=1e-9)
-    (sentence,) = found.premises
+    (sentence,) = found.caveats
     assert "starts with a common motion (3, 0), 99.9% of its kinetic energy" in sentence
     assert "becomes heat at the walls" in sentence
-    (sentence,) = forecast(*made(STREAM, "thermostat={ temperature = 0.1, rate = 1 }", "run.events=10000")).premises
+    (sentence,) = forecast(*made(STREAM, "thermostat={ temperature = 0.1, rate = 1 }", "run.events=10000")).caveats
     assert "is lost to the heat bath" in sentence
 
 
@@ -88,7 +88,7 @@ def test_motion_by_chance_is_not_mentioned(overrides, seed):
     scene, gas = made(TWO, *overrides, *start, f"scene.seed={seed}")
     share = conserved.share_of_motion(gas, gas.mass @ gas.velocity / gas.mass.sum())
     assert 0 < share < 12 / 200
-    assert forecast(scene, gas).premises == () or (overrides and share > conserved.SAID_FROM)
+    assert forecast(scene, gas).caveats == () or (overrides and share > conserved.SAID_FROM)
     if not overrides:
         assert np.array_equal(conserved.motion_at_start(scene, gas), [0, 0])
         assert forecast(scene, gas).species[0].temperature == pytest.approx(2.0, rel=1e-12)

@@ -101,5 +101,5 @@ def test_a_window_of_few_lags_is_said(tmp_path, collisions, too_short):
     simulate(parse_scene(scene, overrides=[f"run.collisions_per_disc={collisions}"]), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         found = transport(log, start=0.0)
-    said = [sentence for sentence in found.premises if "times as long as currents are followed (16 needed)" in sentence]
+    said = [sentence for sentence in found.caveats if "times as long as currents are followed (16 needed)" in sentence]
     assert len(said) == too_short

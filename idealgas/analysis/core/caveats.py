@@ -1,7 +1,7 @@
-"""Premises of analyses: what must hold so that a number means what its name says.
+"""Caveats of results: conditions for a number to mean what its name says that are not met.
 
-An analysis tests its own premises and puts a sentence for each one that does not hold into its result (`Result`). Here
-are those that all analyses share, and those of several logs together.
+An analysis tests its own conditions and puts one sentence per unmet condition into its result (`Result`). Those
+that all analyses share, and those of several logs together, are here.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from idealgas.scene import Scene
 from idealgas.scene.scene import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
 
 MOST = 6
-"""Largest number of sentences that are taken over from single logs where many are combined."""
+"""Largest number of caveats of single logs that are kept where many logs are combined."""
 
 NAMED = 3
 """Largest number of logs that one sentence names."""
@@ -24,8 +24,8 @@ WIDE, WIDE_PERIODIC = 20.0, 5.0
 
 
 def of_log(log: Log) -> tuple[str, ...]:
-    """Sentences on premises of every average over time that the gas of a log, or how it was made, takes away."""
-    return (*conserved.premises(log.scene, log.discs), *time_steps.premises(log.scene, log.discs))
+    """Caveats of every average over time of a log: those of its gas and of its method of simulation."""
+    return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
 
 
 def origin_of(scene: Scene, path: str) -> Origin:
@@ -53,20 +53,20 @@ def title_of(results: Sequence[Result]) -> str:
 
 
 def of_several(results: Sequence[Result]) -> tuple[str, ...]:
-    """Sentences of single logs, with their paths if there are several logs, at most MOST of them."""
+    """Caveats of single logs, with their paths if there are several logs, at most MOST of them."""
     if len(results) == 1:
-        return results[0].premises
-    said = [(f"{r.origin.path}: " if r.origin else "") + sentence for r in results for sentence in r.premises]
+        return results[0].caveats
+    said = [(f"{r.origin.path}: " if r.origin else "") + sentence for r in results for sentence in r.caveats]
     if len(said) > MOST:
-        said[MOST:] = [f"{len(said) - MOST} more sentences on premises come with the single logs."]
+        said[MOST:] = [f"{len(said) - MOST} more caveats are reported with the single logs."]
     return tuple(said)
 
 
 def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
-    """Sentences on the independence of runs that are averaged.
+    """Caveats on the independence of runs that are averaged.
 
     Raises:
-        UserError: if a run is there twice: the same log, a copy of it, or another log of the same scene and seed.
+        UserError: if a run is given twice: the same log, a copy of it, or another log of the same scene and seed.
     """
     runs: dict[str, Origin] = {}
     seeds: dict[int, list[str]] = {}

@@ -1,4 +1,4 @@
-"""Premises that do not hold, as commands say them: on the terminal, beside CSV, in JSON and in reports."""
+"""Caveats that do not hold, as commands say them: on the terminal, beside CSV, in JSON and in reports."""
 
 import json
 
@@ -34,7 +34,7 @@ run.events = 20000
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A folder with the logs two.h5 and flow.h5."""
-    folder = tmp_path_factory.mktemp("premises")
+    folder = tmp_path_factory.mktemp("caveats")
     for name, text in (("two", TWO), ("flow", FLOW)):
         (folder / f"{name}.toml").write_text(text)
         assert called("run", f"{name}.toml", "-o", f"{name}.h5", folder=folder).returncode == 0
@@ -49,32 +49,32 @@ def shown(*arguments, folder):
 
 @pytest.mark.slow
 def test_two_discs_that_do_not_reach_all_states(folder, tmp_path):
-    line = "premise: Two equal discs that start without total momentum between walls do not reach all states"
+    line = "caveat: Two equal discs that start without total momentum between walls do not reach all states"
     for command in (("check", "two.toml"), ("pressure", "two.h5"), ("temperature", "two.h5")):
-        said = [each for each in shown(*command, folder=folder).stdout.splitlines() if each.startswith("premise: ")]
+        said = [each for each in shown(*command, folder=folder).stdout.splitlines() if each.startswith("caveat: ")]
         assert len(said) == 1
         assert said[0].startswith(line)
-    assert "premise: Two equal discs" in shown("follow", "two.h5", "--once", folder=folder).stdout
+    assert "caveat: Two equal discs" in shown("follow", "two.h5", "--once", folder=folder).stdout
     csv = shown("pressure", "two.h5", "--csv", folder=folder)
     assert csv.stderr.startswith(line)
-    assert "premise" not in csv.stdout
+    assert "caveat" not in csv.stdout
     for command in (("check", "two.toml", "--json"), ("pressure", "two.h5", "--json")):
-        (sentence,) = json.loads(shown(*command, folder=folder).stdout)["premises"]
-        assert f"premise: {sentence}".startswith(line)
+        (sentence,) = json.loads(shown(*command, folder=folder).stdout)["caveats"]
+        assert f"caveat: {sentence}".startswith(line)
     shown("report", "two.h5", "-o", tmp_path / "page.html", folder=folder)
     assert f'<p class="note">{line}' in (tmp_path / "page.html").read_text(encoding="utf-8")
     for command in (
         ("check", ROOT / "configs" / "quickstart.toml"),
         ("check", "two.toml", "--set", "species.gas.count=3"),
     ):
-        assert "premise" not in shown(*command, folder=folder).stdout
+        assert "caveat" not in shown(*command, folder=folder).stdout
 
 
 def test_a_flow_is_no_temperature(folder):
     """The discs differ from (3, 0) by 0.1 along x, and two of them by 0.1 along y."""
     found = json.loads(shown("check", "flow.toml", "--json", folder=folder).stdout)
     assert found["temperature"] == pytest.approx((4 * 0.01 + 2 * 0.01) / 6, rel=1e-9)  # 6 degrees of freedom
-    line = "premise: The gas moves as a whole with the velocity (3, 0), 99.8% of its kinetic energy"
+    line = "caveat: The gas moves as a whole with the velocity (3, 0), 99.8% of its kinetic energy"
     assert line in shown("check", "flow.toml", folder=folder).stdout
     said = " ".join(shown("follow", "flow.h5", "--once", folder=folder).stdout.split())
     assert line in said
@@ -96,7 +96,7 @@ def test_a_free_expansion_is_no_effusion(folder):
     assert (refused.returncode, refused.stdout) == (2, "")
     assert refused.stderr.startswith("wide.h5: no effusion: the gate opens the box from side to side")
     shown("run", ROOT / "configs" / "effusion.toml", "-o", "narrow.h5", "--set", "run.until=15", folder=folder)
-    assert "premise" not in shown("effusion", "narrow.h5", folder=folder).stdout
+    assert "caveat" not in shown("effusion", "narrow.h5", folder=folder).stdout
 
 
 @pytest.mark.slow

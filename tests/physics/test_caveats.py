@@ -39,4 +39,4 @@ def test_both_directions_have_one_pressure(tmp_path, overrides, reached):
     left, bottom = z["left wall"], z["bottom wall"]
     deviation = abs(left.value - bottom.value) / math.hypot(left.standard_error, bottom.standard_error)
     assert deviation < 4 if reached else deviation > 20
-    assert bool(found.premises) is not reached
+    assert bool(found.caveats) is not reached

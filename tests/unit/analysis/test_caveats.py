@@ -1,4 +1,4 @@
-"""Premises of analyses: for each a log that violates it and one that does not; and where its sentence is shown."""
+"""Caveats of analyses: for each a log that violates it and one that does not; and where its sentence is shown."""
 
 import json
 import math
@@ -10,7 +10,7 @@ import pytest
 from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, WHOLE, only, silent
 
 from idealgas.analysis import registry
-from idealgas.analysis.core import premises
+from idealgas.analysis.core import caveats
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import estimates
 from idealgas.analysis.info import info
@@ -34,22 +34,22 @@ def test_a_sentence_is_in_tables_json_and_the_report(made):
     analysis, log = registry.find("pressure"), made(TWO)
     found = combined("pressure", log)
     sentence = only(found, "do not reach all states")
-    assert analysis.shown_tables(found)[0].notes[0] == f"premise: {sentence}"
-    assert sentence in json.loads(json.dumps(found.as_dict()))["premises"]
+    assert analysis.shown_tables(found)[0].notes[0] == f"caveat: {sentence}"
+    assert sentence in json.loads(json.dumps(found.as_dict()))["caveats"]
     shown = [section.tables for section in make_sections(log) if section.title == "Pressure"]
-    assert shown[0][0].notes[0] == f"premise: {sentence}"
+    assert shown[0][0].notes[0] == f"caveat: {sentence}"
     fine = combined("pressure", made())
-    assert (fine.premises, fine.as_dict()["premises"]) == ((), [])
-    assert not any(note.startswith("premise") for note in analysis.shown_tables(fine)[0].notes)
+    assert (fine.caveats, fine.as_dict()["caveats"]) == ((), [])
+    assert not any(note.startswith("caveat") for note in analysis.shown_tables(fine)[0].notes)
 
 
 def test_sentences_of_many_logs_have_their_paths_and_are_bounded(made):
-    results = [replace(combined("temperature", made()), premises=("a.", "b.")) for _ in range(9)]
-    said = premises.of_several(results)
+    results = [replace(combined("temperature", made()), caveats=("a.", "b.")) for _ in range(9)]
+    said = caveats.of_several(results)
     assert said[0].endswith(".h5: a.")
-    assert len(said) == premises.MOST + 1
-    assert said[-1].startswith(f"{18 - premises.MOST} more sentences")
-    assert premises.of_several(results[:1]) == ("a.", "b.")
+    assert len(said) == caveats.MOST + 1
+    assert said[-1].startswith(f"{18 - caveats.MOST} more caveats")
+    assert caveats.of_several(results[:1]) == ("a.", "b.")
 
 
 # ── motion of the gas as a whole ──
@@ -67,14 +67,14 @@ def test_common_motion_is_no_temperature(made):
     assert said["temperature"] == pytest.approx(thermal, rel=1e-9)
     assert said["common_motion"] == pytest.approx(velocity.mean(axis=0))
     assert seen.ks_distance < 0.5
-    assert "moves as a whole" in seen.premises[0]
+    assert "moves as a whole" in seen.caveats[0]
     found = registry.analyse(log, "temperature")
     only(found, "moves as a whole")
     assert found.species[-1].both.value == pytest.approx(thermal, rel=1e-9)
     still = made(PERIODIC)
-    assert status(still).premises == ()
+    assert status(still).caveats == ()
     assert info(still)["gas"]["common_motion"] == [0, 0]
-    assert registry.analyse(still, "temperature").premises == ()
+    assert registry.analyse(still, "temperature").caveats == ()
 
 
 # ── runs that count once ──
@@ -86,7 +86,7 @@ def test_time_steps_are_said(made):
         r"0\.0[89]\d* diameters relative to each other at the start, Z - 1 is too small",
         only(registry.analyse(steps, "pressure"), "time steps"),
     )
-    assert "time steps" in "".join(status(steps).premises)
+    assert "time steps" in "".join(status(steps).caveats)
     assert silent(registry.analyse(made(PERIODIC), "pressure"), "time steps")
     velocities = np.random.default_rng(3).normal((50, 0), 1, (40, 2)).tolist()
     for motion, words in (
@@ -103,7 +103,7 @@ def test_time_steps_are_said(made):
                 f"species=[{{name='gas', count=40, radius=0.1, {motion}}}]",
             ),
         )
-        assert re.search(words, forecast(scene, make_gas(scene)).premises[-1])
+        assert re.search(words, forecast(scene, make_gas(scene)).caveats[-1])
 
 
 @pytest.mark.parametrize("name", ["pressure", "heat-capacity", "effusion"])
@@ -137,12 +137,12 @@ def test_a_sweep_counts_once(made, tmp_path):
     """Points of a sweep know their runs from their scenes."""
     analysis, log = registry.find("heat-capacity"), made()
     found = analysis.analyse(log)
-    point = analysis.restored(found.as_dict(), "a point", premises.origin_of(log.scene, "sweep, point 0"))
-    assert (point.premises, point.energy) == ((), found.energy)
+    point = analysis.restored(found.as_dict(), "a point", caveats.origin_of(log.scene, "sweep, point 0"))
+    assert (point.caveats, point.energy) == ((), found.energy)
     with pytest.raises(UserError, match=r"sweep, point 0: the run of .* again"):
         analysis.combined([found, point])
-    stored = analysis.restored(found.as_dict() | {"premises": ["a sentence."]}, "a point")
-    assert stored.premises == ("a sentence.",)
+    stored = analysis.restored(found.as_dict() | {"caveats": ["a sentence."]}, "a point")
+    assert stored.caveats == ("a sentence.",)
 
 
 # ── different gases ──
@@ -163,7 +163,7 @@ def test_heat_capacities_of_different_gases_are_kept_apart(made):
     assert [r.name for r in apart.routes] == ["E/T", "E/T"]
     assert apart.refused["dE/dT"] == "it takes logs of one gas at several energies"
     alike = combined("heat-capacity", *logs[:2])
-    assert alike.premises == ()
+    assert alike.caveats == ()
     assert [(r.name, r.gas) for r in alike.routes] == [("dE/dT", None), ("E/T", None)]
 
 
@@ -177,7 +177,7 @@ def test_the_equation_of_state_says_which_gases(made):
     heads = registry.find("pressure").tables(found)[0].heads
     assert heads[:3] == ("gas", "φ", "N")
     alike = combined("pressure", walls, made("species.gas.radius=0.2", "scene.seed=9"))
-    assert alike.premises == ()
+    assert alike.caveats == ()
     assert [state.runs for state in alike.states] == [2]
 
 
@@ -202,7 +202,7 @@ def test_effusion_of_different_gases_under_one_name(made):
 def test_effusion_takes_a_slit_in_a_wall(made):
     with pytest.raises(UserError, match="opens the box from side to side, so that the gas expands freely"):
         combined("effusion", made(*WHOLE))
-    assert combined("effusion", made(*SLIT)).premises == ()
+    assert combined("effusion", made(*SLIT)).caveats == ()
 
 
 def test_effusion_takes_a_slit_narrower_than_a_mean_free_path(made):
@@ -233,7 +233,7 @@ def test_fluctuations_take_samples(made):
     assert registry.find("heat-capacity").figure(found).axes
     long = combined("heat-capacity", made(*bath, "run.until=4000", "log.snapshot_every=10"))
     assert [route.name for route in long.routes] == ["Var(E)/T²"]
-    assert long.premises == ()
+    assert long.caveats == ()
     assert 0 < long.routes[0].value.standard_error < 0.5
 
 
@@ -257,7 +257,7 @@ def test_tests_of_laws_take_samples(made):
 
 def test_diffusion_takes_time(made):
     log = made(PERIODIC, "species.gas.radius=0.3", "run.collisions_per_disc=400")
-    assert registry.analyse(log, "transport").premises == ()
+    assert registry.analyse(log, "transport").caveats == ()
     short = registry.analyse(log, "transport", start=0.0, end=log.end_time / 40)
     only(short, "The window is short: gas is followed for")
 
@@ -272,7 +272,7 @@ def test_strips_take_frames(made):
     found = registry.analyse(made(*column), "profile", start=0.0)
     only(found, "strips hold a disc of gas in fewer than 32 frames")
     assert any(np.isnan(entry.value) for entry in found.species[0].temperature)
-    assert registry.analyse(made(), "profile", start=0.0).premises == ()
+    assert registry.analyse(made(), "profile", start=0.0).caveats == ()
 
 
 def test_laws_of_dilute_gases_take_one(made):
@@ -280,7 +280,7 @@ def test_laws_of_dilute_gases_take_one(made):
     found = registry.analyse(made(*column, "species.gas.radius=0.2"), "profile", bins=4, start=0.0)
     only(found, "The theory is that of a dilute gas; here the packing fraction of a strip reaches 0.")
     dilute = ("species.gas.radius=0.02", "run.collisions_per_disc=5")
-    assert registry.analyse(made(*column, *dilute), "profile", bins=4, start=0.0).premises == ()
+    assert registry.analyse(made(*column, *dilute), "profile", bins=4, start=0.0).caveats == ()
 
 
 def test_the_adiabat_takes_a_slow_piston(made):
@@ -288,13 +288,13 @@ def test_the_adiabat_takes_a_slow_piston(made):
     fast = made(piston[0] % -0.5, piston[1], "run.until=6")
     only(registry.analyse(fast, "evolution"), "of the mean speed of the discs, but the law is that of a slow one")
     slow = made(piston[0] % -0.05, piston[1], "run.until=6")
-    assert registry.analyse(slow, "evolution").premises == ()
+    assert registry.analyse(slow, "evolution").caveats == ()
 
 
 def test_a_relaxation_time_takes_a_log_that_is_longer(made):
     equal = ("species.gas.temperature=", "species.gas.speed=1", "species.gas.count=400", "species.gas.radius=0.05")
     short = registry.analyse(made(*equal, "run.collisions_per_disc=1"), "relaxation")
     only(short, "that is an extrapolation")
-    assert registry.analyse(made(*equal, "run.collisions_per_disc=20"), "relaxation").premises == ()
+    assert registry.analyse(made(*equal, "run.collisions_per_disc=20"), "relaxation").caveats == ()
     few = registry.analyse(made(*equal, "species.gas.count=10", "species.gas.radius=0.5"), "relaxation")
     assert silent(few, "extrapolation")
