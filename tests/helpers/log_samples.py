@@ -3,6 +3,7 @@
 log_samples.py PATH gzip|none [ROWS A BATCH]
 """
 
+import subprocess
 import sys
 import time
 from dataclasses import fields
@@ -14,7 +15,7 @@ import numpy as np
 
 import idealgas.log.writer as log_writer
 from idealgas.events import BLOCK, EventBatch, Kind
-from idealgas.log import Column, Log, LogLayout, LogWriter, box_walls
+from idealgas.log import Column, Log, LogError, LogLayout, LogWriter, box_walls, open_log
 from idealgas.log.schema import KICKS
 from idealgas.state import Gas
 
@@ -118,6 +119,26 @@ def check(log: Log) -> int:
     assert (log.scene_text, log.command) == ("[scene]\ntitle = 'ü'\n", "test")
     assert log.walls == box_walls((10.0, 5.0))
     return row
+
+
+def rows_in(path: Path) -> int:
+    """Number of committed rows, 0 before the file exists."""
+    try:
+        with open_log(path) as log:
+            return len(log)
+    except LogError:
+        return 0
+
+
+def start_writer(path: Path, *arguments: str, rows: int = 1) -> subprocess.Popen[bytes]:
+    """A process that writes a log until it is killed, and has already written so many rows."""
+    child = subprocess.Popen([sys.executable, __file__, path, *arguments])
+    deadline = time.monotonic() + 60
+    while rows_in(path) < rows:
+        assert child.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    return child
 
 
 def main() -> None:

@@ -4,36 +4,16 @@ A log of a killed writer may also have fewer rows: damage can hide its last comm
 """
 
 import os
-import signal
-import subprocess
-import sys
-import time
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.log_samples import check, write_log
-from helpers.support import ROOT
+from helpers.log_samples import check, start_writer, write_log
 
 from idealgas.log import LogError, open_log, recover
 
-SAMPLES = ROOT / "tests" / "log_samples.py"
 ROWS = 70_000
-
-
-def left_by_a_killed_writer(path: Path, compression: str) -> None:
-    child = subprocess.Popen([sys.executable, SAMPLES, path, compression, "20000"])
-    while True:
-        time.sleep(0.05)
-        try:
-            with open_log(path) as log:
-                if len(log) > ROWS:
-                    break
-        except LogError:
-            assert child.poll() is None
-    child.send_signal(signal.SIGKILL)
-    child.wait()
 
 
 @pytest.fixture(scope="module", params=["gzip closed", "none closed", "gzip dead", "none dead"])
@@ -43,7 +23,9 @@ def whole(request, tmp_path_factory):
     if state == "closed":
         write_log(path, ROWS, compression=compression)
     else:
-        left_by_a_killed_writer(path, compression)
+        child = start_writer(path, compression, "20000", rows=ROWS)
+        child.kill()
+        child.wait()
     with open_log(path) as log:
         return path.read_bytes(), len(log), state == "dead"
 

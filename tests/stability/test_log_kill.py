@@ -1,32 +1,18 @@
 """A writer killed at a random moment: no row that a reader has seen is lost, and the log can be continued."""
 
 import signal
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.log_samples import check, write_rows
-from helpers.support import ROOT
+from helpers.log_samples import check, rows_in, start_writer, write_rows
 
 from idealgas.events import BLOCK
-from idealgas.log import LogError, LogWriter, open_log, recover
+from idealgas.log import LogWriter, open_log, recover
 
 pytestmark = pytest.mark.slow
 
-SAMPLES = ROOT / "tests" / "log_samples.py"
 IN_CI, BY_HAND = 6, 100
-
-
-def rows_in(path: Path) -> int:
-    """Number of committed rows, 0 before the file exists."""
-    try:
-        with open_log(path) as log:
-            return len(log)
-    except LogError:
-        return 0
 
 
 @pytest.mark.parametrize(
@@ -36,11 +22,8 @@ def test_nothing_committed_is_lost(case, tmp_path):
     random = np.random.default_rng(case)
     path = tmp_path / "run.h5"
     batch = [] if case % 3 == 0 else [str(random.integers(1, 20_000))]
-    child = subprocess.Popen([sys.executable, SAMPLES, path, ("gzip", "none")[case % 2], *batch])
+    child = start_writer(path, ("gzip", "none")[case % 2], *batch)
     try:
-        while not rows_in(path):
-            assert child.poll() is None
-            time.sleep(0.01)
         end = time.monotonic() + random.uniform(0, 1)
         seen = 0
         while time.monotonic() < end:

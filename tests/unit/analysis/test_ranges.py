@@ -61,6 +61,7 @@ def test_heat_capacity_is_that_of_heat(made, axes):
     assert 0.4 < found.kinetic.mean() / 40 < 1.6  # 5.5 with the motion
 
 
+@pytest.mark.slow
 def test_laws_of_heat_take_collisions_that_lose_none(made):
     bath = "box={size=[8, 8], " + ", ".join(f"{s}={{thermal=1}}" for s in ("left", "right", "bottom", "top")) + "}"
     with pytest.raises(UserError, match="no equilibrium, or none known"):

@@ -2,45 +2,22 @@
 
 import os
 import signal
-import subprocess
-import sys
-import time
 
 import h5py
 import numpy as np
 import pytest
-from helpers.log_samples import STEP, check, rows, write_log, write_rows
-from helpers.support import ROOT
+from helpers.log_samples import STEP, check, rows, start_writer, write_log, write_rows
 
 from idealgas.errors import OutputError
 from idealgas.events import BLOCK, EventBatch
 from idealgas.log import DamageError, LogError, LogWriter, open_log, recover
-
-SAMPLES = ROOT / "tests" / "log_samples.py"
-
-
-def start_writer(path, compression="gzip"):
-    """A process that writes a log, and has already written some of it."""
-    child = subprocess.Popen([sys.executable, SAMPLES, path, compression, "499"])
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline:
-        time.sleep(0.05)
-        try:
-            with open_log(path) as log:
-                if len(log) > 2000:
-                    return child
-        except LogError:
-            assert child.poll() is None
-    child.kill()
-    child.wait()
-    raise TimeoutError
 
 
 @pytest.fixture(scope="module", params=["gzip", "none"])
 def left(request, tmp_path_factory):
     """A log whose writer was killed."""
     path = tmp_path_factory.mktemp("log") / "run.h5"
-    child = start_writer(path, request.param)
+    child = start_writer(path, request.param, "499", rows=2000)
     child.send_signal(signal.SIGKILL)
     child.wait()
     return path
@@ -61,7 +38,7 @@ def assert_plain(path, stop):
 
 def test_a_live_writer_is_not_disturbed(tmp_path):
     path = tmp_path / "run.h5"
-    child = start_writer(path)
+    child = start_writer(path, "gzip", "499", rows=2000)
     try:
         with open_log(path) as log:
             assert log.live

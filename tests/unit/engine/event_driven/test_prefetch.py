@@ -36,28 +36,19 @@ def test_parts_are_eight_or_more_unless_memory_is_near(n, level):
     assert parts >= 8 or n <= 32_768
 
 
-def logs(names: set[str], events: int) -> list[list[np.ndarray]]:
-    """The log of the event-driven method, in cells of two sizes, and that of the oracle."""
+@pytest.mark.parametrize("names", [set(), pytest.param({"periodic", "piston"}, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("events", [pytest.param(60, marks=pytest.mark.interpreted), 5000])
+def test_the_log_is_that_of_the_oracle(names, events):
+    """In cells of two sizes."""
     gas = make_gas(5)
-    methods = (EventDriven(), EventDriven(1e-9), BruteForce())
-    return [log_of(gas, make_effects(names, gas), method, Stop(events=events), 1000) for method in methods]
+    *found, oracle = (
+        log_of(gas, make_effects(names, gas), method, Stop(events=events), 1000)
+        for method in (EventDriven(), EventDriven(1e-9), BruteForce())
+    )
+    assert all(np.array_equal(a, b) for log in found for a, b in zip(log, oracle, strict=True))
 
 
-def assert_alike(found: list[list[np.ndarray]]) -> None:
-    assert all(np.array_equal(a, b) for log in found[:-1] for a, b in zip(log, found[-1], strict=True))
-
-
-@pytest.mark.interpreted
-@pytest.mark.parametrize("names", [set(), {"periodic", "piston"}])
-def test_few_events(names):
-    assert_alike(logs(names, 60))
-
-
-@pytest.mark.parametrize("names", [set(), {"periodic", "piston"}])
-def test_many_events(names):
-    assert_alike(logs(names, 5000))
-
-
+@pytest.mark.slow
 @pytest.mark.parametrize(("sample", "seed"), [(lambda: tall_scene("periodic", 8), 8), (lambda: lattice(6), 6)])
 def test_several_threads(sample, seed):
     assert compare(sample, seed, (2, 3))["slices"] > 0
