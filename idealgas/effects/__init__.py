@@ -6,6 +6,7 @@ it.
 """
 
 from importlib import import_module
+from typing import Any
 
 from idealgas.effects.effect import EffectSpec
 
@@ -21,7 +22,7 @@ NAMES = (
 )
 """The files of the effects."""
 
-EFFECTS: tuple[EffectSpec, ...] = tuple(import_module(f"{__name__}.{name}").EFFECT for name in NAMES)
+EFFECTS: tuple[EffectSpec[Any], ...] = tuple(import_module(f"{__name__}.{name}").EFFECT for name in NAMES)
 """All effects; no code of those that a scene does not have is compiled."""
 
 EFFECT_NAMES = tuple(effect.name for effect in EFFECTS)

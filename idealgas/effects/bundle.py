@@ -53,7 +53,7 @@ else:
     """
 
 
-def present(effects: Effects) -> Iterator[tuple[EffectSpec, Any]]:
+def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:
     """The effects that a bundle has, with their states."""
     for effect in EFFECTS:
         if (state := getattr(effects, effect.field)) is not None:

@@ -1,8 +1,9 @@
 """What an effect is: its table in a scene, its state in a run, and what the log keeps of it."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from idealgas.events import Arrays, Column, Values
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue
 from idealgas.toml.table import Table
+
+State = TypeVar("State")
+"""State of an effect in a run: arrays and numbers."""
 
 
 class Tables(NamedTuple):
@@ -47,18 +51,18 @@ class Start(NamedTuple):
     spin_temperature: np.ndarray
 
 
-class EnergyPart(NamedTuple):
+class EnergyPart(NamedTuple, Generic[State]):
     """A part of the energy that an effect adds.
 
     Attributes:
         part: a field of `idealgas.run.energy.Energy`.
         of: the energy, from the effect's state, the gas and the local time.
-        observed: the column of the samples that holds it, None if they do not.
-        inner: whether discs have it in addition to their motion, and may turn it into motion in collisions.
+        observed: its column in the samples; None if they have none.
+        inner: whether it belongs to the discs and collisions may turn it into kinetic energy.
     """
 
     part: str
-    of: Callable[[Any, Gas, float], float]
+    of: Callable[[State, Gas, float], float]
     observed: Column | None = None
     inner: bool = False
 
@@ -80,33 +84,9 @@ class Sample(NamedTuple):
     tables: Callable[[float], str] = lambda side: ""
 
 
-def _no_issues(_: Tables) -> Iterable[Issue]:
-    return ()
-
-
-def _no_arrays(_: Any) -> Arrays:
-    return {}
-
-
-def _no_values(_: Any, __: float) -> Values:
-    return {}
-
-
-def _nothing_to_restore(_: Any, __: Mapping[str, Any]) -> None:
-    pass
-
-
-def _nothing_at_epochs(_: Any, __: float) -> None:
-    pass
-
-
-def _never(_: Any, __: float) -> float:
-    return float("inf")
-
-
 @dataclass(frozen=True)
-class EffectSpec:
-    """One effect. Its state is what `make` returned, and what the engine has made of it since.
+class EffectSpec(Generic[State]):
+    """One effect, with functions of its state, which `make` returns and the engine then changes.
 
     Attributes:
         name: for people.
@@ -119,16 +99,16 @@ class EffectSpec:
         description: of the table, for the JSON Schema.
         side: a kind of side of the box: a word, or a table with one key.
         side_text: how such a side is written.
-        check: faults of its own table that the table does not find itself; called if the box is valid.
-        disc_state: what a checkpoint keeps of each disc, the state's own arrays; those that are columns of events are
-            in event rows and snapshots too.
-        constants: what the log keeps of each disc at the start.
-        values: what checkpoints and samples keep of the effect as a whole, at a local time.
+        check: issues of its table that need the box or the walls; called if the box is valid.
+        disc_state: the arrays of the state, one entry per disc, that a checkpoint stores; those that are columns of
+            events are in event rows and snapshots too.
+        constants: values per disc that the log stores once, at the start.
+        values: values of the effect as a whole that checkpoints and samples store, at a local time.
         restore: set the state to the values of a checkpoint, by name, except for arrays per disc.
         energy: the part of the energy that it adds.
-        gives_energy: whether it lets walls give energy to discs, or take some.
-        loses_energy: whether it lets collisions lose energy.
-        own_wall: number of a wall that has energy of its own, so that what it gives does not come from outside.
+        gives_energy: whether walls give energy to discs, or take some.
+        loses_energy: whether collisions lose energy.
+        own_wall: number of a wall whose energy is part of the energy account, so that it gives none from outside.
         counted: total number of its own events.
         begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run.
         end_epoch: count local times from the end of an epoch of some length (time).
@@ -140,7 +120,7 @@ class EffectSpec:
     name: str
     field: str
     find: Callable[[Tables], ActiveEffect | None]
-    make: Callable[[Tables, Start], Any]
+    make: Callable[[Tables, Start], State | None]
     samples: tuple[Sample, ...]
     sample_together: Sample | None = None
     key: str = ""
@@ -149,16 +129,16 @@ class EffectSpec:
     description: str = ""
     side: str | type[Table] | None = None
     side_text: str = ""
-    check: Callable[[Tables], Iterable[Issue]] = _no_issues
-    disc_state: Callable[[Any], Arrays] = _no_arrays
-    constants: Callable[[Any], Arrays] = _no_arrays
-    values: Callable[[Any, float], Values] = _no_values
-    restore: Callable[[Any, Mapping[str, Any]], None] = _nothing_to_restore
-    energy: EnergyPart | None = None
-    gives_energy: Callable[[Any], bool] = lambda state: False
-    loses_energy: Callable[[Any], bool] = lambda state: False
-    own_wall: Callable[[Any], int | None] = lambda state: None
+    check: Callable[[Tables], Iterable[Issue]] = lambda tables: ()
+    disc_state: Callable[[State], Arrays] = lambda state: {}
+    constants: Callable[[State], Arrays] = lambda state: {}
+    values: Callable[[State, float], Values] = lambda state, local_time: {}
+    restore: Callable[[State, Mapping[str, Any]], None] = lambda state, values: None
+    energy: EnergyPart[State] | None = None
+    gives_energy: Callable[[State], bool] = lambda state: False
+    loses_energy: Callable[[State], bool] = lambda state: False
+    own_wall: Callable[[State], int | None] = lambda state: None
     counted: Column | None = None
-    begin_epoch: Callable[[Any, float], None] = _nothing_at_epochs
-    end_epoch: Callable[[Any, float], None] = _nothing_at_epochs
-    next_change: Callable[[Any, float], float] = _never
+    begin_epoch: Callable[[State, float], None] = lambda state, time: None
+    end_epoch: Callable[[State, float], None] = lambda state, length: None
+    next_change: Callable[[State, float], float] = lambda state, time: math.inf

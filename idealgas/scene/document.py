@@ -64,7 +64,7 @@ class Document(_DiscsAndEffects):
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
     log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
 
-    def tables_of(self, effect: EffectSpec) -> Tables:
+    def tables_of(self, effect: EffectSpec[Any]) -> Tables:
         """The part of the scene that an effect sees; of a scene that is being checked, the box may be missing."""
         own = getattr(self, effect.key) if effect.key else None
         size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())

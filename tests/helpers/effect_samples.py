@@ -1,11 +1,15 @@
 """Small gases with any set of effects, for tests of the engine."""
 
 import math
+from typing import Any
 
 import numpy as np
 
 from helpers.support import record
+from idealgas.bench.effects import effect_scene
+from idealgas.effects import EFFECTS
 from idealgas.effects.bundle import Effects
+from idealgas.effects.effect import EffectSpec, Start
 from idealgas.effects.wall import make_segments
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
@@ -25,7 +29,8 @@ from idealgas.state import Gas
 
 BOX = (12.0, 9.0)
 
-NAMES = ("gravity", "periodic", "segments", "gates", "rotation", "restitution", "thermal", "piston", "thermostat")
+NAMES = (*(effect.field for effect in EFFECTS), "gates")
+"""Effects by their fields of the bundle; gates are segments too."""
 
 
 def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
@@ -61,24 +66,34 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     temperature[2] = 1.5
     piston = aligned(1, PISTON)
     piston[0].x, piston[0].a, piston[0].m, piston[0].stop, piston[0].side = 11.5, -0.8, 20.0, 12.0, 1
-    return Effects(
-        gravity=Gravity(0.0, -0.4) if "gravity" in names else None,
-        periodic=Periodic(
+    own: dict[str, Any] = {
+        "gravity": lambda: Gravity(0.0, -0.4),
+        "periodic": lambda: Periodic(
             "piston" not in names, "piston" in names, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)
-        )
-        if "periodic" in names
-        else None,
-        segments=make_segments(table[:, :2], table[:, 2:4], *table[:, 4:].T) if walls else None,
-        rotation=Rotation(draw.normal(size=n), inertia, 0.6, 0.3) if "rotation" in names else None,
-        restitution=Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)) if "restitution" in names else None,
-        thermal=Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)) if "thermal" in names else None,
-        piston=piston if "piston" in names else None,
-        thermostat=make_thermostat(n, seed) if "thermostat" in names else None,
+        ),
+        "segments": lambda: make_segments(table[:, :2], table[:, 2:4], *table[:, 4:].T),
+        "rotation": lambda: Rotation(draw.normal(size=n), inertia, 0.6, 0.3),
+        "restitution": lambda: Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)),
+        "thermal": lambda: Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)),
+        "piston": lambda: piston,
+        "thermostat": lambda: make_thermostat(n, seed),
+    }
+    wanted = [effect for effect in EFFECTS if effect.field in names or (effect.field == "segments" and walls)]
+    return Effects(
+        **{e.field: own[e.field]() if e.field in own else from_benchmark(e, gas, seed) for e in wanted},
         wall_energy=make_sums([1.0] * (FIRST_SEGMENT + len(walls))),
         dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + len(walls))),
         bath_energy=make_sums([1.0]) if "thermostat" in names else None,
         flow=make_flow(gas, FIRST_SEGMENT + 2 * len(walls), 7 if "rotation" in names else 6),
     )
+
+
+def from_benchmark(effect: EffectSpec[Any], gas: Gas, seed: int) -> Any:
+    """State of an effect with no sample here: that of its scene of the benchmark, in this box."""
+    scene = effect_scene(effect.name, 1)
+    rest = np.zeros(len(gas))
+    tables = scene.tables_of(effect)._replace(size=BOX)
+    return effect.make(tables, Start(gas, seed, scene.properties.acceleration, rest, rest))
 
 
 def make_thermostat(n: int, seed: int) -> Thermostat:
