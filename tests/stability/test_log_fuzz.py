@@ -37,14 +37,14 @@ def draw(case: int, editor: Editor) -> list[Effect]:
             break  # a previous change removed what this one needs
         if effect is not None:
             effects.append(effect)
-    return [effect for k, effect in enumerate(effects) if not _undone(effect, effects[k + 1 :], editor)]
+    return [effect for k, effect in enumerate(effects) if not _undone(effect, effects[:k] + effects[k + 1 :], editor)]
 
 
-def _undone(effect: Effect, later: Sequence[Effect], editor: Editor) -> bool:
-    """Whether a broken rule may hold again: its table has no rows, or its datasets were changed once more."""
+def _undone(effect: Effect, others: Sequence[Effect], editor: Editor) -> bool:
+    """Whether a broken rule may hold again: its table has no rows, or its datasets were changed twice."""
     gone = {table for table, rows in editor.rows.items() if not rows}
-    changed = any(path in other.what for path in effect.paths for other in later)
-    return changed or bool({path.partition("/")[0] for path in effect.paths} & gone)
+    twice = any(path in other.what for path in effect.paths for other in others)
+    return twice or bool({path.partition("/")[0] for path in effect.paths} & gone)
 
 
 def chosen(case: int) -> Sequence[Form]:
