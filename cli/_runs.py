@@ -47,8 +47,8 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
         "  disc collisions": f"{summary.disc_collisions:,}",
         "  wall hits": f"{summary.wall_hits:,}",
     }
-    if summary.kicks:
-        rows["  kicks by the heat bath"] = f"{summary.kicks:,}"
+    if summary.thermostat_collisions:
+        rows["  thermostat collisions"] = f"{summary.thermostat_collisions:,}"
     if summary.trials:
         rows |= {"trials": f"{summary.trials:,}", "  accepted": f"{summary.disc_collisions / summary.trials:.4f}"}
     rows["simulated time"] = f"{summary.end_time:.6g}"

@@ -49,7 +49,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         tables = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
-        sharing = {"threads": threads.number, "threads_because": threads.reason}
+        sharing = {"threads": threads.number, "threads_reason": threads.reason}
         shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
         others = {"lattice": shape, "warning": ROUGH_REST if scene.collapse_risk else None}
         data(json.dumps({"scene": tables, **effects, **sharing, **others, **asdict(expected)}, indent=2))
@@ -149,7 +149,11 @@ def _gas_table(expected: "Forecast", until: float | None) -> "Table":
         ("collisions per disc and time Γ", _number(expected.collision_rate, rough=rough)),
         ("pair collisions per time", _number(expected.pair_collision_rate, rough=rough)),
         ("wall hits per time", _number(expected.wall_hit_rate, rough=rough)),
-        *([("kicks by the heat bath per time", _number(expected.kick_rate))] if expected.kick_rate else []),
+        *(
+            [("thermostat collisions per time", _number(expected.thermostat_collision_rate))]
+            if expected.thermostat_collision_rate
+            else []
+        ),
         ("end of the run, time", _number(expected.duration, rough=ends)),
         ("events", _number(expected.events, ",.0f", rough)),
         ("rows in the log", _number(expected.rows, ",.0f", rough)),

@@ -22,12 +22,12 @@ class Kind(IntEnum):
     WALL = 1
     WALL_END = 2
     PISTON = 3
-    KICK = 4
+    THERMOSTAT = 4
     """The heat bath of a thermostat."""
 
 
 BATH = -1 - HEAT_BATH
-"""Partner of a disc in a row of kind KICK."""
+"""Partner of a disc in a row of kind THERMOSTAT."""
 
 
 class Column(NamedTuple):

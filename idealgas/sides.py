@@ -12,7 +12,7 @@ FIRST_SEGMENT = len(SIDES)
 """Number of the first wall segment; the others follow in the order of the scene."""
 
 HEAT_BATH = 1 << 30
-"""Number that stands for a heat bath, which kicks discs wherever they are: events name it as partner -1 - HEAT_BATH."""
+"""Number that stands for a heat bath, which discs meet anywhere: events name it as partner -1 - HEAT_BATH."""
 
 OUTWARD = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
 """Unit normals (x, y) of the sides, pointing out of the box."""

@@ -52,7 +52,7 @@ class Properties:
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
     are. acceleration: of all discs between events, length/time². emits: temperature of each thermal wall, by
     number; None for those that reflect. bath: temperature of a heat bath that gives discs new velocities wherever they
-    are; None without one. kicks: how often it does so to one disc, 1/time. last_wall_removed_at: time from which on no
+    are; None without one. thermostat_rate: per disc, 1/time. last_wall_removed_at: time from which on no
     wall is inside the box; infinite if one always is.
     """
 
@@ -73,7 +73,7 @@ class Properties:
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
     emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _merge)
     bath: float | None = _plain(None, _first_not_none)
-    kicks: float = _plain(0.0, max)
+    thermostat_rate: float = _plain(0.0, max)
     last_wall_removed_at: float = _plain(0.0, max)
 
     @property

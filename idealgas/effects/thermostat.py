@@ -11,11 +11,11 @@ from idealgas.toml.table import Positive, Table
 
 NAME = "thermostat"
 
-KICKS = Column("kicks", "i8")
-NEXT_KICK = Column("next_kick", "f8", (), "time")
+THERMOSTAT_COLLISIONS = Column("thermostat_collisions", "i8")
+NEXT_THERMOSTAT_COLLISION = Column("next_thermostat_collision", "f8", (), "time")
 """Counted from the checkpoint."""
-KICK_NUMBER = Column("kick_number", "u8")
-"""Of each disc's next kick, from 0."""
+THERMOSTAT_COLLISION_NUMBER = Column("thermostat_collision_number", "u8")
+"""Of each disc's next collision with the bath, from 0."""
 
 
 class Thermostat(Table):
@@ -26,7 +26,7 @@ class Thermostat(Table):
     """
 
     temperature: Positive = Field(description="temperature > 0 of the heat bath, energy")
-    rate: Positive = Field(description="kicks of each disc per time > 0, 1/time")
+    rate: Positive = Field(description="thermostat collisions of each disc per time > 0, 1/time")
 
 
 def _find(tables: Tables) -> ActiveEffect | None:
@@ -38,7 +38,7 @@ def _find(tables: Tables) -> ActiveEffect | None:
         allows_time_steps=False,
         drives_discs=True,
         bath=thermostat.temperature,
-        kicks=thermostat.rate,
+        thermostat_rate=thermostat.rate,
     )
     return ActiveEffect(NAME, (("thermostat",),), properties)
 
@@ -50,7 +50,7 @@ def _make(tables: Tables, start: Start) -> law.Thermostat | None:
     thermostat = law.Thermostat(
         table.temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64)
     )
-    law.draw_first_kicks(thermostat)
+    law.draw_first_collisions(thermostat)
     return thermostat
 
 
@@ -62,8 +62,11 @@ EFFECT = EffectSpec(
     description="[thermostat]: temperature, rate",
     find=_find,
     make=_make,
-    disc_state=lambda thermostat: {NEXT_KICK: thermostat.time, KICK_NUMBER: thermostat.number},
-    counted=KICKS,
+    disc_state=lambda thermostat: {
+        NEXT_THERMOSTAT_COLLISION: thermostat.time,
+        THERMOSTAT_COLLISION_NUMBER: thermostat.number,
+    },
+    counted=THERMOSTAT_COLLISIONS,
     end_epoch=law.end_epoch,
     samples=(  # a tenth of the collisions of a disc per time
         Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),

@@ -10,20 +10,20 @@ from idealgas.effects.bundle import Effects
 from idealgas.engine.audit import deepest_overlap_of_all
 from idealgas.engine.event_writer import (
     batch_capacity,
-    write_kick,
     write_pair,
     write_piston_hit,
     write_segment_hit,
     write_side_hit,
+    write_thermostat_collision,
 )
 from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.engine.resolve import (
-    resolve_kick,
     resolve_pair,
     resolve_piston,
     resolve_segment,
     resolve_side,
     resolve_stop,
+    resolve_thermostat_collision,
 )
 from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
@@ -36,7 +36,7 @@ from idealgas.physics.wall import segment_contact
 from idealgas.state import Gas
 
 U = np.uintp
-PAIR, SIDE, SEGMENT, PISTON, STOP, KICK, BOUNDARY_CROSSING = range(7)
+PAIR, SIDE, SEGMENT, PISTON, STOP, THERMOSTAT, BOUNDARY_CROSSING = range(7)
 
 
 @inline
@@ -85,12 +85,12 @@ def segment_event(disc, i, segments, effects, best):
 
 
 @inline
-def kick_event(i, thermostat, best):
-    """The earlier of the event `best` and disc i's next kick by the heat bath."""
+def thermostat_event(i, thermostat, best):
+    """The earlier of the event `best` and disc i's next thermostat collision."""
     if thermostat is not None:
         time = thermostat.time[U(i)]
         if time < best[0]:
-            best = (time, KICK, i, 0, 0, 0)
+            best = (time, THERMOSTAT, i, 0, 0, 0)
     return best
 
 
@@ -149,12 +149,12 @@ def next_event(record, box, effects):
     """Earliest event as (local time, sort of event, disc, partner, image_x, image_y); records are in order of id.
 
     For a BOUNDARY_CROSSING the partner is the axis, and image_x the direction. Events are compared in the order that
-    decides between simultaneous ones: the smaller id first, then walls, then a kick, then the other id.
+    decides between simultaneous ones: the smaller id first, then walls, then the heat bath, then the other id.
     """
     best = (NEVER, PAIR, 0, 0, 0, 0)
     for i in range(record.shape[0]):
         best = wall_event(record, i, effects, box[0], box[1], best)
-        best = kick_event(i, effects.thermostat, best)
+        best = thermostat_event(i, effects.thermostat, best)
         for j in range(i + 1, record.shape[0]):
             best = pair_event(record, i, j, effects, best)
         best = boundary_crossing_event(record, i, effects.periodic, best)
@@ -178,7 +178,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
     rows = 0
     events = 0
     collisions = 0
-    kicks = 0
+    thermostat_collisions = 0
     now = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
     reached = False
@@ -208,17 +208,17 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             images = images_to_wall(effects.periodic, i, (image_x, image_y))
             at_end = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
             rows += write_segment_hit(batch, rows, clock, i, partner, at_end, disc, effects)
-        elif what == KICK:
-            resolve_kick(disc, i, time, effects.thermostat, effects)
-            rows += write_kick(batch, rows, clock, i, disc, effects)
-            kicks += 1
+        elif what == THERMOSTAT:
+            resolve_thermostat_collision(disc, i, time, effects.thermostat, effects)
+            rows += write_thermostat_collision(batch, rows, clock, i, disc, effects)
+            thermostat_collisions += 1
         else:
             resolve_piston(disc, i, time, effects.piston, effects)
             rows += write_piston_hit(batch, rows, clock, i, effects.piston, disc, effects)
         events += 1
         events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time
-    add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, thermostat_collisions, now, events_at_this_time)
     return rows, reached
 
 

@@ -47,19 +47,19 @@ def epoch_length(
     encounters: float,
     extra_speed: float = 0.0,
     periodic: Sequence[bool] = (False, False),
-    kicks: float = 0.0,
+    thermostat_collisions: float = 0.0,
 ) -> float:
     """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if it has none.
 
     In a dilute gas it is fewer events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
     speeds to be expected from gravity, a piston or a heat bath, length/time. periodic: whether the sides along x and
-    along y are periodic. kicks: of all discs per time, 1/time. Where its last digits decide, the sum of the speeds is
+    along y are periodic. thermostat_collisions: per time. Where the last digits decide, the sum of the speeds is
     exactly rounded, so the length depends neither on the order of the discs nor on the processor.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
     fastest = float(speeds.max()) + extra_speed
-    other_events = narrow_encounters(gas, periodic) + kicks
+    other_events = narrow_encounters(gas, periodic) + thermostat_collisions
     way = 2.0 * LONGEST_WAY * float(gas.radius.min())
     round_the_box = MOST_CROSSINGS * min(
         (length for length, on in zip(gas.box, periodic, strict=True) if on), default=math.inf
@@ -98,8 +98,8 @@ def speed_beyond(gas: Gas, effects: Effects) -> float:
     return speed
 
 
-def kick_rate(gas: Gas, effects: Effects) -> float:
-    """Kicks of all discs by a heat bath per time, 1/time."""
+def thermostat_collision_rate(gas: Gas, effects: Effects) -> float:
+    """Thermostat collisions of all discs per time, 1/time."""
     return 0.0 if effects.thermostat is None else len(gas) * effects.thermostat.rate
 
 

@@ -6,7 +6,7 @@ from idealgas.events import BATH, Kind
 from idealgas.jit import inline, prefetch_next_line
 from idealgas.sides import FIRST_SEGMENT
 
-DISC, WALL, WALL_END, PISTON, KICK = (int(kind) for kind in Kind)
+DISC, WALL, WALL_END, PISTON, THERMOSTAT = (int(kind) for kind in Kind)
 NO_END = 1 << 62  # rows, where no log is kept
 
 
@@ -128,9 +128,9 @@ def write_piston_hit(batch, row, time, own, piston, disc, effects):
 
 
 @inline
-def write_kick(batch, row, time, own, disc, effects):
-    """Write the row of a disc that the heat bath kicked."""
+def write_thermostat_collision(batch, row, time, own, disc, effects):
+    """Write the row of a thermostat collision."""
     if batch is not None:
-        write_row(batch, row, time, np.int64(own), BATH, KICK, disc, effects)
+        write_row(batch, row, time, np.int64(own), BATH, THERMOSTAT, disc, effects)
         return 1
     return 0

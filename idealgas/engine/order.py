@@ -1,6 +1,6 @@
 """Order of simultaneous events: the smaller pair (smaller id, other id) comes first, where a wall precedes any disc.
 
-A kick by the heat bath comes after the walls and before any disc, as the bath's number is beyond those of the walls.
+A thermostat collision comes after the walls and before any disc, as the bath's number is beyond those of the walls.
 
 Where a disc meets the same disc or wall in two images at once, that image comes first that is fewer box lengths away
 from the disc with the smaller id, counted along x and then along y. The rule uses ids only, never indices in memory, so

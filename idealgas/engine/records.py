@@ -30,7 +30,8 @@ MOST_AT_ONCE = 100_000  # events per disc at one instant: far more than touching
 
 COUNTERS = np.dtype(
     [
-        ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"), ("kicks", "i8"),  # numbers in this epoch
+        ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),  # in this epoch
+        ("thermostat_collisions", "i8"),
         ("time", "f8"),  # local time of the last event
         ("events_at_this_time", "i8"),  # number of events in a row at that time
         ("trials", "i8"), ("trial_time", "f8"),  # Monte Carlo trials since time 0; local time of the last trial
@@ -137,15 +138,15 @@ def check_clock(time, now, events_at_this_time, n):
 
 
 @inline
-def add_to_counters(counter, events, disc_collisions, kicks, now, events_at_this_time):
-    """Add the events of one call of a kernel to the counters: those that are no collisions or kicks are wall hits.
+def add_to_counters(counter, events, disc_collisions, thermostat_collisions, now, events_at_this_time):
+    """Add the events of one call of a kernel to the counters: all events of no other kind are wall hits.
 
     now: local time of the last event. events_at_this_time: number of events in a row at that time.
     """
     counter.events += events
     counter.disc_collisions += disc_collisions
-    counter.wall_hits += events - disc_collisions - kicks
-    counter.kicks += kicks
+    counter.wall_hits += events - disc_collisions - thermostat_collisions
+    counter.thermostat_collisions += thermostat_collisions
     counter.time = now
     counter.events_at_this_time = events_at_this_time
 

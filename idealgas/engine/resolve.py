@@ -12,7 +12,7 @@ from idealgas.physics.piston import advance_piston, collide_with_piston, energy_
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
 from idealgas.physics.thermal import is_thermal
-from idealgas.physics.thermostat import kick
+from idealgas.physics.thermostat import andersen_collision
 from idealgas.physics.wall import segment_normal
 from idealgas.sides import FIRST_SEGMENT
 
@@ -94,7 +94,7 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
 @inline
 def arrive(disc, time, effects):
-    """Move a disc's record to the local time at which it meets a wall, or is kicked."""
+    """Move a disc's record to the local time at which it meets a wall or the heat bath."""
     record_flight(effects.flow, disc, time, effects.gravity)
     advance(disc, time, effects.gravity)
 
@@ -176,12 +176,12 @@ def resolve_stop(time, piston):
 
 
 @inline
-def resolve_kick(disc, own, time, thermostat, effects):
+def resolve_thermostat_collision(disc, own, time, thermostat, effects):
     """Give a disc a new velocity from the heat bath at a local time; it is no collision: no contact duration begins."""
     if thermostat is not None:
         arrive(disc, time, effects)
         energy = energy_of(disc, own, effects.rotation)
-        kick(disc, own, thermostat, effects.rotation)
+        andersen_collision(disc, own, thermostat, effects.rotation)
         record_bath_energy(effects.bath_energy, energy_of(disc, own, effects.rotation) - energy)
         wrap(disc, own, effects.periodic)
         disc.count += np.uint32(1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
 from idealgas.engine.audit import Audit, audit
-from idealgas.engine.epoch import encounters_per_length, epoch_length, kick_rate, speed_beyond
+from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond, thermostat_collision_rate
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
@@ -101,14 +101,14 @@ class Totals(NamedTuple):
         events: all events that are logged.
         disc_collisions: collisions of two discs.
         wall_hits: hits of walls, piston included.
-        kicks: of discs by a heat bath.
+        thermostat_collisions: of discs with a heat bath.
         trials: pairs tried by Monte Carlo.
     """
 
     events: int = 0
     disc_collisions: int = 0
     wall_hits: int = 0
-    kicks: int = 0
+    thermostat_collisions: int = 0
     trials: int = 0
 
 
@@ -144,8 +144,10 @@ class Simulation:
         self.length = until_change
         if not self.method.single_epoch:
             periodic, extra_speed = periodic_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
-            kicks = kick_rate(self.gas, self.effects)
-            self.length = min(epoch_length(self.gas, self._encounters, extra_speed, periodic, kicks), until_change)
+            thermostat_collisions = thermostat_collision_rate(self.gas, self.effects)
+            self.length = min(
+                epoch_length(self.gas, self._encounters, extra_speed, periodic, thermostat_collisions), until_change
+            )
         self.method.start(self.gas, self.effects)
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self._counters["trials"] = self.totals.trials
@@ -212,7 +214,7 @@ class Simulation:
             self.totals.events + counted["events"],
             self.totals.disc_collisions + counted["disc_collisions"],
             self.totals.wall_hits + counted["wall_hits"],
-            self.totals.kicks + counted["kicks"],
+            self.totals.thermostat_collisions + counted["thermostat_collisions"],
             counted["trials"],
         )
 

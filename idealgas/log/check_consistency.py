@@ -18,7 +18,7 @@ def check_scene(
     walls: Sequence[Wall],
     periodic: tuple[bool, ...],
     gravity: tuple[float, float],
-    kicks: bool,
+    has_thermostat: bool,
     columns: Collection[str],
 ) -> None:
     """Check that a scene has the discs, walls and effects of a log.
@@ -29,7 +29,7 @@ def check_scene(
         walls: walls of the log.
         periodic: whether the box is periodic along x and along y.
         gravity: acceleration, length/time².
-        kicks: whether a heat bath kicks discs.
+        has_thermostat: whether the gas has a heat bath.
         columns: names of the columns of events and checkpoints.
 
     Raises:
@@ -51,8 +51,12 @@ def check_scene(
         raise ValueError(f"gravity {scene.properties.acceleration} (gravity: {gravity})")
     if scene.properties.periodic != periodic:
         raise ValueError(f"periodic sides {scene.properties.periodic} (box: {periodic})")
-    if (scene.properties.bath is not None) != kicks:
-        raise ValueError(f"{'no' if kicks else 'a'} heat bath (got kinds of events with{'' if kicks else 'out'} kicks)")
+    if (scene.properties.bath is not None) != has_thermostat:
+        raise ValueError(
+            "no heat bath (got thermostat collisions)"
+            if has_thermostat
+            else "a heat bath (got no thermostat collisions)"
+        )
     has = {
         POSITIONS: scene.run.method != "monte_carlo",
         TRIALS: scene.run.method == "monte_carlo",

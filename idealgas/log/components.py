@@ -17,7 +17,10 @@ VECTORS: dict[str, Sequence[str]] = {
 
 def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
     """Component names of event columns and observables. walls: names of the walls of a log."""
-    faces = {name: [f"{name}_{face}" for face in face_names(walls)] for name in ("face_push", "face_drag", "face_hits")}
+    faces = {
+        name: [f"{name}_{face}" for face in face_names(walls)]
+        for name in ("face_normal_impulse", "face_tangential_impulse", "face_hits")
+    }
     given = [f"wall_energy_{name}" for name in walls]
     lost = [f"dissipated_energy_{name}" for name in ("discs", *walls)]
     return {**VECTORS, **faces, "wall_energy": given, "dissipated_energy": lost}

@@ -53,7 +53,7 @@ class LogHeader:
         def read() -> Scene:
             scene = parse_scene(self.scene_text, "scene")
             columns = {*self._file.names("events"), *self._file.names("checkpoints")}
-            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._file.kicks, columns)
+            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._file.has_thermostat, columns)
             return scene
 
         return self._file.checked(read, "runs/scene")

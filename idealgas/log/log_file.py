@@ -52,7 +52,7 @@ class LogFile:
         path: path of the file.
         unclosed: whether the file consistency flags are set: it is being written, or its writer was killed.
         commit: newest commit record.
-        kicks: whether a heat bath kicks discs.
+        has_thermostat: whether the gas has a heat bath.
         rules: rules for the values of this log.
     """
 
@@ -175,7 +175,7 @@ class LogFile:
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
-        self.kicks = schema.KICKS in self.names("checkpoints")
+        self.has_thermostat = schema.THERMOSTAT_COLLISIONS in self.names("checkpoints")
         self.rules = self._rules(size)
 
     def _rules(self, size: int) -> Rules:
@@ -185,7 +185,7 @@ class LogFile:
         check_sizes(*counts, size)
         box = self._column_at("box")
         size_of_box = box_of(box.whole(0) if box.chunk == (2,) else np.empty(0))
-        rules = Rules(size_of_box, *counts, self.kicks)
+        rules = Rules(size_of_box, *counts, self.has_thermostat)
         for table, names in self._names.items():
             columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
             rules.check_table(columns, self.rows(table), size)

@@ -14,7 +14,7 @@ RULED = columns_named(("time", "disc", "partner", "kind"))
 """Event columns to which the rule applies."""
 
 NO_PAIR, OTHER_KIND = 1, 2
-DISC, KICK = int(Kind.DISC), int(Kind.KICK)
+DISC, THERMOSTAT = int(Kind.DISC), int(Kind.THERMOSTAT)
 
 
 def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
@@ -54,7 +54,7 @@ def _first_fault(time, disc, partner, kind, is_second_allowed):
         if (
             kind.shape[0] > 0
             and odd < 0
-            and ((kind[k] == DISC) != (other >= 0) or (kind[k] == KICK) != (other == BATH))
+            and ((kind[k] == DISC) != (other >= 0) or (kind[k] == THERMOSTAT) != (other == BATH))
         ):
             odd = k
         if other >= 0 and one >= other and not allowed:

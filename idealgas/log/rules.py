@@ -59,7 +59,9 @@ class Rules:
         has_time_steps: function that returns whether discs move in time steps; called if one is outside the box.
     """
 
-    def __init__(self, box: tuple[float, float], discs: int, species: int, walls: int, kicks: bool = False) -> None:
+    def __init__(
+        self, box: tuple[float, float], discs: int, species: int, walls: int, has_thermostat: bool = False
+    ) -> None:
         """Declare the columns and ranges of a log.
 
         Args:
@@ -67,9 +69,9 @@ class Rules:
             discs: number of discs.
             species: number of species.
             walls: number of walls.
-            kicks: whether a heat bath kicks discs.
+            has_thermostat: whether the gas has a heat bath.
         """
-        self._kicks = kicks
+        self._has_thermostat = has_thermostat
         self.has_time_steps: Callable[[], bool] = lambda: False
         self._box = box
         self._ranges: dict[str, Range] = {
@@ -77,7 +79,7 @@ class Rules:
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
-            "kind": (0, max(kind for kind in Kind if kicks or kind != Kind.KICK)),
+            "kind": (0, max(kind for kind in Kind if has_thermostat or kind != Kind.THERMOSTAT)),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
@@ -164,7 +166,7 @@ class Rules:
         name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
-        if name == "partner" and self._kicks:
+        if name == "partner" and self._has_thermostat:
             data = np.where(data == BATH, 0, data)
         low, high = self._ranges.get(name, self._range_of_others(path))
         in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())

@@ -54,8 +54,8 @@ SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
 """Columns that all observables share, with the number of epochs as step, and all elements of snapshots."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
 """Texts of the run, and of each run that resumed it."""
-KICKS = "kicks"
-"""Column of checkpoints, the number of kicks, in logs with a heat bath; other logs have no events of that kind."""
+THERMOSTAT_COLLISIONS = "thermostat_collisions"
+"""Column of checkpoints in logs with a heat bath; other logs have no events of that kind."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """Columns of the summary, with a row for each field; the values are JSON."""
 DISC_COLUMNS = (

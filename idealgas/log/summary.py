@@ -17,7 +17,7 @@ class Summary:
         events: number of events, the sum of the next three.
         disc_collisions: number of collisions of two discs.
         wall_hits: number of collisions with walls and the piston.
-        kicks: number of kicks by a heat bath.
+        thermostat_collisions: number of thermostat collisions.
         trials: number of pairs tried by the Monte Carlo method.
         rows: number of event rows, two for a collision of two discs.
         epochs: number of epochs.
@@ -30,9 +30,9 @@ class Summary:
         seconds: wall time of the last run without start-up and compilation, s.
         compile_seconds: wall time of compilation, s.
         threads: number of threads at the end of the last run.
-        threads_because: reason for this number of threads.
+        threads_reason: reason for this number of threads.
         shared_slices: number of time slices that threads computed together.
-        given_up_slices: number of these that one thread computed again.
+        aborted_slices: number of these that one thread computed again.
     """
 
     completed: bool
@@ -40,7 +40,7 @@ class Summary:
     events: int
     disc_collisions: int
     wall_hits: int
-    kicks: int
+    thermostat_collisions: int
     trials: int
     rows: int
     epochs: int
@@ -51,9 +51,9 @@ class Summary:
     seconds: float
     compile_seconds: float
     threads: int
-    threads_because: str
+    threads_reason: str
     shared_slices: int
-    given_up_slices: int
+    aborted_slices: int
 
     @classmethod
     def of(cls, found: Mapping[str, Any]) -> Self:

@@ -1,8 +1,8 @@
 """Andersen's thermostat: at random times a disc gets a velocity of a gas at the temperature of a heat bath.
 
-The kicks of a disc are a Poisson process that depends on nothing else, so that the gas becomes canonical at any rate:
+The collisions of a disc with the bath are an independent Poisson process, so the gas becomes canonical at any rate:
 Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed, the disc's id and the
-number of the kick (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so neither the order of events nor a resumed run
+number of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so neither the order of events nor a resumed run
 changes them.
 """
 
@@ -16,14 +16,14 @@ from idealgas.physics.random_numbers import disc_uniform
 
 
 class Thermostat(NamedTuple):
-    """Parameters of the heat bath, and each disc's next kick.
+    """Parameters of the heat bath, and each disc's next collision with the bath.
 
     Attributes:
         temperature: of the bath, mass length²/time² (k_B = 1).
-        rate: kicks of one disc per time, 1/time.
+        rate: collisions of one disc with the bath per time, 1/time.
         seed: seed of the scene.
-        time: (N,) f8 by id, local time of each disc's next kick.
-        number: (N,) u8 by id, number of each disc's next kick, from 0.
+        time: (N,) f8 by id, local time of each disc's next collision with the bath.
+        number: (N,) u8 by id, number of each disc's next collision with the bath, from 0.
     """
 
     temperature: float
@@ -35,26 +35,26 @@ class Thermostat(NamedTuple):
 
 @inline
 def uniform(thermostat, own, draw):
-    """Random number in (0, 1] for a disc's next kick; draw: 3 for its time, 4 and 5 for the velocity, 6 and 7."""
+    """Random number in (0, 1] for a disc's next collision; draw: 3 for its time, 4 and 5 for the velocity, 6 and 7."""
     return disc_uniform(thermostat.seed, own, thermostat.number[np.uintp(own)], draw)
 
 
 @inline
 def interval(thermostat, own):
-    """Time between the kick of a disc before and its next one: exponential, with a mean of one over the rate."""
+    """Time between two collisions of a disc with the bath: exponential, with a mean of one over the rate."""
     return -math.log(uniform(thermostat, own, 3)) / thermostat.rate
 
 
 @njit
-def draw_first_kicks(thermostat):
-    """Draw the time of every disc's first kick, after the local time 0."""
+def draw_first_collisions(thermostat):
+    """Draw the time of every disc's first collision, after the local time 0."""
     for own in range(thermostat.time.shape[0]):
         thermostat.time[own] = interval(thermostat, own)
 
 
 @inline
-def kick(disc, own, thermostat, rotation):
-    """Give a disc, whose record is at the time of its kick, a random velocity and spin, and draw its next kick.
+def andersen_collision(disc, own, thermostat, rotation):
+    """Give a disc, whose record is at its time, a random velocity and spin, and draw its next collision.
 
     Each component is Gaussian with variance T/m, the spin with T/I.
     """
@@ -73,5 +73,5 @@ def kick(disc, own, thermostat, rotation):
 
 
 def end_epoch(thermostat: Thermostat, length: float) -> None:
-    """Make the local times of the next kicks count from the end of an epoch of some length (time)."""
+    """Make the local times of the next collisions count from the end of an epoch of some length (time)."""
     thermostat.time[:] -= length

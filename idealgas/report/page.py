@@ -32,7 +32,7 @@ SUMMARY = {
     "events": "events",
     "disc_collisions": "disc collisions",
     "wall_hits": "wall hits",
-    "kicks": "kicks by the heat bath",
+    "thermostat_collisions": "thermostat collisions",
     "trials": "trials of pairs",
     "rows": "event rows",
     "epochs": "epochs",

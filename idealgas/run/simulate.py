@@ -276,9 +276,9 @@ class LoggedRun:
             seconds=seconds,
             compile_seconds=compile_seconds() - self._compiled_before,
             threads=threads.number,
-            threads_because=threads.reason,
+            threads_reason=threads.reason,
             shared_slices=threads.slices,
-            given_up_slices=threads.aborted,
+            aborted_slices=threads.aborted,
         )
 
     def _progress(self) -> Progress:

@@ -90,8 +90,11 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
         yield Column("kinetic_flow", "f8", (3,), ACTION), tensor[KINETIC]
         yield Column("collision_flow", "f8", (4,), ACTION), tensor[COLLISIONAL]
         yield Column("wall_virial", "f8", (), ACTION), flow.walls
-        yield Column("face_push", "f8", (len(flow.normal_impulse),), MOMENTUM), flow.normal_impulse
-        yield Column("face_drag", "f8", (len(flow.tangential_impulse),), MOMENTUM), flow.tangential_impulse
+        yield Column("face_normal_impulse", "f8", (len(flow.normal_impulse),), MOMENTUM), flow.normal_impulse
+        yield (
+            Column("face_tangential_impulse", "f8", (len(flow.tangential_impulse),), MOMENTUM),
+            flow.tangential_impulse,
+        )
         if flow.heat is not None:
             flowing = np.asarray(flow.heat)
             yield Column("kinetic_heat_flow", "f8", (2,), HEAT), flowing[:2]

@@ -21,7 +21,7 @@ from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.stress import StressAccumulator, empty_buffer
 from idealgas.physics.thermal import Thermal
-from idealgas.physics.thermostat import Thermostat, draw_first_kicks
+from idealgas.physics.thermostat import Thermostat, draw_first_collisions
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
 from idealgas.sides import FIRST_SEGMENT
@@ -97,9 +97,9 @@ def from_benchmark(effect: EffectSpec[Any], gas: Gas, seed: int) -> Any:
 
 
 def make_thermostat(n: int, seed: int) -> Thermostat:
-    """A heat bath that kicks n discs about as often as they collide."""
+    """A heat bath that n discs meet about as often as they collide."""
     thermostat = Thermostat(2.0, 0.5, np.uint64(seed), np.empty(n), np.zeros(n, np.uint64))
-    draw_first_kicks(thermostat)
+    draw_first_collisions(thermostat)
     return thermostat
 
 

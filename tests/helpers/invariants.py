@@ -105,14 +105,14 @@ class InvariantChecker:
             self.fly(disc, time)
         if rows.kind[0] == Kind.DISC:
             self.meet(rows, velocity[discs], time)
-        elif rows.kind[0] == Kind.KICK:
+        elif rows.kind[0] == Kind.THERMOSTAT:
             assert rows.partner[0] == BATH
         else:
             self.bounce(int(rows.kind[0]), int(rows.partner[0]), rows, velocity[discs[0]], simulation, time)
         self.position[discs], self.velocity[discs] = after, rows.velocity
         self.hit[discs] = rows.partner
         self.since[discs] = self.now = time
-        if rows.kind[0] != Kind.KICK:
+        if rows.kind[0] != Kind.THERMOSTAT:
             self.last[discs] = time
         if rows.angular_velocity is not None:
             self.omega[discs] = rows.angular_velocity

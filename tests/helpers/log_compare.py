@@ -9,7 +9,7 @@ from helpers.support import ROOT
 from idealgas.log import open_log
 from idealgas.scene import Scene, load_scene
 
-OWN = {"seconds", "compile_seconds", "threads", "threads_because", "shared_slices", "given_up_slices"}
+OWN = {"seconds", "compile_seconds", "threads", "threads_reason", "shared_slices", "aborted_slices"}
 """What a summary tells of the way a run was computed."""
 
 NO_END = ("run.until=", "run.events=", "run.collisions_per_disc=", "run.trials=")

@@ -16,14 +16,14 @@ import numpy as np
 import idealgas.log.writer as log_writer
 from idealgas.events import BLOCK, EventBatch, Kind
 from idealgas.log import Column, Log, LogError, LogLayout, LogWriter, box_walls, open_log
-from idealgas.log.schema import KICKS
+from idealgas.log.schema import THERMOSTAT_COLLISIONS
 from idealgas.state import Gas
 
 DISCS = 25
 STEP = 2.0**-10
 OBSERVABLES = (Column("kinetic_energy", "f8", (), "energy"), Column("hits", "i8"))
 VALUES = (Column("hits", "i8"),)
-BATH_VALUES = (*VALUES, Column(KICKS, "i8"))
+BATH_VALUES = (*VALUES, Column(THERMOSTAT_COLLISIONS, "i8"))
 """Columns of checkpoints of a log with a heat bath."""
 
 
@@ -82,7 +82,7 @@ def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) 
 def write_checkpoint(writer: LogWriter) -> None:
     row = writer.rows
     writer.observe(row * STEP, row, {"kinetic_energy": row / 3, "hits": row})
-    writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, KICKS: 0})
+    writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, THERMOSTAT_COLLISIONS: 0})
 
 
 def checkpoint_arrays(row: int) -> dict[str, np.ndarray]:

@@ -180,7 +180,7 @@ def test_walls_in_short_windows(collisions, most, tmp_path):
 @pytest.mark.parametrize(
     "log", ["", "events = false\npressure = true\nsnapshot_every = 0.1\n"], ids=["events", "samples"]
 )
-def test_kicks_are_momentum_from_outside(log, tmp_path):
+def test_thermostat_collisions_are_momentum_from_outside(log, tmp_path):
     """What a heat bath gives makes the momentum of the gas no bounded store: 120 windows of one run of thin discs.
 
     The rms of deviation/error of the virial is within four times 1/√240, that of single walls, two and two alike,

@@ -13,7 +13,7 @@ from idealgas.engine.simulation import Stop
 
 SETS = [set(), *({name} for name in NAMES), *(set(pair) for pair in combinations(NAMES, 2))]
 LOCAL = tuple(name for name in NAMES if name != "thermostat")
-"""A kick concerns one disc and nothing that it meets: pairs with the thermostat are enough."""
+"""A thermostat collision concerns one disc and nothing that it meets: pairs with the thermostat are enough."""
 SETS += [set(triple) for triple in combinations(LOCAL, 3) if allowed(set(triple))]
 ALL = set(NAMES) - {"periodic"}
 ALL_PERIODIC = set(NAMES) - {"piston"}

@@ -6,7 +6,7 @@ both must hold the same events and checkpoints. The logs are packed (xz), as mos
 A new format gets fixtures of its own, and those of the previous one stay. Within a format, this makes fixtures that are
 missing:
 
-    python tests/stability/test_fixture_logs.py
+    PYTHONPATH=tests python tests/stability/test_fixture_logs.py
 
 The logarithm of the C library is in everything that thermal walls and a heat bath emit. Where it differs in the last
 bit, that fixture is read and resumed without a comparison.
@@ -61,7 +61,7 @@ FIXTURES = {
         "everything", ("run.events=200", "restitution.normal=0.9", "log.pressure=true"), "run.events=400"
     ),
     "thermal": Fixture(
-        "kicks", ("species.0.count=20", "box.bottom={ thermal = 1 }", "run.events=200"), "run.events=300"
+        "thermostat", ("species.0.count=20", "box.bottom={ thermal = 1 }", "run.events=200"), "run.events=300"
     ),
     "monte-carlo": Fixture("monte-carlo-rising", ("run.trials=1500",), "run.trials=2500"),
     "killed": Fixture("gates", ("species.0.count=12", "species.1.count=4", "run.events=400"), killed=True),

@@ -10,8 +10,8 @@ They hold on every machine with IEEE doubles: no velocity at the start takes a s
 the tail of the normal distribution, where numpy takes a logarithm. Two functions of the C library are left: the
 logarithm in the times of Monte Carlo, which are therefore rounded to single precision, and the power that bounds the
 fall onto the end of a wall (slopes, everything), whose last bit is that of glibc with fused multiplication. Thermal
-walls have no scene here, as all that they emit goes through the logarithm. A heat bath has a short one (kicks), all of
-it rounded to single precision: at 5 events a disc the motion does not make last bits into others.
+walls have no scene here, as all that they emit goes through the logarithm. A heat bath has a short one (thermostat),
+rounded to single precision: with 5 events per disc, a different last bit does not grow.
 """
 
 import hashlib
@@ -42,11 +42,13 @@ def digest(values: np.ndarray) -> str:
 def column_digests(path: Path) -> dict[str, str]:
     """Digest of each event column of a log, by its name.
 
-    Times of a run without positions, and all that follows from kicks, are in single precision.
+    Times of a run without positions, and all that follows from thermostat collisions, are in single precision.
     """
     with h5py.File(path) as file:
         columns = {name: column[:] for name, column in file["events"].items()}
-    coarse = ("time",) if "position" not in columns else tuple(columns) if (columns["kind"] == Kind.KICK).any() else ()
+    coarse = (
+        ("time",) if "position" not in columns else tuple(columns) if (columns["kind"] == Kind.THERMOSTAT).any() else ()
+    )
     for name in coarse:
         if columns[name].dtype == "f8":
             columns[name] = columns[name].astype("f4")

@@ -46,9 +46,9 @@ def test_a_shipped_scene_has_the_log_of_one_thread(name, thin_slabs, tmp_path):
     for number in THREADS:
         several = tmp_path / f"{number}.h5"
         done = simulate(scene_of(name, f"run.events={EVENTS}", f"run.threads={number}"), several)
-        print(name, number, done.threads, done.shared_slices, done.given_up_slices)
+        print(name, number, done.threads, done.shared_slices, done.aborted_slices)
         assert 2 <= done.threads <= number
-        assert done.shared_slices > done.given_up_slices
+        assert done.shared_slices > done.aborted_slices
         assert differences(one, several) == []
 
 
@@ -59,6 +59,6 @@ def test_many_discs_have_the_log_of_one_thread(tmp_path):
     for number in THREADS:
         several = tmp_path / f"{number}.h5"
         done = simulate(bench_scene(100_000, 0.1, 400_000, True, number), several)
-        print(number, done.threads, done.shared_slices, done.given_up_slices)
+        print(number, done.threads, done.shared_slices, done.aborted_slices)
         assert done.threads == number
         assert differences(one, several) == []

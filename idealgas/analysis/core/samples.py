@@ -12,7 +12,15 @@ from idealgas.sides import FIRST_SEGMENT, OUTWARD
 FEWEST_SAMPLES = 17
 """Least number of samples in a window; error bars from fewer blocks mean nothing."""
 
-SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_push", "face_drag", "face_hits", "pair_collisions")
+SUMS = (
+    "kinetic_flow",
+    "collision_flow",
+    "wall_virial",
+    "face_normal_impulse",
+    "face_tangential_impulse",
+    "face_hits",
+    "pair_collisions",
+)
 
 
 class SampledImpacts:
@@ -39,7 +47,7 @@ class SampledImpacts:
         self.inner_virial = self.collision_flow[:, :3:2][:, [not wrapped for wrapped in log.periodic]].sum(axis=1)
         self.wall_virial = found["wall_virial"]
         self.collisions = found["pair_collisions"].reshape(-1, species, species)
-        self.push, self.drag = found["face_push"], found["face_drag"]
+        self.push, self.drag = found["face_normal_impulse"], found["face_tangential_impulse"]
         self.dragged = bool(self.drag.any())
         into, along = face_directions(log)
         self.impulse = _by_wall(self.push[..., None] * into + self.drag[..., None] * along)

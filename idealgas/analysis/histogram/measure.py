@@ -232,7 +232,7 @@ def _free_flight_rates(
     why_not = known.why_not
     if uneven := log.scene.lacking("uniform"):
         why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"
-    if log.scene.properties.kicks:
+    if log.scene.properties.thermostat_rate:
         why_not = why_not or "a heat bath changes velocities in flight"
     if known.ensemble and known.ensemble.dof < 2 * FEW:
         why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"

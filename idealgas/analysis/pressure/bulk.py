@@ -24,7 +24,7 @@ class Bulk(NamedTuple):
 
 
 def bulk_in_events(gas: Gas, periodic: tuple[bool, bool], window: Window, moments: Moments, impacts: Impacts) -> Bulk:
-    """What discs carry to the walls, and what collisions and kicks pass on."""
+    """What discs carry to the walls, and what collisions and the thermostat pass on."""
     flights = window.of(moments.flights)[:, :, 1:3]
     first = np.unique(gas.species, return_index=True)[1]
     carried = (flights / _reach(gas)[first]).sum(axis=1)
@@ -33,13 +33,13 @@ def bulk_in_events(gas: Gas, periodic: tuple[bool, bool], window: Window, moment
 
 
 def bulk_in_samples(
-    gas: Gas, periodic: tuple[bool, bool], window: Window, impacts: SampledImpacts, kicked: bool
+    gas: Gas, periodic: tuple[bool, bool], window: Window, impacts: SampledImpacts, has_thermostat: bool
 ) -> Bulk:
     """The same from sums in samples, with the mean room of discs of several radii.
 
-    Unknown for discs that a heat bath kicks, and the force for walls that drag: it would take where each disc was then.
+    Unknown for discs in a heat bath, and the force for walls that drag: it would take where each disc was then.
     """
-    if kicked:
+    if has_thermostat:
         return Bulk(None, None)
     flow = window.of(impacts.kinetic_flow)[:, ::2]
     passed_on = window.of(impacts.collision_flow)[:, :3:2]

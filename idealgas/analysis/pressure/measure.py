@@ -143,7 +143,7 @@ def pressure(
     else:
         window, samples = sampled(log, start, end, needs)
         impacts, paths = samples, ()
-        bulk = bulk_in_samples(gas, log.periodic, window, samples, log.scene.properties.kicks > 0)
+        bulk = bulk_in_samples(gas, log.periodic, window, samples, log.scene.properties.thermostat_rate > 0)
     return Pressure(
         window=window,
         number=len(gas),

@@ -54,7 +54,8 @@ class Forecast:
 
     number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
     the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
-    discs per time. pair_collision_rate, wall_hit_rate, kick_rate: pair collisions, wall hits and kicks of the whole gas
+    discs per time. pair_collision_rate, wall_hit_rate, thermostat_collision_rate: pair collisions, wall hits and
+    thermostat collisions of the whole gas
     per time. duration: simulated time at the end of the run. events: number of events. rows: number of event rows in
     the log. bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from
     them, are approximate; empty if their error is below 2 %. caveats: those of averages over time, by the start
@@ -68,7 +69,7 @@ class Forecast:
     collision_rate: float | None
     pair_collision_rate: float | None
     wall_hit_rate: float | None
-    kick_rate: float
+    thermostat_collision_rate: float
     duration: float | None
     events: float | None
     rows: float | None
@@ -84,7 +85,7 @@ KNOWN = ("uniform", "conserves_energy")
 
 
 SLOW_BATH = 10.0
-"""Kicks of a disc in a run below which a forecast says that the heat bath is slow."""
+"""Thermostat collisions of a disc in a run below which a forecast says that the heat bath is slow."""
 
 NEARLY = 0.05
 """Part by which the temperature at the start may differ from that of a slow heat bath without being said."""
@@ -96,9 +97,9 @@ ROUGH = 0.02
 class _Rates(NamedTuple):
     """Rates of a gas in equilibrium, in 1/time.
 
-    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials, kicks: pair
-    collisions, wall hits, Monte Carlo trials and kicks by a heat bath, of the whole gas. rough: why the rates are
-    approximate; empty if they are not.
+    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials,
+    thermostat: pair collisions, wall hits, Monte Carlo trials and thermostat collisions of the
+    whole gas. rough: why the rates are approximate; empty if they are not.
     """
 
     temperature: float
@@ -106,13 +107,13 @@ class _Rates(NamedTuple):
     pairs: float
     hits: float
     trials: float = 0.0
-    kicks: float = 0.0
+    thermostat: float = 0.0
     rough: str = ""
 
     @property
     def events(self) -> float:
         """All events of the whole gas but trials."""
-        return self.pairs + self.hits + self.kicks
+        return self.pairs + self.hits + self.thermostat
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
@@ -140,7 +141,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         collision_rate=2 * rates.pairs / len(gas) if rates else None,
         pair_collision_rate=rates.pairs if rates else None,
         wall_hit_rate=rates.hits if rates else None,
-        kick_rate=len(gas) * scene.properties.kicks,
+        thermostat_collision_rate=len(gas) * scene.properties.thermostat_rate,
         duration=duration,
         events=events,
         rows=rows,
@@ -159,7 +160,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
 def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...]:
     """Sentence on a heat bath that takes much of the run to make the gas as hot as itself."""
-    rate, bath = scene.properties.kicks, scene.properties.bath
+    rate, bath = scene.properties.thermostat_rate, scene.properties.bath
     if bath is None or duration is None or rate * duration > SLOW_BATH:
         return ()
     if abs(gas.temperature / bath - 1) < NEARLY:
@@ -223,8 +224,15 @@ def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
-    kicks = len(gas) * scene.properties.kicks
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, hits, kicks=kicks, rough=rough)
+    thermostat = len(gas) * scene.properties.thermostat_rate
+    return _Rates(
+        temperature,
+        per_disc,
+        float(number @ per_disc) / 2,
+        hits,
+        thermostat=thermostat,
+        rough=rough,
+    )
 
 
 def _column(scene: Scene, gas: Gas) -> _Rates | None:

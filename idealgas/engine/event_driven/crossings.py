@@ -1,9 +1,9 @@
-"""The time at which a disc crosses into the next cell, meets a side of the box or is kicked; and cell crossings."""
+"""The time at which a disc crosses into the next cell, meets a side of the box or the heat bath; and cell crossings."""
 
 import numpy as np
 
 from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave
-from idealgas.engine.event_driven.prediction import KICK, SIDE_OF_BOX
+from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
 from idealgas.physics.ballistic import time_to_plane
 from idealgas.physics.disc_wall import arrival_delay, centre_range
@@ -95,7 +95,7 @@ def axis_crossing(disc, along_y, cells, own, now, effects):
 
 @inline
 def predict_crossing(record, ids, state, i, now, effects):
-    """Store the time and kind of disc i's next cell crossing, side contact or kick in its prediction."""
+    """Store in disc i's prediction the time and kind of its next cell crossing, side or thermostat collision."""
     disc = record[U(i)]
     own = ids[U(i)]
     x_time, right, x_side = axis_crossing(disc, False, state.cells, own, now, effects)
@@ -106,24 +106,24 @@ def predict_crossing(record, ids, state, i, now, effects):
     prediction = state.prediction[U(i)]
     prediction.crossing = min(x_time, y_time)
     prediction.crossing_code = y_code if along_y else x_code
-    keep_kick_if_earlier(prediction, own, effects.thermostat)
+    keep_thermostat_collision_if_earlier(prediction, own, effects.thermostat)
 
 
 @inline
-def keep_kick_if_earlier(prediction, own, thermostat):
-    """Store a disc's next kick in its prediction, in place of its crossing if that is later."""
+def keep_thermostat_collision_if_earlier(prediction, own, thermostat):
+    """Store a disc's next thermostat collision in its prediction if it precedes its crossing."""
     if thermostat is not None:
         time = thermostat.time[U(own)]
         if time < prediction.crossing:
             prediction.crossing = time
-            prediction.crossing_code = KICK
+            prediction.crossing_code = THERMOSTAT
 
 
 @inline
-def is_kick(crossing_code, thermostat):
-    """Whether a disc's crossing is a kick by the heat bath."""
+def is_thermostat_collision(crossing_code, thermostat):
+    """Whether a disc's crossing is a thermostat collision."""
     if thermostat is not None:
-        return crossing_code == KICK
+        return crossing_code == THERMOSTAT
     return False
 
 

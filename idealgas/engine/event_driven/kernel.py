@@ -10,18 +10,18 @@ import numpy as np
 
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
 from idealgas.engine.event_driven.contacts import predict_contact
-from idealgas.engine.event_driven.crossings import cross_cell, is_kick, predict_crossing
+from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
 from idealgas.engine.event_driven.prefetch import prefetch_next
 from idealgas.engine.event_driven.scheduler import clear, has_other_event, is_resolved, remove, resolve_ties
 from idealgas.engine.event_writer import (
     batch_capacity,
-    write_kick,
     write_pair,
     write_piston_hit,
     write_segment_hit,
     write_side_hit,
+    write_thermostat_collision,
 )
 from idealgas.engine.parallel.subdomain import DONE
 from idealgas.engine.parallel.synchronization import (
@@ -33,12 +33,12 @@ from idealgas.engine.parallel.synchronization import (
 )
 from idealgas.engine.records import add_to_counters, reload
 from idealgas.engine.resolve import (
-    resolve_kick,
     resolve_pair,
     resolve_piston,
     resolve_segment,
     resolve_side,
     resolve_stop,
+    resolve_thermostat_collision,
 )
 from idealgas.jit import inline, njit
 
@@ -90,7 +90,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     """
     events = 0
     collisions = 0
-    kicks = 0
+    thermostat_collisions = 0
     rows = 0
     now = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
@@ -169,15 +169,15 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
             )
             rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
-        elif is_kick(prediction.crossing_code, effects.thermostat):
-            kicks += 1
-            resolve_kick(record[U(i)], ids[U(i)], time, effects.thermostat, effects)
-            rows += write_kick(batch, rows, epoch_start + time, ids[U(i)], record[U(i)], effects)
+        elif is_thermostat_collision(prediction.crossing_code, effects.thermostat):
+            thermostat_collisions += 1
+            resolve_thermostat_collision(record[U(i)], ids[U(i)], time, effects.thermostat, effects)
+            rows += write_thermostat_collision(batch, rows, epoch_start + time, ids[U(i)], record[U(i)], effects)
         else:
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
             rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
         change = np.int64(Repredict.EVENT)
     finish(subdomain, reached)
-    add_to_counters(counters[0], events, collisions, kicks, now, events_at_this_time)
+    add_to_counters(counters[0], events, collisions, thermostat_collisions, now, events_at_this_time)
     return rows, reached

@@ -1,4 +1,4 @@
-"""What is predicted of each disc: its next contact, and its next cell crossing, hit of a side or kick."""
+"""Predictions for each disc: its next contact, and its next cell crossing, side or thermostat collision."""
 
 import numpy as np
 
@@ -10,17 +10,20 @@ from idealgas.sides import FIRST_SEGMENT, HEAT_BATH
 PREDICTION = np.dtype(
     [
         ("contact", "f8"),  # local time of the earliest contact with a disc or a wall segment
-        ("crossing", "f8"),  # local time at which the disc leaves its cell, meets a side of the box or is kicked
+        ("crossing", "f8"),  # local time at which the disc leaves its cell, meets a side of the box or the heat bath
         ("partner", "i4"),  # index of the other disc, -1 for none, -2 - k for wall segment k
         ("partner_count", "u4"),  # the partner's count when predicted: the contact is stale once it differs
         ("image_x", "i2"),  # box lengths to the partner's record or the segment, where sides are periodic
         ("image_y", "i2"),
-        ("crossing_code", "i4"),  # 0-3: crosses to the cell left, right, below, above; 4-7: meets that side; or KICK
+        (
+            "crossing_code",
+            "i4",
+        ),  # 0-3: crosses to the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT
     ],
     align=True,
 )
 SIDE_OF_BOX = 4
-KICK = SIDE_OF_BOX + HEAT_BATH
+THERMOSTAT = SIDE_OF_BOX + HEAT_BATH
 """Codes of what is no cell crossing: SIDE_OF_BOX and the number of what the disc meets."""
 
 NO_CONTACT = 0.5 * NEVER  # before NEVER: a pair without a contact, at NEVER, is not simultaneous with it

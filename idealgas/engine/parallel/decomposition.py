@@ -210,7 +210,7 @@ class DomainDecomposition:
             why = self._run_threads(end, batch, 0)
             slabs, total = self._slabs, counters.copy()
             for slab in slabs:
-                for name in ("events", "disc_collisions", "wall_hits", "kicks"):
+                for name in ("events", "disc_collisions", "wall_hits", "thermostat_collisions"):
                     total[name] += slab.counters[name]
             last = max(slabs, key=lambda slab: slab.counters[0]["time"]).counters[0]
             done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-MOST_KICKS = 1e10
-"""Bound on the kicks of a run: hours."""
+MAX_THERMOSTAT_COLLISIONS = 1e10
+"""Bound on the thermostat collisions of a run: hours."""
 
 
 def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator[Issue]:
@@ -53,7 +53,7 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from _discs_in_walls(scene)
     yield from piston.issues(scene, invalid)
     if not invalid:
-        yield from _kick_issues(scene)
+        yield from _thermostat_issues(scene)
     if box is not None:
         yield from room_issues(box, scene.room, kinds, discs, invalid)
         yield from placement_issues(scene, kinds)
@@ -107,12 +107,18 @@ def _discs_in_walls(scene: Document) -> Iterator[Issue]:
                 yield Issue(keys, f"overlaps wall {i}", f"a distance of {distance} to it", f">= {d.radius}, the radius")
 
 
-def _kick_issues(scene: Document) -> Iterator[Issue]:
-    """A thermostat whose kicks take too long, in a run with an end in time."""
+def _thermostat_issues(scene: Document) -> Iterator[Issue]:
+    """A thermostat whose collisions take too long, in a run with an end in time."""
     thermostat, until = scene.thermostat, scene.run.until
     if thermostat is None or until is None:
         return
-    kicks = thermostat.rate * until * number_of_discs(scene.species, scene.disc)
-    if kicks > MOST_KICKS:
-        allowed = f"<= {MOST_KICKS:g}, by a rate <= {thermostat.rate * MOST_KICKS / kicks:.3g}"
-        yield Issue((("thermostat", "rate"), ("run", "until")), "too many kicks", f"about {kicks:.3g}", allowed)
+    collisions = thermostat.rate * until * number_of_discs(scene.species, scene.disc)
+    if collisions > MAX_THERMOSTAT_COLLISIONS:
+        most = thermostat.rate * MAX_THERMOSTAT_COLLISIONS / collisions
+        allowed = f"<= {MAX_THERMOSTAT_COLLISIONS:g}, by a rate <= {most:.3g}"
+        yield Issue(
+            (("thermostat", "rate"), ("run", "until")),
+            "too many thermostat collisions",
+            f"about {collisions:.3g}",
+            allowed,
+        )

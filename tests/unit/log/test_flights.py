@@ -31,7 +31,7 @@ CASES = {
     "rough": ["rotation={inertia=0.5, roughness=1, wall_roughness=1}"],
     "periodic": joined("xy"),
     "falling along joined sides": [*joined("x"), "gravity.acceleration=[0, -0.5]"],
-    "kicks": ["thermostat={temperature=2, rate=3}"],
+    "thermostat": ["thermostat={temperature=2, rate=3}"],
     "without positions": ['run.method="monte_carlo"'],
 }
 

@@ -180,7 +180,7 @@ def test_values(sound, tmp_path, case):
     assert re.search(expected, message), message
 
 
-def kicked(partner, kind):
+def thermostat_row(partner, kind):
     """Row 17 with this partner and kind."""
 
     def edit(file):
@@ -196,23 +196,23 @@ NOT_OF_PARTNER = "events/kind: not that of its partner in row 17"
 @pytest.mark.parametrize(
     ("partner", "kind", "expected"),
     [
-        (BATH, Kind.KICK, ""),
+        (BATH, Kind.THERMOSTAT, ""),
         (BATH, Kind.WALL, NOT_OF_PARTNER),
         (BATH, Kind.DISC, NOT_OF_PARTNER),
-        (-1, Kind.KICK, NOT_OF_PARTNER),
-        (BATH + 1, Kind.KICK, "events/partner .*in row 17 .allowed -4 to 24"),
+        (-1, Kind.THERMOSTAT, NOT_OF_PARTNER),
+        (BATH + 1, Kind.THERMOSTAT, "events/partner .*in row 17 .allowed -4 to 24"),
         (BATH, 5, r"events/kind .*: 5 in row 17 .allowed 0 to 4"),
     ],
 )
-def test_kicks(tmp_path, partner, kind, expected):
-    """A kick has the heat bath as its partner; VALUES has the cases of logs without kicks."""
-    path = craft(write_log(tmp_path / "run.h5", STOP, checkpoint_values=BATH_VALUES), kicked(partner, kind))
+def test_thermostat_collisions(tmp_path, partner, kind, expected):
+    """A thermostat collision has the heat bath as its partner; VALUES has the cases of logs without a thermostat."""
+    path = craft(write_log(tmp_path / "run.h5", STOP, checkpoint_values=BATH_VALUES), thermostat_row(partner, kind))
     if expected:
         assert re.search(expected, refused(path))
     else:
         with open_log(path) as log:
             (rows,) = log.chunks()
-        assert (rows.partner[17], rows.kind[17]) == (BATH, Kind.KICK)
+        assert (rows.partner[17], rows.kind[17]) == (BATH, Kind.THERMOSTAT)
 
 
 @pytest.mark.parametrize(
@@ -262,7 +262,7 @@ SCENES = {
     "wall": (texts("walls/name", 0, b"west"), "other walls"),
     "a heat bath": (
         scene_text(b"[run]", b"[thermostat]\ntemperature = 1\nrate = 1\n[run]"),
-        "a heat bath .got kinds of events without kicks",
+        "a heat bath .got no thermostat collisions",
     ),
     "species": (texts("discs/species_name", 0, b"x"), "species"),
 }  # fmt: skip
@@ -286,7 +286,7 @@ def test_a_scene_without_its_heat_bath(tmp_path):
     craft(path, scene_text(b"[thermostat]\ntemperature = 1.0\nrate = 0.2\n", b""))
     with open_log(path) as log, pytest.raises(LogError) as caught:
         _ = log.scene
-    assert "no heat bath (got kinds of events with kicks)" in str(caught.value)
+    assert "no heat bath (got thermostat collisions)" in str(caught.value)
 
 
 def test_pairs(run, tmp_path):

@@ -1,4 +1,4 @@
-"""What a heat bath does to a disc, as a function of its random numbers, beside 50 digits; and the law of many kicks."""
+"""Thermostat collisions as a function of random numbers, compared with 50 digits; the distribution of many."""
 
 import math
 
@@ -11,7 +11,14 @@ from scipy import stats
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermal import uniform as uniform_at_wall
-from idealgas.physics.thermostat import Thermostat, draw_first_kicks, end_epoch, interval, kick, uniform
+from idealgas.physics.thermostat import (
+    Thermostat,
+    andersen_collision,
+    draw_first_collisions,
+    end_epoch,
+    interval,
+    uniform,
+)
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:overflow encountered")]
 
@@ -38,7 +45,7 @@ def test_velocities_spins_and_times():
             thermostat.time[2] = before
             u = {k: exact(uniform(thermostat, 2, k)) for k in range(3, 8)}
             disc = body(vx=9.0, vy=9.0, m=mass)
-            kick(disc, 2, thermostat, rotation)
+            andersen_collision(disc, 2, thermostat, rotation)
             speed = mpmath.sqrt(-2 * exact(temperature) / exact(mass) * mpmath.log(u[4]))
             spin = mpmath.sqrt(-2 * exact(temperature) / exact(inertia) * mpmath.log(u[6]))
             assert abs(disc.vx - speed * mpmath.cos(2 * mpmath.pi * u[5])) <= gamma(22) * speed
@@ -51,21 +58,21 @@ def test_velocities_spins_and_times():
             assert not rotation.omega[[0, 1, 3]].any()
 
 
-def test_first_kicks_are_drawn_as_the_others():
+def test_first_collisions_are_drawn_as_the_others():
     thermostat = bath(rate=0.25)
-    draw_first_kicks(thermostat)
+    draw_first_collisions(thermostat)
     assert thermostat.time.tolist() == [interval(thermostat, own) for own in range(4)]
     assert not thermostat.number.any()
 
 
 def test_without_a_thermostat_nothing_happens():
     disc = body(vx=1.0, vy=2.0, m=1.0)
-    kick(disc, 0, None, None)
+    andersen_collision(disc, 0, None, None)
     assert (disc.vx, disc.vy) == (1.0, 2.0)
 
 
 def test_numbers_are_not_those_of_thermal_walls():
-    """Neither of the same disc's emissions, nor of each other: a kick has other draws of the eight that there are."""
+    """Neither of the same disc's emissions, nor of each other: the thermostat has other draws of the eight."""
     thermostat, thermal = bath(), Thermal(np.ones(4), np.uint64(7), np.zeros(4, np.uint64))
     found = set()
     for number in range(20):
@@ -85,7 +92,7 @@ def test_times_keep_their_digits_from_epoch_to_epoch():
     assert [exact(t) for t in thermostat.time] == [exact(t) - exact(0.75) for t in before]
 
 
-def test_many_kicks_have_the_laws_of_andersen():
+def test_many_collisions_have_the_laws_of_andersen():
     """Kolmogorov and Smirnov: velocities and spins Gaussian with variance T/m and T/I, times exponential; a seed of
     which a true law fails once in 10⁴ such tests.
     """
@@ -93,7 +100,7 @@ def test_many_kicks_have_the_laws_of_andersen():
     rows = []
     for _ in range(4000):
         before = thermostat.time[1]
-        kick(disc, 1, thermostat, rotation)
+        andersen_collision(disc, 1, thermostat, rotation)
         rows.append((disc.vx, disc.vy, rotation.omega[1], thermostat.time[1] - before))
     vx, vy, omega, times = np.array(rows).T
     for values, scale in ((vx, math.sqrt(2 / 1.5)), (vy, math.sqrt(2 / 1.5)), (omega, math.sqrt(2 / 0.3))):

@@ -116,7 +116,7 @@ def test_thermal_walls():
 
 
 def test_a_thermostat():
-    """First kicks are those of the seed, exponential: the mean of 51 within 4 of its standard errors, 1/(rate √51)."""
+    """First collisions follow from the seed: the mean of 51 within 4 of its standard errors, 1/(rate √51)."""
     effects = effects_of("thermostat={ temperature = 1.5, rate = 0.25 }", "scene.seed=7")[1]
     assert effects.thermostat[:3] == (1.5, 0.25, np.uint64(7))
     first = effects.thermostat.time

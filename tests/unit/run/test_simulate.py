@@ -74,7 +74,12 @@ def test_an_effect_adds_its_columns_and_no_others(tmp_path):
         ("periodic", {"image"}, {"image"}, set()),
         ("cooling", {"image"}, {"image", "last_collision", "dissipated_energy_sum"}, set()),
         ("heat-bath", set(), {"emissions", "wall_energy_sum"}, set()),
-        ("thermostat", {"image"}, {"image", "next_kick", "kick_number", "bath_energy_sum"}, {"kicks"}),
+        (
+            "thermostat",
+            {"image"},
+            {"image", "next_thermostat_collision", "thermostat_collision_number", "bath_energy_sum"},
+            {"thermostat_collisions"},
+        ),
         ("piston", set(), {"wall_energy_sum"}, {"piston_position", "piston_velocity"}),
     ):
         _, log = run(tmp_path / f"{name}.h5", load_scene(CONFIGS / f"{name}.toml", ["run.events=10"]))

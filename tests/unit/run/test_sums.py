@@ -18,7 +18,7 @@ from idealgas.scene import SceneError, parse_scene
 pytestmark = pytest.mark.slow
 
 PRESSURE = "log.pressure=true"
-SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_push", "face_drag")
+SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_normal_impulse", "face_tangential_impulse")
 
 GAS = """
 scene.seed = 3
@@ -126,7 +126,7 @@ def test_momentum_of_the_gas_is_what_walls_gave(whole):
         time, momentum = log.observables["momentum"]
         received = SampledImpacts(log, time).impulse.sum(axis=1)
         gained = np.diff(momentum, axis=0) - np.outer(np.diff(time), log.discs.mass.sum() * np.array(log.gravity))
-        assert np.abs(gained + received).max() < 1e-9 * log.observables["face_push"][1].max()
+        assert np.abs(gained + received).max() < 1e-9 * log.observables["face_normal_impulse"][1].max()
 
 
 def test_the_kinetic_flow_is_twice_the_energy(whole):

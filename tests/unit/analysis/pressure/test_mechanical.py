@@ -92,7 +92,9 @@ def test_a_heat_bath_carries_no_weight_on_average(make):
     found = pressure(make("gravity.acceleration=[0, -0.3]", "thermostat={ temperature = 1.5, rate = 2 }")).mechanical
     alone = pressure(make("gravity.acceleration=[0, -0.3]")).mechanical
     assert found.forces[-1].y.theory == alone.forces[-1].y.theory == pytest.approx(-9.0)
-    assert found.forces[-1].y.standard_error > 3 * alone.forces[-1].y.standard_error  # its kicks are no bounded store
+    assert (
+        found.forces[-1].y.standard_error > 3 * alone.forces[-1].y.standard_error
+    )  # its impulses are no bounded store
     assert abs(found.forces[-1].y.deviation) < 4
 
 

@@ -39,9 +39,14 @@ def test_conserved_momentum_takes_degrees_of_freedom():
     assert channel.temperature == pytest.approx(channel.species[0].temperature * 2000 / 1999, rel=1e-12)
 
 
-def test_a_gas_in_a_heat_bath_has_its_temperature_and_kicks():
+def test_a_gas_in_a_heat_bath_has_its_temperature_and_thermostat_collisions():
     free, hot = forecast_of(), forecast_of("thermostat={ temperature = 4, rate = 0.3 }")
-    assert (hot.temperature, hot.kick_rate, free.kick_rate, hot.beyond) == (4, 300, 0, ())
+    assert (hot.temperature, hot.thermostat_collision_rate, free.thermostat_collision_rate, hot.beyond) == (
+        4,
+        300,
+        0,
+        (),
+    )
     for quantity in ("collision_rate", "pair_collision_rate", "wall_hit_rate"):
         assert getattr(hot, quantity) == pytest.approx(2 * getattr(free, quantity), rel=1e-12)
     assert hot.events == pytest.approx(3 * (hot.pair_collision_rate + hot.wall_hit_rate + 300))

@@ -19,7 +19,7 @@ MARKERS = {
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
     "thermal walls": {"thermal.uniform"},
     "piston": {"piston.advance_piston", "piston.piston_contact", "piston.collide_with_piston"},
-    "thermostat": {"thermostat.uniform", "thermostat.kick"},
+    "thermostat": {"thermostat.uniform", "thermostat.andersen_collision"},
 }
 """Functions that only make sense with an effect. Restitution has none: its numbers would be read in those of others."""
 

@@ -1,4 +1,4 @@
-"""Analyses of a gas that a heat bath kicks: a kick is no hit of a wall, and its energy is on the account."""
+"""Analyses of a gas that a heat bath: its collisions are no hits of a wall, and its energy is on the account."""
 
 import numpy as np
 import pytest
@@ -26,23 +26,25 @@ thermostat = { temperature = 2, rate = 0.5 }
 
 
 @pytest.mark.slow
-def test_kicks_hit_no_wall(make):
+def test_thermostat_collisions_hit_no_wall(make):
     """Sums over the rows of walls alone, and over the samples of a run that counts as it goes."""
     log = make()
     edges = np.array([0.0, log.end_time])
     moments, impacts, walls = Moments(), Impacts(), WallImpulses(log)
     stream(log, edges, [moments, impacts, walls])
     (rows,) = log.chunks()
-    kicks = rows.kind == Kind.KICK
-    assert kicks.sum() == log.summary["kicks"] == log.observables["kicks"][1][-1] > 800
-    assert (kicks == (rows.partner == BATH)).all()
-    hits = np.bincount(-1 - rows.partner[(rows.partner < 0) & ~kicks], minlength=4)
+    of_bath = rows.kind == Kind.THERMOSTAT
+    assert (
+        of_bath.sum() == log.summary["thermostat_collisions"] == log.observables["thermostat_collisions"][1][-1] > 800
+    )
+    assert (of_bath == (rows.partner == BATH)).all()
+    hits = np.bincount(-1 - rows.partner[(rows.partner < 0) & ~of_bath], minlength=4)
     assert log.summary["wall_hits"] == hits.sum() == moments.events[0, 1]
     for tally in (impacts, walls):
         assert tally.hits[0].tolist() == hits.tolist()
     assert impacts.wall_virial[0] == pytest.approx(log.observables["wall_virial"][1][-1], rel=1e-9)
     assert impacts.pair_virial[0] == pytest.approx(log.observables["collision_flow"][1][-1][[0, 2]].sum(), rel=1e-9)
-    push = log.observables["face_push"][1][-1]
+    push = log.observables["face_normal_impulse"][1][-1]
     assert walls.faces[0, :, :, 0].sum(axis=1) == pytest.approx(push, rel=1e-9)
 
 
@@ -52,7 +54,7 @@ def test_the_pressure_is_that_of_the_bath(make):
     assert found.check().agrees
 
 
-def test_the_energy_that_kicks_give_is_on_the_account(make):
+def test_the_energy_that_thermostat_collisions_give_is_on_the_account(make):
     log = make()
     found = evolution(log)
     assert np.abs(found.balance).max() < 1e-12
@@ -60,7 +62,7 @@ def test_the_energy_that_kicks_give_is_on_the_account(make):
     mass, before, given = log.discs.mass, log.discs.velocity.copy(), 0.0
     for rows in log.chunks():
         for disc, kind, velocity in zip(rows.disc, rows.kind, rows.velocity, strict=True):
-            if kind == Kind.KICK:
+            if kind == Kind.THERMOSTAT:
                 given += mass[disc] / 2 * (velocity @ velocity - before[disc] @ before[disc])
             before[disc] = velocity
     assert found.given["the heat bath"][-1] == pytest.approx(given, rel=1e-10)
