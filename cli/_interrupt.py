@@ -1,4 +1,4 @@
-"""Ctrl-C: a request to stop that is never lost, however deep in another package it arrives."""
+"""Ctrl-C as a request to stop that is never lost, even if a library swallows KeyboardInterrupt."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -9,10 +9,11 @@ EXIT_CODE = 130
 
 @contextmanager
 def ctrl_c(raises: bool) -> Iterator[Callable[[], bool]]:
-    """Yield the function that tells whether Ctrl-C has been pressed since.
+    """Yield a function that returns whether Ctrl-C has been pressed since then.
 
-    raises: whether the first Ctrl-C raises KeyboardInterrupt as well, so that what waits ends; later ones do not
-    disturb what is then tidied up.
+    Args:
+        raises: whether the first Ctrl-C also raises KeyboardInterrupt, which ends a wait; later ones do not interrupt
+            the cleanup.
     """
     pressed = False
 

@@ -9,7 +9,7 @@ from idealgas.errors import UserError
 
 from ._terminal import be_quiet
 
-PICTURES = (".png", ".pdf", ".svg")
+FIGURE_ENDINGS = (".png", ".pdf", ".svg")
 
 
 def integer(text: str) -> int:
@@ -35,22 +35,22 @@ def _or_stdin(_: click.Context, __: click.Parameter, path: str) -> str:
     return "/dev/stdin" if path == "-" else path
 
 
-force_option = click.option("--force", is_flag=True, help="Replace what the same command has written there before.")
+force_option = click.option("--force", is_flag=True, help="Overwrite existing output of the same command.")
 
 quiet_option = click.option(
     "-q", "--quiet", is_flag=True, expose_value=False, callback=be_quiet,
-    help="Print nothing but errors, and what --json and --csv ask for.",
+    help="Print only errors and the output of --json and --csv.",
 )  # fmt: skip
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables.")
 
 
 def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-    if value is not None and not value.lower().endswith(PICTURES):
-        raise UserError(f"{value}: unknown kind of picture (allowed: {', '.join(PICTURES)})")
+    if value is not None and not value.lower().endswith(FIGURE_ENDINGS):
+        raise UserError(f"{value}: unknown figure format (allowed {', '.join(FIGURE_ENDINGS)})")
     return value
 
 
 plot_option = click.option(
-    "--plot", metavar="FILE.png", callback=_check_ending, help="Draw a picture (.png, .pdf or .svg)."
+    "--plot", metavar="FILE.png", callback=_check_ending, help="Write a figure (.png, .pdf or .svg)."
 )

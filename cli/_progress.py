@@ -1,5 +1,6 @@
 """Progress bar of a run, shown on a terminal only."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -12,12 +13,10 @@ if TYPE_CHECKING:
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[["Progress"], None]]:
-    """Yield the function that shows a run's progress: share done, simulated time, events per second, remaining time.
+    """Yield a function that shows the progress of a run: fraction done, simulated time, events per second, time left.
 
-    Notices of the run are printed to stderr, be it a terminal or not.
+    Notices of the run are printed to stderr, also if it is not a terminal.
     """
-    import time
-
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bars
 

@@ -1,5 +1,9 @@
 """Common parts of commands that simulate: Ctrl-C, progress bar and summary."""
 
+import json
+import os
+import shlex
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -12,15 +16,14 @@ if TYPE_CHECKING:
 
 
 def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
-    """Call `simulate` with a progress bar and a stop at Ctrl-C, and print the summary of its log.
+    """Call `simulate` with a progress bar, stop it at Ctrl-C, and print the summary of its log.
 
-    simulate: function that runs a scene. path: of the log. as_json: whether to print JSON. from_start: whether this run
-    wrote all events of the log.
+    Args:
+        simulate: function that runs a scene.
+        path: path of the log.
+        as_json: whether to print JSON.
+        from_start: whether this run wrote all events of the log.
     """
-    import json
-    import shlex
-    import sys
-
     from ._interrupt import EXIT_CODE, ctrl_c
     from ._progress import progress_bar
 
@@ -38,8 +41,6 @@ def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bo
 
 
 def _print(summary: "Summary", output: str, from_start: bool) -> None:
-    import os
-
     from rich.filesize import decimal
 
     rows = {

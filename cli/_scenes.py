@@ -1,4 +1,4 @@
-"""Scenes that are installed with the program, and copies of them."""
+"""The example scenes that are installed with the program."""
 
 import tomllib
 from importlib import import_module
@@ -10,10 +10,10 @@ from ._terminal import written
 
 SCENE = ".toml"
 TEMPLATE = "template"
-"""Name of the scene that explains itself, to start from."""
+"""Name of the commented scene that `idealgas new` copies."""
 
 SCHEMA = "scene.schema.json"
-"""Name of the JSON Schema of scenes, in the folder of a scene that refers to it in its first line."""
+"""Name of the JSON Schema of scenes; the first line of a scene refers to it, in the same folder."""
 
 
 def _folder() -> Path:
@@ -31,12 +31,16 @@ def names() -> list[str]:
 
 
 def title(name: str) -> str:
-    """What a scene says of itself, in one line."""
+    """Title of a scene."""
     return tomllib.loads((_folder() / f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]["title"]
 
 
 def copy_scene(name: str, path: Path, force: bool) -> None:
-    """Copy a scene, and beside it the schema that its first line refers to; UserError if that cannot be."""
+    """Copy a scene and, into the same folder, the schema that its first line refers to.
+
+    Raises:
+        UserError: if the scene is unknown or a file cannot be written.
+    """
     if name not in names():
         raise unknown("example", name, names())
     from idealgas.files import check_output, replacing

@@ -1,4 +1,4 @@
-"""The way of every text to the terminal: names, titles and commands of scenes and logs are shown as plain text."""
+"""Output to the terminal: names, titles and commands from scenes and logs are printed as plain text."""
 
 import os
 import sys
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 CLOSED_PIPE = 141
-"""Exit code where the reader of the output has gone: 128 + SIGPIPE, as shells have it."""
+"""Exit code after the reader of the output has closed it: 128 + SIGPIPE, as in shells."""
 
 UNBOUNDED = 100_000
-"""Width of output that is not a terminal, in columns: lines are not broken."""
+"""Width in columns of output that is not a terminal, so that lines are not broken."""
 
 _QUIET = "idealgas_cli.quiet"
 
 
 def be_quiet(ctx: click.Context, _: click.Parameter, quiet: bool) -> None:
-    """Let a command print nothing but errors, warnings and what is asked for with an option of its own."""
+    """Make a command print only errors, warnings and data that an option requests."""
     ctx.meta[_QUIET] = quiet
 
 
@@ -33,18 +33,18 @@ def _quiet() -> bool:
 
 
 def echo(text: object, err: bool = False) -> None:
-    """Print a line as it is; err: to stderr, also of a quiet command."""
+    """Print a line, unless the command is quiet; err: to stderr, always."""
     if err or not _quiet():
         click.echo(plain(str(text)), err=err)
 
 
 def data(text: str, nl: bool = True) -> None:
-    """Print what is made for other programs, also of a quiet command; nl: whether a new line comes after it."""
+    """Print data for other programs, also if the command is quiet; nl: whether to end it with a new line."""
     click.echo(plain(text), nl=nl)
 
 
 def written(path: object, err: bool = False) -> None:
-    """Say that a file has been written; err: on stderr, where stdout is for other programs."""
+    """Print that a file was written; err: to stderr, because stdout holds data."""
     if not _quiet():
         echo(f"{path}: written", err=err)
 
@@ -68,10 +68,10 @@ def terminal(err: bool = False) -> "Console":
 
 
 @contextmanager
-def readers_may_go() -> Iterator[None]:
-    """End the program quietly when the reader of its output, such as `head`, has gone."""
+def exit_on_closed_pipe() -> Iterator[None]:
+    """Exit quietly when the reader of the output, such as `head`, has closed it."""
     try:
         yield
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # there goes what is still to be flushed
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # takes what is flushed later
         raise SystemExit(CLOSED_PIPE) from None

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Example: idealgas accuracy gas.toml -o accuracy")
 @scene_argument
-@click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and pictures (PNG).")
+@click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and figures (PNG).")
 @click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
 @force_option
 @json_option
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def accuracy(
     path: str, overrides: tuple[str, ...], output: str | None, repeats: int, force: bool, as_json: bool
 ) -> None:
-    """Measure errors and CPU time of a scene event-driven, with time steps and in several precisions.
+    """Measure errors and CPU time of the event-driven and time-driven methods and of several precisions.
 
     Three discs on their unstable periodic orbit (configs/three-discs.toml) are followed until the orbit breaks, in
     boxes of many sizes.
@@ -71,7 +71,7 @@ def accuracy(
 
 @contextmanager
 def _progress_bar() -> Iterator[Callable[[str, float], None]]:
-    """Yield the function that shows on a terminal which work is being done, and its share that is done."""
+    """Yield a function that shows on a terminal the current work and the fraction done."""
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
     console = terminal(err=True)

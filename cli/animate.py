@@ -14,7 +14,7 @@ from ._terminal import echo
 def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d+)x(\d+)", text)
     if not match or not all(240 <= int(side) <= 8192 for side in match.groups()):
-        raise click.BadParameter(f"WIDTHxHEIGHT in pixels, 240 to 8192 each (got {text!r})")
+        raise click.BadParameter(f"not WIDTHxHEIGHT in pixels, 240 to 8192 each (got {text!r})")
     return int(match[1]), int(match[2])
 
 
@@ -46,7 +46,7 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
 @click.option(
     "--background", default="light", show_default=True, type=click.Choice(["light", "dark"]), help="Background."
 )
-@click.option("--frame", type=float, metavar="T", help="Make one picture, of this simulated time, instead of a film.")
+@click.option("--frame", type=float, metavar="T", help="Write one frame, at this simulated time, instead of a film.")
 @force_option
 @quiet_option
 def animate(
@@ -62,9 +62,9 @@ def animate(
     frame: float | None,
     force: bool,
 ) -> None:
-    """Make a film of a log: the discs at their exact positions, and beside them the distribution of their speeds.
+    """Make a film of a log: the discs at their exact positions, next to the distribution of their speeds.
 
-    MP4 needs the program ffmpeg; without it the film becomes a GIF.
+    MP4 requires ffmpeg; without it, a GIF is written.
     """
     from idealgas.movie.film import animate as make
     from idealgas.movie.film import paint_frame
@@ -85,6 +85,6 @@ def animate(
             **look,
             on_frame=progress,
         )
-    instead = "" if film.path == Path(output) else f" instead of {output}, as there is no ffmpeg"
+    instead = "" if film.path == Path(output) else f" instead of {output}, because ffmpeg was not found"
     window = f"t = {film.start:.6g} to {film.end:.6g}"
     echo(f"{film.path}{instead}: {film.frames} frames, {window}, {film.fps:g} frames per second")

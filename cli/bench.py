@@ -1,5 +1,6 @@
 """Command `idealgas bench`: speed of the engine on this machine."""
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
     try:
         return [float(word) for word in text.split(",")]
     except ValueError:
-        raise click.BadParameter(f"numbers with commas between them (got {text!r})") from None
+        raise click.BadParameter(f"not numbers separated by commas (got {text!r})") from None
 
 
 @click.command(epilog="Example: idealgas bench --number 1000 --phi 0.1,0.5")
@@ -32,7 +33,7 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 @click.option("--collisions", default=1_000_000, show_default=True, help="Smallest number of pair collisions of a run.")
 @click.option("--repeats", default=3, show_default=True, help="Number of runs of each kind; the median is shown.")
 @click.option("--threads", default="1", show_default=True, callback=_numbers, help="Numbers of threads.")
-@click.option("--effects", is_flag=True, help="Measure instead the cost of each effect, relative to the plain box.")
+@click.option("--effects", is_flag=True, help="Measure the cost of each effect relative to the plain box instead.")
 @plot_option
 @force_option
 @json_option
@@ -49,14 +50,14 @@ def bench(
 ) -> None:
     """Measure the speed of the event-driven engine for several N and φ, without the event log and with it.
 
-    The picture also has the speed of other programs, as it was stated.
+    The figure also shows published speeds of other programs.
     """
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
-        raise click.UsageError("N, collisions and repeats are 1 or more, φ is above 0 and 0.9 at most")
+        raise click.UsageError("N, collisions and repeats must be at least 1, φ above 0 and at most 0.9")
     if not all(1 <= number <= 256 for number in threads):
-        raise click.UsageError("there are 1 to 256 threads")
+        raise click.UsageError("the number of threads must be 1 to 256")
     if plot and effects:
-        raise click.UsageError("--plot is not for --effects")
+        raise click.UsageError("--plot cannot be combined with --effects")
     if plot:
         check_output(plot, Path(plot).suffix.lower(), force)
     if effects:
@@ -89,8 +90,6 @@ def _measure(numbers: list[int], fractions: list[float], threads: list[int], col
 
 
 def _show(found: "Bench", as_json: bool) -> None:
-    import json
-
     from idealgas.analysis.core.tables import Number, Table
 
     if as_json:
@@ -115,8 +114,6 @@ def _show(found: "Bench", as_json: bool) -> None:
 
 
 def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
-    import json
-
     from idealgas.analysis.core.tables import Number, Table
     from idealgas.bench.effects import bench_effects
 

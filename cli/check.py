@@ -1,6 +1,8 @@
 """Command `idealgas check`: errors of a scene, and cost estimate of its run."""
 
+import json
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import click
@@ -16,16 +18,16 @@ if TYPE_CHECKING:
     from idealgas.scene.lattice import TriangularLattice
 
 LEAST_STRAIN = 1e-9
-"""Strain of a lattice below which it is the rounding of the numbers in a scene."""
+"""Strain of a lattice that may be due to the rounding of the numbers in a scene."""
 
 MANY_HITS = 100.0
-"""Hits of a disc at rest in a mean free time of the gas, above which `check` warns of them."""
+"""Hits of a disc at rest per mean free time of the gas above which `check` prints a warning."""
 
 ROUGH_REST = (
-    "Rough collisions take the energy of motion in the end; discs on which a force presses then collide ever more "
-    "often, which no contact duration bounds. The run may end where a disc collides without end, before `run.until`."
+    "Rough collisions dissipate the kinetic energy; discs that a force presses together then collide ever more often, "
+    "and no contact duration bounds their rate. The run may end in an inelastic collapse before `run.until`."
 )
-"""What `check` warns of where a constant force presses discs that roughness slows down."""
+"""Warning for rough discs under a constant force."""
 
 
 @click.command(epilog="Example: idealgas check gas.toml --set species.count=500")
@@ -37,9 +39,6 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     from idealgas.toml.dump import dump_document
 
     scene = load_scene(path, overrides)
-    import json
-    from dataclasses import asdict
-
     from idealgas.analysis.theory.forecast import forecast
     from idealgas.initial.build import make_gas
     from idealgas.run.simulate import threads_of
@@ -63,18 +62,18 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     for sentence in expected.caveats:
         echo(f"caveat: {sentence}")
     if expected.beyond:
-        echo(f"not known: beyond the theory of a uniform gas are {', '.join(expected.beyond)}")
+        echo(f"not known: the theory of a uniform gas does not cover {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
     if scene.collapse_risk:
         echo(f"warning: {ROUGH_REST}")
     echo(f"threads: {threads.number} ({threads.reason})")
-    echo(f"effects: {', '.join(scene.effects) or 'none beyond elastic discs and a reflecting box'}")
+    echo(f"effects: {', '.join(scene.effects) or 'none (elastic discs in a reflecting box)'}")
     echo(f"compiled out: {', '.join(_absent(scene)) or 'none'}")
 
 
 def _lattice_line(lattice: "TriangularLattice") -> str:
-    """How many rows the lattice has at the start, its strain, and the box in which it has none."""
+    """Rows of the initial lattice, its strain, and the box in which it is not strained."""
     shape = f"lattice: {lattice.rows} rows along {'xy'[lattice.axis]} of {lattice.columns} discs"
     if abs(lattice.strain) < LEAST_STRAIN:
         return f"{shape}, without strain"
@@ -82,19 +81,19 @@ def _lattice_line(lattice: "TriangularLattice") -> str:
 
 
 def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
-    """What discs do that have come to rest, and a warning if that is to take most of the run."""
+    """Bouncing of discs that have come to rest, and a warning if it dominates the run."""
     least, most = rest.hits
     if most is None or rest.per_free_time is None:
-        yield "warning: With a coefficient of restitution of 0, a disc that comes to rest collides without end there."
+        yield "warning: With a coefficient of restitution of 0, a resting disc collides endlessly at one instant."
         return
     yield (
-        f"at rest: a disc goes on bouncing, {least:.4g} to {most:.4g} times per time, up to a height of "
+        f"at rest: a disc keeps bouncing, {least:.4g} to {most:.4g} times per time, up to a height of "
         f"{rest.height:.3g} and an energy of {rest.energy:.3g} times its mass"
     )
     if rest.per_free_time > MANY_HITS:
         yield (
-            f"warning: A disc at rest makes up to {rest.per_free_time:.3g} times the events of a disc of the gas at "
-            f"first, all {number} together {number * most:.3g} per time; a longer contact duration bounds them."
+            f"warning: A disc at rest has up to {rest.per_free_time:.3g} times as many events as a disc of the initial "
+            f"gas, all {number} together {number * most:.3g} per time; a longer contact duration reduces them."
         )
 
 
@@ -132,7 +131,7 @@ def _walls_table(scene: "Scene") -> "Table":
         (str(k), wall.name, *(shown(f"({x:.6g}, {y:.6g})") for x, y in (wall.start, wall.end)), wall.action)
         for k, wall in enumerate(number_walls(scene))
     ]
-    return Table("Walls", ("wall", "name", "from", "to", "what it does"), rows)
+    return Table("Walls", ("wall", "name", "from", "to", "action"), rows)
 
 
 def _gas_table(expected: "Forecast", until: float | None) -> "Table":

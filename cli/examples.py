@@ -1,4 +1,4 @@
-"""Command `idealgas examples`: the scenes that come with the program."""
+"""Command `idealgas examples`: the example scenes."""
 
 from pathlib import Path
 
@@ -16,13 +16,13 @@ from ._terminal import data
 @click.option("-o", "--output", metavar="FILE.toml", help="File to write.  [default: NAME.toml in this folder]")
 @force_option
 def examples(name: str | None, output: str | None, force: bool) -> None:
-    """List the scenes that come with the program, or copy one of them.
+    """List the example scenes, or copy one of them.
 
-    Beside the copy a JSON Schema is written, with which editors complete and check the keys of a scene.
+    A JSON Schema is written to the same folder; editors use it to complete and check keys.
     """
     if name is None:
         if output is not None:
-            raise UserError("-o: which example? (`idealgas examples` lists them)")
+            raise UserError("-o: the name of an example is missing (`idealgas examples` lists them)")
         width = max(map(len, names()))
         for each in names():
             data(f"{each:{width}}  {title(each)}")

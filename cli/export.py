@@ -1,6 +1,7 @@
 """Command `idealgas export`: files for other programs from a log."""
 
 import sys
+from pathlib import Path
 
 import click
 
@@ -29,15 +30,13 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 @force_option
 @quiet_option
 def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:
-    """Write the events of a log, or frames of all discs, into a file that other programs read.
+    """Write the events of a log, or frames of all discs, to a file for other programs.
 
     gsd (HOOMD, OVITO) keeps positions as float32; extxyz (OVITO, ASE) and csv keep every digit; h5md3d (MDAnalysis) is
     H5MD with a third coordinate, zero.
     """
     if events == (frames is not None):
-        raise click.UsageError("one of --events and --frames is needed")
-    from pathlib import Path
-
+        raise click.UsageError("either --events or --frames is required")
     from idealgas.log.export.export import FORMATS, frame_times
     from idealgas.log.export.export import export as write
 

@@ -1,5 +1,6 @@
-"""Command `idealgas follow`: status of a run that goes on."""
+"""Command `idealgas follow`: status of a run in progress."""
 
+import time
 from typing import TYPE_CHECKING
 
 import click
@@ -19,14 +20,12 @@ SECONDS = 1.0  # between two updates
 
 @click.command(epilog="Example: idealgas follow gas.h5")
 @log_argument
-@click.option("--once", is_flag=True, help="Show the status once and end.")
+@click.option("--once", is_flag=True, help="Show the status once and exit.")
 def follow(path: str, once: bool) -> None:
     """Show the status of a run until it ends; if the output is not a terminal, only the final status.
 
     Pressure and Z are measured from the latest events, the speeds are those of the latest state.
     """
-    import time
-
     from rich.live import Live
 
     from idealgas.analysis.status import status
@@ -70,7 +69,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
 
 
 def _histogram(seen: "Status") -> str:
-    """Text histogram of the speeds, with a mark at Maxwell-Boltzmann's density in each line."""
+    """Text histogram of the speeds, with a mark at the Maxwell-Boltzmann density in each line."""
     from idealgas.analysis.core.bars import bars
 
     if seen.density is None:

@@ -1,7 +1,7 @@
 """The command `idealgas`: one command for each module here and for each analysis of the registry.
 
 Command NAME is the function NAME of the module NAME, which is imported when the command is called; modules whose name
-starts with an underscore, and this one, are no commands. Commands that analyse a log are made from the classes of
+starts with an underscore, and this one, are not commands. Commands that analyse a log are made from the classes of
 the analyses.
 """
 
@@ -20,7 +20,7 @@ from idealgas.errors import UserError, unknown
 
 from ._analysis import AnalysisCommand
 from ._interrupt import EXIT_CODE
-from ._terminal import echo, readers_may_go
+from ._terminal import echo, exit_on_closed_pipe
 
 GROUPS = {
     "Run": ("new", "examples", "schema", "check", "run", "resume", "recover", "warm-up"),
@@ -38,18 +38,18 @@ EXAMPLES = {
     "Share": "idealgas report gas.h5 -o gas.html",
     "Study": "idealgas sweep phi.toml -o phi",
 }
-"""A command of each group."""
+"""An example command of each group."""
 
 
 class Commands(click.Group):
-    """Group of all commands: modules of this folder and analyses. It prints errors of the user as plain lines."""
+    """Group of all commands: modules of this folder and analyses; it prints a UserError as plain lines."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands, group by group."""
         return [name for names in GROUPS.values() for name in names]
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Command of a name; None if there is none."""
+        """Command with a name; None if it does not exist."""
         if name not in self.list_commands(ctx):
             return None
         if name in registry.commands():
@@ -71,13 +71,13 @@ class Commands(click.Group):
         return super().parse_args(ctx, [*args[1:], "--help"] if args[:1] == ["help"] else args)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[Any, ...]:
-        """Name and command of a command line, and its arguments; UserError, with the most similar name, for others."""
+        """Name, command and arguments of a command line; UserError, with the most similar name, if unknown."""
         if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
             raise unknown("command", args[0], self.list_commands(ctx))
         return super().resolve_command(ctx, args)
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the program; characters that the terminal does not have are written out."""
+        """Run the program; characters that the terminal cannot show are printed as escapes."""
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="backslashreplace")
@@ -85,15 +85,15 @@ class Commands(click.Group):
         return super().main(*args, **options)
 
     def make_context(self, *args: Any, **options: Any) -> click.Context:
-        """Parse the command line, and print help if that is asked for."""
-        with readers_may_go():
+        """Parse the command line, and print help if requested."""
+        with exit_on_closed_pipe():
             return super().make_context(*args, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; print a UserError as one line, with options instead of arguments, and exit with its code."""
         try:
             _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
-            with readers_may_go():
+            with exit_on_closed_pipe():
                 return super().invoke(ctx)
         except UserError as error:
             echo(str(error).replace("force=True", "--force"), err=True)
@@ -112,9 +112,9 @@ def first_sentence(command: click.Command) -> str:
 
 
 def _check_threads(number: str) -> None:
-    """UserError for a value at which numba cannot be imported."""
+    """Raise UserError for a value with which numba cannot be imported."""
     if not (number.isascii() and number.isdigit() and int(number)):
-        raise UserError(f"NUMBA_NUM_THREADS: no number of threads (got {number}; allowed a whole number >= 1)")
+        raise UserError(f"NUMBA_NUM_THREADS: not a number of threads (got {number}; allowed a whole number >= 1)")
 
 
 @click.command(

@@ -14,6 +14,6 @@ from ._scenes import SCENE, TEMPLATE, copy_scene
 def new(name: str, force: bool) -> None:
     """Write a commented scene to start from, NAME.toml.
 
-    Beside it a JSON Schema is written, with which editors complete and check the keys of a scene.
+    A JSON Schema is written to the same folder; editors use it to complete and check keys.
     """
     copy_scene(TEMPLATE, Path(f"{name.removesuffix(SCENE)}{SCENE}"), force)

@@ -13,9 +13,9 @@ from ._terminal import echo
 @force_option
 @quiet_option
 def recover(path: str, output: str | None, force: bool) -> None:
-    """Close the log of a run that was killed, so that every HDF5 program can read its committed rows.
+    """Close the log of a run that was killed, so that any HDF5 program can read its committed rows.
 
-    The commands of idealgas do not need this: they read such a log without it.
+    The commands of idealgas also read a log that was not closed.
     """
     from idealgas.log import recover as close
 

@@ -20,9 +20,9 @@ from ._terminal import written
 @force_option
 @quiet_option
 def report(path: str, output: str, start: float | None, force: bool) -> None:
-    """Write one page with every analysis that applies, and a player that moves the discs.
+    """Write one HTML page with all applicable analyses and a player of the motion.
 
-    The page needs no network and no other file. A long run is shown in part: the player says which times it shows.
+    The page is a single file and needs no network. Of a long run, the player shows a part, and states which.
     """
     from idealgas.report.page import write_report
 

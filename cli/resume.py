@@ -1,5 +1,6 @@
 """Command `idealgas resume`: continue a run."""
 
+from functools import partial
 from typing import Any
 
 import click
@@ -26,12 +27,10 @@ def resume(path: str, as_json: bool, **ends: Any) -> None:
     The log is the same, bit for bit, as that of a run without interruption. A new end replaces all stop rules of the
     scene.
     """
-    from functools import partial
-
-    from idealgas.run.resume import resume as go_on
+    from idealgas.run.resume import resume as resume_run
 
     from ._runs import run_with_progress
 
     overrides = [f"run.{rule}={'' if value is None else value}" for rule, value in ends.items()]
     given = any(value is not None for value in ends.values())
-    run_with_progress(partial(go_on, path, overrides if given else ()), path, as_json, from_start=False)
+    run_with_progress(partial(resume_run, path, overrides if given else ()), path, as_json, from_start=False)

@@ -1,6 +1,10 @@
 """Command `idealgas run`: event log of a scene."""
 
+from functools import partial
+
 import click
+
+from idealgas.files import LOG, check_output
 
 from ._options import force_option, json_option, quiet_option, scene_argument
 
@@ -16,11 +20,7 @@ def run(path: str, overrides: tuple[str, ...], output: str, force: bool, as_json
     from idealgas.scene import load_scene
 
     scene = load_scene(path, overrides)
-    from idealgas.files import LOG, check_output
-
-    check_output(output, LOG, force, [path])
-    from functools import partial
-
+    check_output(output, LOG, force, [path])  # before the imports below, which take a second
     from idealgas.run.simulate import simulate
 
     from ._runs import run_with_progress

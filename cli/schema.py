@@ -8,7 +8,7 @@ from ._terminal import data
 @click.command(epilog="Example: idealgas schema scene")
 @click.argument("kind", type=click.Choice(["scene", "sweep"]), default="scene")
 def schema(kind: str) -> None:
-    """Print the JSON Schema of scenes (or of sweeps), with which editors complete and check the keys.
+    """Print the JSON Schema of scenes or of sweeps, which editors use to complete and check keys.
 
     A file names its schema in its first line, as in `#:schema scene.schema.json`.
     """

@@ -1,5 +1,6 @@
 """Command `idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -32,9 +33,9 @@ if TYPE_CHECKING:
 @plot_option
 @click.option(
     "--of", "quantity", metavar="ANALYSIS/QUANTITY",
-    help="What the picture shows, by its names in results.csv.  [default: the first number with an error bar]",
+    help="Quantity to plot, by its name in results.csv.  [default: the first with an error bar]",
 )  # fmt: skip
-@click.option("--against", "axis", metavar="KEY", help="The axis of the picture.  [default: the first one]")
+@click.option("--against", "axis", metavar="KEY", help="Axis to plot against.  [default: the first one]")
 @force_option
 @json_option
 @quiet_option
@@ -53,7 +54,7 @@ def sweep(
     """Run a scene at many points and collect the results of its analyses in DIR/results.csv.
 
     The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
-    twice more and then reported; the other points are run. With --plot the command draws a picture in the end.
+    twice more and then reported; the other points run. With --plot it draws a figure at the end.
     """
     from idealgas.sweep.plan import load_sweep
 
@@ -72,7 +73,7 @@ def sweep(
         try:
             failed = _run(plan, output, workers, scheduler, interrupted, as_json)
         except BaseException:
-            if not interrupted():  # else it may be anything that was torn down in the middle
+            if not interrupted():  # otherwise an error caused by the interruption
                 raise
         if interrupted():
             echo("interrupted; run the same command again to continue", err=True)
@@ -95,7 +96,7 @@ def _run(
     interrupted: Callable[[], bool],
     as_json: bool,
 ) -> bool:
-    """Run a sweep and write its tables; whether any points failed."""
+    """Run a sweep and write its tables; return whether any point failed."""
     from idealgas.sweep.results import result_rows, write_tables
     from idealgas.sweep.run import run_sweep
 
@@ -103,7 +104,7 @@ def _run(
 
         def on_progress(progress: "Progress") -> None:
             show(progress)
-            if interrupted():  # the exception may have been lost
+            if interrupted():  # a library may have swallowed the exception
                 raise KeyboardInterrupt
 
         outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress)
@@ -115,16 +116,16 @@ def _run(
         print_json({**asdict(outcome), "files": list(map(str, tables)), "results": rows})
     elif tables:
         done = f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed"
-        foreseen = "" if outcome.estimated is None else f" (estimate {outcome.estimated:.3g} s)"
+        estimate = "" if outcome.estimated is None else f" (estimate {outcome.estimated:.3g} s)"
         echo(f"{done}: {' and '.join(map(str, tables))}")
         if outcome.ran:
-            echo(f"time: {outcome.seconds:.3g} s{foreseen}")
+            echo(f"time: {outcome.seconds:.3g} s{estimate}")
     return bool(outcome.failures)
 
 
 @contextmanager
 def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
-    """Yield the function that shows on a terminal how many points are finished and failed."""
+    """Yield a function that shows on a terminal how many points have finished and failed."""
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -144,8 +145,6 @@ def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
 
 
 def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
-    import os
-
     from rich.filesize import decimal
 
     from idealgas.analysis.core.tables import Cell, Number, Table

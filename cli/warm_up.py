@@ -1,4 +1,6 @@
-"""Command `idealgas warm-up`: machine code of scenes, compiled beforehand."""
+"""Command `idealgas warm-up`: compile the machine code of scenes in advance."""
+
+import json
 
 import click
 
@@ -12,13 +14,11 @@ from ._terminal import data, terminal
 @click.argument("paths", metavar="[SCENE.toml]...", nargs=-1)
 @json_option
 def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
-    """Compile beforehand what scenes need, so that their first run starts at once.
+    """Compile the machine code of scenes in advance, so that their first run starts at once.
 
-    Machine code is compiled for the effects that a scene calls for, and is kept on disk. Without a scene it is compiled
-    for all those that come with the program.
+    Machine code is compiled for the effects of a scene and cached on disk. Without a scene, it is compiled for all
+    example scenes.
     """
-    import json
-
     from idealgas.run.warm_up import warm_up as compile_for
     from idealgas.scene import load_scene
 

@@ -130,7 +130,7 @@ def paint_frame(
     """
     path = Path(output)
     if path.suffix.lower() != FRAME:
-        raise UserError(f"{output}: unknown kind of picture (allowed: {FRAME})")
+        raise UserError(f"{output}: unknown figure format (allowed {FRAME})")
     check_output(path, FRAME, force)
     check_shown(log, colouring)
     if not log.start_time <= time <= log.end_time:

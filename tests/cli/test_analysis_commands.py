@@ -123,7 +123,7 @@ def test_check_that_fails_exits_with_one(path, monkeypatch):
     [
         (("--from", 1e6), "no window"),
         (("--from", 5, "--to", 5), "no window"),
-        (("--plot", "picture.xyz"), "unknown kind of picture"),
+        (("--plot", "picture.xyz"), "unknown figure format"),
     ],
 )
 @pytest.mark.parametrize("command", COMMANDS[1:7], ids=" ".join)

@@ -62,7 +62,7 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     made = idealgas("animate", folder / "run.h5", "-o", tmp_path / "film.mp4", "--to", 1, *SMALL)
     assert (made.exit_code, made.stderr) == (0, "")
-    assert made.stdout.startswith(f"{tmp_path}/film.gif instead of {tmp_path}/film.mp4, as there is no ffmpeg: ")
+    assert made.stdout.startswith(f"{tmp_path}/film.gif instead of {tmp_path}/film.mp4, because ffmpeg was not found: ")
     assert made.stdout.count("\n") == 1
     assert os.listdir(tmp_path) == ["film.gif"]
 
@@ -80,7 +80,7 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
         ("run", ("-o", "film"), "film: unknown kind of film (allowed: .mp4, .gif)"),
         ("run", ("-o", "no/film.gif"), "no/film.gif: no folder no"),
         ("piston", ("--colour", "order"), "piston.h5: has a piston, and neighbours are told in a box whose sides stay"),
-        ("run", ("--frame", 4), "film.gif: unknown kind of picture (allowed: .png)"),
+        ("run", ("--frame", 4), "film.gif: unknown figure format (allowed .png)"),
         ("run", ("--frame", 31, "-o", "a.png"), "run.h5: no state at t = 31: it covers t = 0 to 30"),
         ("none", (), "none.h5: cannot be read: No such file or directory"),
     ],

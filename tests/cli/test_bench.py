@@ -29,10 +29,10 @@ def test_a_grid_is_measured_and_drawn(tmp_path):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--plot", "bench.txt"), "bench.txt: unknown kind of picture"),
-        (("--plot", "bench.png", "--effects"), "--plot is not for --effects"),
-        (("--threads", "0"), "there are 1 to 256 threads"),
-        (("--number", "many"), "numbers with commas"),
+        (("--plot", "bench.txt"), "bench.txt: unknown figure format"),
+        (("--plot", "bench.png", "--effects"), "--plot cannot be combined with --effects"),
+        (("--threads", "0"), "the number of threads must be 1 to 256"),
+        (("--number", "many"), "not numbers separated by commas"),
     ],
 )
 def test_what_makes_no_sense_is_refused(options, complaint):

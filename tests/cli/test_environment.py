@@ -77,7 +77,7 @@ def test_a_number_of_threads_that_is_none(folder, monkeypatch, number):
     monkeypatch.setenv("NUMBA_NUM_THREADS", number)
     done = called("info", "run.h5", folder=folder)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"NUMBA_NUM_THREADS: no number of threads (got {number}; allowed a whole number >= 1)\n"
+    assert done.stderr == f"NUMBA_NUM_THREADS: not a number of threads (got {number}; allowed a whole number >= 1)\n"
 
 
 def test_a_current_folder_that_is_closed(folder, tmp_path):

@@ -179,8 +179,8 @@ def test_export_to_a_full_device(copy):
         (("--format", "parquet", "--events", "-o", "-"), "parquet cannot be written to a pipe"),
         (("--format", "extxyz", "--frames", "no"), "invalid choice of frames"),
         (("--format", "gsd", "--events"), "gsd has no events"),
-        (("--format", "csv"), "one of --events and --frames"),
-        (("--format", "csv", "--events", "--frames", "3"), "one of --events and --frames"),
+        (("--format", "csv"), "either --events or --frames is required"),
+        (("--format", "csv", "--events", "--frames", "3"), "either --events or --frames is required"),
     ],
 )
 def test_export_refuses(copy, arguments, message):

@@ -84,7 +84,7 @@ def test_picture(logs, tmp_path):
         (("exact", "--from", 1, "--to", 1), "no window from t = 1 to 1"),
         (("exact", "--to", 1e-9), "no two discs collide between t = 0 and 1e-09"),
         (("exact", "--every", 1e-9), "instants are too many for a table (allowed <= 10000)"),
-        (("exact", "--plot", "picture.xyz"), "unknown kind of picture"),
+        (("exact", "--plot", "picture.xyz"), "unknown figure format"),
         (("exact", "none"), "cannot be read: No such file or directory"),
     ],
 )
