@@ -158,14 +158,14 @@ def _analyse(
             raise
         _print_no_theory(error, as_json)
         return
-    verdict = result.check() if check else None
+    checked = result.check() if check else None
     if plot:
         from idealgas.analysis.core.style import save
 
         save(analysis.titled_figure(result), plot, force)
     if as_json:
         unasked = {"agrees": None} if analysis.is_checked() else {}
-        print_json(result.as_dict() | (verdict.as_dict() if verdict else unasked))
+        print_json(result.as_dict() | (checked.as_dict() if checked else unasked))
     elif as_csv:
         from idealgas.analysis.core import tables
 
@@ -176,23 +176,23 @@ def _analyse(
         print_tables(analysis.shown_tables(result))
         if text := analysis.text(result):
             echo(text)
-        if verdict:
-            echo(f"{verdict}")
+        if checked:
+            echo(f"{checked}")
     if plot:
         written(plot, err=as_json or as_csv)
-    if verdict and verdict.agrees is False:
+    if checked and checked.agrees is False:
         raise SystemExit(1)
 
 
 def _print_no_theory(error: NotApplicableError, as_json: bool) -> None:
     """Print the result of a check of a gas to which the analysis does not apply."""
-    from idealgas.analysis.core.statistics import Verdict
+    from idealgas.analysis.core.statistics import CheckResult
 
-    verdict = Verdict(None, why_not=str(error))
+    checked = CheckResult(None, why_not=str(error))
     if as_json:
-        print_json(verdict.as_dict())
+        print_json(checked.as_dict())
     else:
-        echo(f"{verdict}")
+        echo(f"{checked}")
 
 
 def _results(

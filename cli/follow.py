@@ -61,7 +61,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
         "events per second": "-" if rate is None else f"{rate:,.0f}",
         "temperature": f"{seen.temperature:.6g}",
     }
-    for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility)):
+    for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility_factor)):
         rows[name] = "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}"
     rows["KS distance of speeds"] = "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}"
     table = as_rich(facts(f"{log.path}: {log.run_state}", rows), width)

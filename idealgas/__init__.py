@@ -8,7 +8,7 @@
     with idealgas.open_log("run.h5") as log:
         found = idealgas.pressure(log)  # or analyse(log, "pressure")
         for route in found.routes:
-            print(route.name, route.compressibility.value, route.compressibility.standard_error)
+            print(route.name, route.compressibility_factor.value, route.compressibility_factor.standard_error)
         print(log.to_pandas("events", disc=0))
 
 `load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a run; both

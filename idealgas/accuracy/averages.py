@@ -68,7 +68,7 @@ def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
         count = summary.disc_collisions
         rate = Estimate(count / summary.end_time, math.sqrt(count) / summary.end_time, count)
         return Averages(rate, None, None, distance, noise, summary.energy_drift, summary.deepest_overlap, None)
-    routes = {route.name: route.compressibility for route in found.routes}
+    routes = {route.name: route.compressibility_factor for route in found.routes}
     return Averages(
         rate=_total_rate(found, log),
         z_pairs=routes[PAIRS],

@@ -8,7 +8,7 @@ from matplotlib.ticker import PercentFormatter
 
 from idealgas.accuracy.orbit import OrbitStudy
 from idealgas.accuracy.study import Accuracy, Row
-from idealgas.analysis.core.style import COLOURS, GREY, Panel, entitle, panels
+from idealgas.analysis.core.style import COLOURS, GREY, Panel, add_title, panels
 
 Measure = Callable[[Row], tuple[float, float] | None]
 """Function that gives an error of a row with its standard error; None if the row has no such error."""
@@ -68,7 +68,7 @@ def accuracy_figure(found: Accuracy) -> Figure:
     _cost(axes[0], found)
     if motion:
         _digits(axes[1], found)
-    return entitle(figure, f"{found.title}: what accuracy costs")
+    return add_title(figure, f"{found.title}: what accuracy costs")
 
 
 def _cost(ax: Panel, found: Accuracy) -> None:
@@ -126,7 +126,7 @@ def details_figure(found: Accuracy) -> Figure:
         axes[1].set_ylabel("error of the motion (diameters)")
         _trajectories(axes[2], found)
     figure.set_figheight(4.6 * len(axes))
-    return entitle(figure, f"{found.title}: every error")
+    return add_title(figure, f"{found.title}: every error")
 
 
 def _errors_against_time(ax: Panel, found: Accuracy, measures: dict[str, Measure]) -> None:
@@ -188,4 +188,4 @@ def orbit_figure(found: OrbitStudy) -> Figure:
     ax.set_xlabel("decimal digits carried (no unit)")
     ax.set_ylabel("orbit lasts (time, at speed 1)")
     ax.legend()
-    return entitle(figure, "Unstable periodic orbit: how long digits keep it")
+    return add_title(figure, "Unstable periodic orbit: how long digits keep it")

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import drift, energy_of_drift
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
 from idealgas.log import Log
 
 
 def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
-    gas, discs, frame = log.discs, composition(log.discs), drift(log)
+    gas, discs, frame = log.discs, composition(log.discs), centre_of_mass_velocity(log)
     frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # without what is only rounding
     left, bottom, right, top = log.scene.room
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
@@ -31,7 +31,7 @@ def info(log: Log) -> dict[str, Any]:
             "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom)),
             "kinetic_energy": gas.kinetic_energy,
             "common_motion": frame.tolist(),
-            "temperature": (gas.kinetic_energy - energy_of_drift(log)) / len(gas),
+            "temperature": (gas.kinetic_energy - centre_of_mass_energy(log)) / len(gas),
             "species": [
                 {"name": name, "number": number, "radius": radius, "mass": mass}
                 for name, number, radius, mass in species

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.caveats import of_log
-from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
@@ -26,7 +26,7 @@ class Status:
 
     time: end of the log, time. rows: number of event rows; None if the log has no events. events: number of events so
     far, from the number of rows and the ratio of events to rows at the last checkpoint. temperature: mean kinetic
-    energy of all discs without their conserved common motion, energy. pressure, compressibility: pressure
+    energy of all discs without their conserved common motion, energy. pressure, compressibility_factor: pressure
     (energy/length²) and Z = PA/NT from the virial of the latest pair collisions; None if they cannot be measured.
     ks_distance: Kolmogorov-Smirnov distance of the speeds, in units of √(T/m), from Maxwell-Boltzmann's distribution;
     None if no disc moves. edges: (BINS + 1,), edges of the bins of these speeds. density: (BINS,), their measured
@@ -39,7 +39,7 @@ class Status:
     events: int
     temperature: float
     pressure: Estimate | None
-    compressibility: Estimate | None
+    compressibility_factor: Estimate | None
     ks_distance: float | None
     edges: np.ndarray
     density: np.ndarray | None
@@ -51,7 +51,7 @@ def status(log: Log) -> Status:
     """Status of a log, from its latest state and a bounded number of its latest events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
-    squares = mass * ((state.velocity - drift(log)) ** 2).sum(axis=1)
+    squares = mass * ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)
     temperature = float(squares.mean() / 2)
     edges = np.linspace(0, HIGHEST, BINS + 1)
     speeds = np.sqrt(squares / temperature) if temperature > 0 else None
@@ -62,7 +62,7 @@ def status(log: Log) -> Status:
         events=_events(log),
         temperature=temperature,
         pressure=p,
-        compressibility=z,
+        compressibility_factor=z,
         ks_distance=None if speeds is None else ks_distance(speeds, _reduced_speed_cdf),
         edges=edges,
         density=None if speeds is None else np.histogram(speeds, edges)[0] / len(speeds) / np.diff(edges),
@@ -98,7 +98,9 @@ def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
         raise
     except UserError:
         return None, None
-    return next(((route.pressure, route.compressibility) for route in routes if route.name == PAIRS), (None, None))
+    return next(
+        ((route.pressure, route.compressibility_factor) for route in routes if route.name == PAIRS), (None, None)
+    )
 
 
 def _events(log: Log) -> int:

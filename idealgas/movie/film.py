@@ -12,7 +12,7 @@ from typing import IO
 import numpy as np
 from PIL import Image
 
-from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.errors import OutputError, UserError
 from idealgas.files import check_output, written
@@ -160,7 +160,9 @@ def check_shown(log: Log, colouring: Colouring) -> None:
 def speeds(log: Log, first: float, last: float) -> tuple[float, float]:
     """Largest root-mean-square speed at some times, and the same relative to a conserved motion of the whole gas."""
     some = [state.velocity for state in log.frames(np.linspace(first, last, 5))]
-    typical, thermal = (max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, drift(log)))
+    typical, thermal = (
+        max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, centre_of_mass_velocity(log))
+    )
     return float(typical), float(thermal)
 
 

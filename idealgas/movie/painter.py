@@ -22,8 +22,8 @@ from matplotlib.ticker import MaxNLocator
 
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.style import COLOURS, GRID, show_names
-from idealgas.analysis.theory.conserved import common_motion
+from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
+from idealgas.analysis.theory.conserved import centre_of_mass_velocity
 from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.log import LogState
 from idealgas.movie.order_colours import order_colours
@@ -137,7 +137,7 @@ class Painter:
         relative to a conserved motion of the whole gas.
         """
         self._ink, self._line, self._edge = (INK, INK, 1.0) if dark else ("black", COLOURS[0], EDGE)
-        self._flow = common_motion(scene, gas)
+        self._flow = centre_of_mass_velocity(scene, gas)
         self._inside, self._gas, self._piston, self._colouring = walls_inside(scene), gas, piston, colouring
         self._periodic = np.array(scene.properties.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
@@ -159,7 +159,7 @@ class Painter:
         self._title = self._figure.text(LEFT / page[0], 1 - 0.65 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
         self._draw_speeds(self._add_axes(place.speeds, page))
-        show_names(self._figure)
+        disable_mathtext(self._figure)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from idealgas.analysis.core.html import escape
-from idealgas.analysis.core.style import BLACK, COLOURS, GREY, GRID, Panel, show_names
+from idealgas.analysis.core.style import BLACK, COLOURS, GREY, GRID, Panel, disable_mathtext
 
 POINT = 72
 """Units of an SVG on an inch."""
@@ -30,7 +30,7 @@ NAMES = {colour.lower(): f"--c{k}" for k, colour in enumerate(COLOURS)} | {
 
 def html_pictures(figure: Figure, caption: str, key: str) -> str:
     """A figure as HTML: an SVG for each panel and the caption below; key: a name of its own on the page."""
-    show_names(figure)
+    disable_mathtext(figure)
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]

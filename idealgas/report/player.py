@@ -13,7 +13,7 @@ from matplotlib import colormaps
 
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
 from idealgas.errors import UserError
@@ -64,7 +64,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
         (cut,) = log.chunks(("time",), rows + MOST_ROWS, rows + MOST_ROWS + 1)
         last = float(np.nextafter(cut.time[0], first))
     state = log.state_at(first)
-    flow = drift(log)
+    flow = centre_of_mass_velocity(log)
     typical, thermal = (float(np.sqrt(((state.velocity - u) ** 2).sum(axis=1).mean())) or 1.0 for u in (0.0, flow))
     species = composition(gas)
     shades = colormaps[COLOUR_MAP]

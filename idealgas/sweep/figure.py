@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import look, panels
+from idealgas.analysis.core.style import curve_style, panels
 from idealgas.errors import UserError, unknown
 from idealgas.sweep.results import RESULT, result_rows
 
@@ -38,7 +38,7 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     for k, (label, points) in enumerate(curves.items()):
         places = sorted(points)
         values, errors = zip(*(_average(points[place]) for place in places), strict=True)
-        colour, line, marker = look(k)
+        colour, line, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         theory = [(x, found) for x in places if (found := points[x][0].get("theory")) is not None]
         if theory:

@@ -33,7 +33,10 @@ COMMANDS = [
     ("heat-capacity",),
     ("profile",),
     ("evolution",),
-    *(("histogram", "--quantity", q) for q in ("speed", "vx", "vy", "energy", "free-path", "free-time", "wait")),
+    *(
+        ("histogram", "--quantity", q)
+        for q in ("speed", "vx", "vy", "energy", "free-path", "free-time", "waiting-time")
+    ),
 ]
 
 
@@ -69,7 +72,7 @@ def test_check_names_what_it_judges(path):
     said = idealgas("pressure", path, "--check").stdout.splitlines()[-1]
     assert said.endswith("in walls, virial; pairs, virial.")
     found = json.loads(idealgas("pressure", path, "--check", "--json").stdout)
-    assert found["judged"] == ["walls, virial", "pairs, virial"]
+    assert found["compared"] == ["walls, virial", "pairs, virial"]
     assert found["no_theory"] is None
 
 
@@ -96,7 +99,7 @@ def test_check_without_a_theory_says_so(overrides, why, tmp_path):
 
 
 def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
-    """Their Z is in the table without one; of several gases those with a theory are judged, and named."""
+    """Their Z is in the table without one; of several gases those with a theory are compared, and named."""
     (tmp_path / "scene.toml").write_text(SCENE.replace("collisions_per_disc = 100", "events = 2000"))
     dense = ("--set", "species.radius=1.2", "--set", "species.count=58", "--set", "species.placement=lattice")
     logs = [tmp_path / f"{name}.h5" for name in ("one", "two", "dilute")]

@@ -12,7 +12,7 @@ from helpers.support import ROOT, called
 from idealgas_cli._tables import print_tables
 from idealgas_cli._terminal import echo, terminal
 
-from idealgas.analysis.core.style import name_rows, panels, save, show_names
+from idealgas.analysis.core.style import disable_mathtext, name_rows, panels, save
 from idealgas.analysis.core.tables import Table
 from idealgas.errors import plain
 from idealgas.report.page import escape
@@ -49,7 +49,7 @@ def test_names_in_a_picture(tmp_path):
     ax.set_xlabel(NASTY)
     ax.legend()
     save(figure, tmp_path / "picture.png")
-    show_names(figure)
+    disable_mathtext(figure)
     file = io.StringIO()
     figure.savefig(file, format="svg")
     assert file.getvalue().count(r"10^{6}") == 1

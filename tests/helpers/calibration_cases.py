@@ -41,13 +41,13 @@ def box(log: Log) -> Named:
     """Pressure, rates, flights, temperature and the heat capacity of a closed box."""
     found = pressure(log)
     for route in found.routes:
-        yield route.name, route.compressibility
+        yield route.name, route.compressibility_factor
     yield "collision rate", found.collision_rates[0].rate
     (free,) = found.free_paths
     yield from (("free path", free.path), ("free time", free.time), ("mean speed", free.speed))
     yield "temperature along x", temperature(log).species[0].x
     yield "heat capacity E/T", heat_capacity(log).routes["E/T"]
-    for quantity in ("vx", "free-path", "wait"):
+    for quantity in ("vx", "free-path", "waiting-time"):
         yield f"mean {quantity} (histogram)", histogram(log, quantity).distributions[0].mean
 
 
@@ -65,7 +65,7 @@ def periodic(log: Log) -> Named:
     """Transport in a periodic box, and its curves at one lag and at contact."""
     found = transport(log)
     (disc,), (pairs,), (contact,) = found.diffusion, found.pair_distributions, found.contacts
-    yield "pairs, virial", pressure(log).routes[-1].compressibility
+    yield "pairs, virial", pressure(log).routes[-1].compressibility_factor
     yield "contact value", contact.value
     yield "g(r) at contact", Estimate(pairs.value[0], pairs.error[0], INSTANTS)
     yield "diffusion coefficient", disc.coefficient

@@ -35,7 +35,7 @@ def test_both_directions_have_one_pressure(tmp_path, overrides, reached):
     simulate(parse_scene(GAS, overrides=overrides), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         found = registry.analyse(log, "pressure", start=1.0)
-    z = {route.name: route.compressibility for route in found.routes}
+    z = {route.name: route.compressibility_factor for route in found.routes}
     left, bottom = z["left wall"], z["bottom wall"]
     deviation = abs(left.value - bottom.value) / math.hypot(left.standard_error, bottom.standard_error)
     assert deviation < 4 if reached else deviation > 20

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.ensemble import kept_momentum
+from idealgas.analysis.core.ensemble import conserved_momentum
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -26,5 +26,5 @@ def test_energy_and_momentum(shipped_scene, tmp_path):
         assert all((np.diff(lost) > 0).all() for lost in found.dissipated.values())
         momentum = log.observables["momentum"][1]
         size = (log.discs.mass * np.hypot(*log.discs.velocity.T)).sum()
-        assert np.abs(momentum - momentum[0])[:, kept_momentum(log)].max(initial=0.0) < 1e-12 * size
+        assert np.abs(momentum - momentum[0])[:, conserved_momentum(log)].max(initial=0.0) < 1e-12 * size
         assert len(found.samples) >= 2

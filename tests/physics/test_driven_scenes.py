@@ -11,7 +11,7 @@ from scipy import stats
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import estimate, mean, ratio
 from idealgas.analysis.evolution.measure import evolution
-from idealgas.analysis.evolution.theory import expected_course, push
+from idealgas.analysis.evolution.theory import expected_law, push
 from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.theory import hard_discs
 
@@ -80,7 +80,7 @@ def test_conduction(run):
         fluxes.append((found.heat["left"].value, -found.heat["right"].value))
         slopes.append(-slope)
         ends.append((middle - 10 * slope, middle + 10 * slope))
-        pressures.append((n * t * hard_discs.compressibility(math.pi * n * 0.01))[1:-1])
+        pressures.append((n * t * hard_discs.compressibility_factor(math.pi * n * 0.01))[1:-1])
     left, right = np.array(fluxes).T
     agrees(of_runs(left / right, 1.0), 0.05)
     conductivity = np.mean(fluxes, axis=1) / 5 / (2 / 3 * np.array(slopes))
@@ -105,7 +105,7 @@ def test_compression(run):
         log = run("compression", f"scene.seed={seed}")
         course = evolution(log)
         assert np.abs(course.balance).max() < 1e-10
-        assert course.given["right"][-1] == pytest.approx(course.parts["motion"][-1] - 400, rel=1e-10)
+        assert course.given["piston"][-1] == pytest.approx(course.parts["motion"][-1] - 400, rel=1e-10)
         found.append(course.temperature[-1])
     lengths = np.linspace(20, 10, 129)
     middles = (lengths[1:] + lengths[:-1]) / 2
@@ -142,7 +142,7 @@ def test_piston(run):
     assert np.abs(course.balance).max() < 1e-10
     n, force, diameter = 200, 20.0, 0.04
     energy = 200 + force * (10 - diameter)
-    law = expected_course(log, np.zeros(1))
+    law = expected_law(log, np.zeros(1))
     a, b = n * push(log, law.piston) * (law.piston - diameter) + 1, n + 0.5
     place = piston_at(log, np.arange(100.0, 5990.0, 5.0))
     share = force * (place - diameter) / energy

@@ -43,7 +43,7 @@ def million(request, tmp_path_factory):
 
 def test_pressure_collision_rate_and_free_path(million):
     result = pressure(million)
-    z = {route.name: route.compressibility for route in result.routes}
+    z = {route.name: route.compressibility_factor for route in result.routes}
     for name, estimate in z.items():
         assert abs(estimate.deviation) < STANDARD_ERRORS, name
     assert z["pairs, virial"].standard_error < 1e-3 * z["pairs, virial"].value
@@ -62,7 +62,7 @@ def test_velocities(million, quantity):
     assert all(test.p_value > LEAST_P for test in found.tests)
 
 
-@pytest.mark.parametrize("quantity", ["free-path", "free-time", "wait"])
+@pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time"])
 def test_free_flights_and_waits(million, quantity):
     """The laws are those of a dilute gas; at φ = 0.1 to 0.3 they are off by 0.006 in the distribution function."""
     (found,) = histogram(million, quantity).distributions

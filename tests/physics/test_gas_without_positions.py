@@ -76,13 +76,13 @@ def test_velocities_in_equilibrium(log, quantity):
     assert fixed.law_name == "fixed energy, D = 998"
 
 
-@pytest.mark.parametrize("quantity", ["free-path", "free-time", "wait"])
+@pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time"])
 def test_time_is_that_of_kinetic_theory(log, quantity):
     """Collision rate and mean free path, and the laws of free flights, which a gas without memory follows exactly."""
     (found,) = histogram(log, quantity).distributions
     assert found.samples > 4_000
     assert found.tests[0].p_value > LEAST_P
-    if quantity != "wait":
+    if quantity != "waiting-time":
         assert abs(found.mean.deviation) < STANDARD_ERRORS
         assert found.mean.standard_error < 3e-3 * found.mean.value
 

@@ -57,10 +57,10 @@ def gas(number, packing_fraction, collisions, placement="random", seed=5):
 @pytest.mark.parametrize("radius", [0.1, 0.22, 0.24, 0.26])
 def test_two_discs_pass(radius, sides, measured):
     found = measured(few(radius, sides))
-    verdict = found.check()
-    assert verdict.agrees is True
-    assert verdict.judged == ((PAIRS,) if sides else (WALLS, PAIRS))
-    z = found.routes[-1].compressibility
+    checked = found.check()
+    assert checked.agrees is True
+    assert checked.compared == ((PAIRS,) if sides else (WALLS, PAIRS))
+    z = found.routes[-1].compressibility_factor
     assert z.theory_error == 0  # exact
     assert z.standard_error < 0.02 * (z.value - 1)
 
@@ -79,7 +79,7 @@ def test_four_discs_pass(radius, sides, measured):
     species = f'name = "gas"\ncount = 4\nradius = {radius}\ntemperature = 1\n'
     found = measured(f"[box]\nsize = [1, 1]\n{sides}[[species]]\n{species}[run]\nevents = 100000\n")
     assert found.check().agrees is True
-    z = found.routes[-1].compressibility
+    z = found.routes[-1].compressibility_factor
     assert 0 < z.theory_error < 0.04 * (z.value - 1)
     assert z.standard_error < 0.02 * (z.value - 1)
 
@@ -101,7 +101,7 @@ def test_two_per_cent_too_much_is_found(number, packing_fraction, collisions, pl
     """The same run passes as it is, and fails with all pair impulses scaled by 1.02."""
     text = gas(number, packing_fraction, collisions, placement)
     found = measured(text)
-    z = found.routes[-1].compressibility
+    z = found.routes[-1].compressibility_factor
     assert z.standard_error < LARGEST_ERROR * (z.value - 1)
     assert found.check().agrees is True
     finish = Impacts.finish
@@ -113,7 +113,7 @@ def test_two_per_cent_too_much_is_found(number, packing_fraction, collisions, pl
     monkeypatch.setattr(Impacts, "finish", scaled)
     found = measured(text)
     assert found.check().agrees is False
-    assert found.routes[-1].compressibility.deviation > 4
+    assert found.routes[-1].compressibility_factor.deviation > 4
 
 
 NO_THEORY = {
@@ -169,11 +169,11 @@ def test_walls_in_short_windows(collisions, most, tmp_path):
         width = log.end_time * collisions / (22 + 80 * collisions)
         start = 20 * log.end_time / (22 + 80 * collisions)
         found = [pressure(log, start + k * width, start + (k + 1) * width).routes[:5] for k in range(80)]
-    off = [route.compressibility.deviation for routes in found for route in routes]
+    off = [route.compressibility_factor.deviation for routes in found for route in routes]
     known = np.array([one for one in off if one is not None])
     assert len(known) > 380
     assert 1 - 4 / math.sqrt(200) < np.sqrt((known**2).mean()) < most
-    samples = np.array([route.compressibility.independent_samples for routes in found for route in routes[:4]])
+    samples = np.array([route.compressibility_factor.independent_samples for routes in found for route in routes[:4]])
     assert np.median(samples) < 250 * collisions
 
 
@@ -194,7 +194,7 @@ def test_thermostat_collisions_are_momentum_from_outside(log, tmp_path):
     off = {route.name: [] for route in windows[0]}
     for routes in windows:
         for route in routes:
-            off[route.name].append(route.compressibility.deviation)
+            off[route.name].append(route.compressibility_factor.deviation)
     rms = {name: math.sqrt(np.mean(np.square(values))) for name, values in off.items()}
     assert abs(rms[WALLS] - 1) < 4 / math.sqrt(240)
     single = math.sqrt(np.mean([rms[f"{side} wall"] ** 2 for side in ("left", "right", "bottom", "top")]))

@@ -32,7 +32,7 @@ def test_periodic(run):
     assert np.abs(momentum - momentum[0]).max() < 1e-12 * np.hypot(*log.discs.velocity.T).sum()
     found = pressure(log)
     (route,) = found.routes
-    agrees(route.compressibility, 2e-3)
+    agrees(route.compressibility_factor, 2e-3)
     assert found.check().agrees
     (rate,) = found.collision_rates
     agrees(rate.rate, 0.01)
@@ -84,7 +84,7 @@ def test_free_expansion(run):
     assert np.abs(kinetic / kinetic[0] - 1).max() < 1e-12
     radius = log.discs.radius
     for start, end, width in ((0, 30, 10.0), (100, 300, 20.0)):
-        z = hard_discs.box_compressibility(radius[:1], [1000], (width, 10.0))
+        z = hard_discs.box_compressibility_factor(radius[:1], [1000], (width, 10.0))
         expected = 1000 * z / ((width - 2 * radius[0]) * 10)
         agrees(mean(wall_pressure(log, start, end), expected), 0.06)
     left, right = profile(log, "x", bins=2, start=100).species[0].density
@@ -185,11 +185,11 @@ def test_cooling(run):
     Flow in long waves is not cooled by collisions but by viscosity, and so keeps somewhat more than its T/2 a wave. In
     this small box that slows the cooling by 1 or 2 % in the end, which the runs can hardly tell.
     """
-    courses = [evolution(run("cooling", f"scene.seed={seed}")) for seed in range(1, 13)]
+    curves = [evolution(run("cooling", f"scene.seed={seed}")) for seed in range(1, 13)]
     for instant in (32, 64, 128, 256):
-        ratios = [course.temperature[instant] / course.law.temperature[instant] for course in courses]
+        ratios = [course.temperature[instant] / course.law.temperature[instant] for course in curves]
         agrees(of_runs(ratios, 1.0), 0.015)
-    assert courses[0].temperature[-1] < 0.02
+    assert curves[0].temperature[-1] < 0.02
 
 
 def test_sound_of_a_fluid(run):

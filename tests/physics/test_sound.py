@@ -1,4 +1,4 @@
-"""Sound of a large gas against what the other analyses measure: pressure, viscosities and heat conductivity."""
+"""Sound of a large gas against what the other analyses measure: pressure, viscosities and thermal conductivity."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def test_the_chain_agrees_with_itself(tmp_path):
             currents = transport(log, end=1500.0).collective.coefficients
         found = {name: current.value.value for name, current in currents.items()}
         gamma = waves[-1].exponent.theory
-        heat = found["heat_conductivity"] / (density * gamma)
+        heat = found["thermal_conductivity"] / (density * gamma)
         chain.append(((found["viscosity"] + found["bulk_viscosity"]) / density + (gamma - 1) * heat) / 2)
     speed, damping = (mean_of_replicates([getattr(wave, name) for wave in waves]) for name in ("speed", "damping"))
     assert speed.standard_error < 0.005 * speed.value

@@ -1,4 +1,4 @@
-"""Viscosity and heat conductivity of periodic gases against Enskog's theory, from the events of several runs.
+"""Viscosity and thermal conductivity of periodic gases against Enskog's theory, from the events of several runs.
 
 Minutes for each state; run by hand.
 """
@@ -40,7 +40,7 @@ def over_theory(found: list[Estimate]) -> Estimate:
     return mean_of_replicates([one.times(1 / one.theory) for one in found])
 
 
-FIXED = {"viscosity": 2.0, "heat_conductivity": 6.0}
+FIXED = {"viscosity": 2.0, "thermal_conductivity": 6.0}
 """Part by which N discs of a dilute gas have smaller currents at fixed energy and momentum, times N.
 
 ⟨(Σ m v_x v_y)²⟩ is N T² (1 - 1/N)²; ⟨(Σ m v² v_x)²⟩ is smaller by (1 - 1/N)(1 - 2/N) and, in D = 2N - 2 degrees of

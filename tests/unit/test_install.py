@@ -33,7 +33,7 @@ with open_log("run.h5") as log:
     state: LogState = log.state_at(1.5)
     print(state.position.mean(), [len(hits.time) for hits in log.events(disc=0)])
     for route in idealgas.pressure(log, start=0.5).routes:
-        print(route.name, route.compressibility.value, route.compressibility.interval(0.9)[0])
+        print(route.name, route.compressibility_factor.value, route.compressibility_factor.interval(0.9)[0])
     print(analyse(log, "temperature").as_dict()["expected"], idealgas.heat_capacity(log).number)
 """
 """What a user writes."""
@@ -42,7 +42,7 @@ WRONG = {
     'load_scene("scene.toml"': "load_scene(1",
     "summary.events": "summary.event",
     "idealgas.pressure(log, start=0.5)": "idealgas.presure(log)",
-    "compressibility.value": "compressibility.val",
+    "compressibility_factor.value": "compressibility_factor.val",
     "state.position": "state.positions",
     "start=0.5": "start='early'",
 }

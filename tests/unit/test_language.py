@@ -36,6 +36,13 @@ PATTERNS = {
     r"(?:events|rows|hits|collisions|kicks|bounces|digits|file|row|column|entry|line|core) an? "
     r"(?:disc|law|analysis|effect|row|column|core|second|process|species|point)": "per",
     r"premises?": "caveat, condition",
+    r"heat conductivity": "thermal conductivity",
+    r"place of the piston": "piston position",
+    r"dev\./s\.e\.": "deviation (σ)",
+    r"verdicts?": "result of a check",
+    r"in_words": "format_estimate",
+    r"show_names": "disable_mathtext",
+    r"kept_momentum": "conserved_momentum",
     r"on another day|an earlier version|at the time of writing|this evening": "present tense, no diary",
 }
 """Regular expressions of words, and what to write instead."""

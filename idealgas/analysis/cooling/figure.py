@@ -22,7 +22,7 @@ def cooling_figure(result: Cooling) -> Figure:
     ax = next(rest)
     ax.plot(result.collisions, result.scatter, color=COLOURS[0], label="numbers: variance over mean")
     ax.plot(result.collisions, result.flow, color=COLOURS[1], label="momenta: square over that by chance")
-    ax.set(ylabel=f"in {result.cells} cells (no unit)", xlabel="collisions of a disc", yscale="log")
+    ax.set(ylabel=f"in {result.cells} cells (no unit)", xlabel="collisions per disc", yscale="log")
     for ax in axes:
         ax.legend(frameon=False, fontsize="small")
     return figure
@@ -30,9 +30,9 @@ def cooling_figure(result: Cooling) -> Figure:
 
 def _temperatures(ax: Axes, result: Cooling) -> None:
     shown = result.time > 0
-    ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="m v²/2 a disc")
+    ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="kinetic energy per disc")
     if result.spin is not None:
-        ax.plot(result.time[shown], result.spin[shown], color=COLOURS[1], label="I ω² a disc")
+        ax.plot(result.time[shown], result.spin[shown], color=COLOURS[1], label="I ω² per disc")
     for law, label in ((result.law, "law of a uniform gas"), (result.spin_law, None)):
         if law is not None:
             ax.plot(result.time[shown], law[shown], "--", color=GREY, label=label)
@@ -46,4 +46,4 @@ def _mean(ax: Axes, result: Cooling, series: np.ndarray, found: Estimate, label:
     ax.plot(window, [found.value] * 2, color=COLOURS[0], label="mean")
     if found.theory is not None:
         ax.axhline(found.theory, color=GREY, linestyle="--", label="theory")
-    ax.set(xlabel="collisions of a disc", ylabel=label)
+    ax.set(xlabel="collisions per disc", ylabel=label)

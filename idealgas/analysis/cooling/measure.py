@@ -13,16 +13,16 @@ from idealgas.analysis.cooling.theory import (
     RATIO_ERROR,
     TIME_ERROR,
     collision_rate,
-    expected_course,
-    grains_of,
+    expected_series,
+    granular_parameters,
 )
 from idealgas.analysis.core.caveats import narrow
-from idealgas.analysis.core.ensemble import degrees_of_freedom, drift
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, degrees_of_freedom
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.theory import granular
-from idealgas.analysis.theory.granular import Grains
+from idealgas.analysis.theory.granular import GranularParameters
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log, LogState
@@ -95,29 +95,29 @@ def cooling(
     done, in all) is called as states are read. Raises NotApplicableError where anything but collisions of equal discs
     changes the energy, or where the window is too short.
     """
-    grains, dof = grains_of(log), degrees_of_freedom(log)
+    parameters, dof = granular_parameters(log), degrees_of_freedom(log)
     first, last = span(log, None, end)
     t0 = _temperature(log, log.state_at(log.start_time), dof)
     s0 = _spin(log, log.state_at(log.start_time))
     rate = collision_rate(log, t0)
-    time = _instants(granular.cooling_time(grains, rate) if rate else last - first, first, last)
+    time = _instants(granular.cooling_time(parameters, rate) if rate else last - first, first, last)
     temperature, spin, cumulant, scatter, flow = np.empty((5, len(time)))
     counted = _Cells(log)
     for k, state in enumerate(log.frames(time)):
         temperature[k], spin[k] = _temperature(log, state, dof), _spin(log, state)
         cumulant[k] = _cumulant(log, state, dof)
-        scatter[k], flow[k] = counted.count(state.position, state.velocity - drift(log))
+        scatter[k], flow[k] = counted.count(state.position, state.velocity - centre_of_mass_velocity(log))
         if progress is not None:
             progress(k + 1, len(time))
     collisions = _collisions(log, time)
-    settled = max(SETTLED, FOLDS * granular.relaxation(grains))
+    settled = max(SETTLED, FOLDS * granular.relaxation(parameters))
     window = np.flatnonzero(collisions >= settled if start is None else time >= start)
     if len(window) < FEWEST:
         needs = f"the averages begin after {settled:.3g}; --from T sets a start by hand"
         raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions per disc ({needs})")
     share = dof / (2 * len(log.discs))  # a conserved momentum leaves as much heat to fewer degrees of freedom
     fast = None if rate is None else rate / share
-    law = expected_course(grains, fast, t0, s0, time)
+    law = expected_series(parameters, fast, t0, s0, time)
     tenths = collisions / collisions[-1]
     early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
     together = mean_of_part(flow, tenths >= 0.9)
@@ -135,19 +135,19 @@ def cooling(
         None if law is None or log.inertia is None else law[1],
         float(time[window[0]]),
         float(time[-1]),
-        *_averages(grains, fast, t0, Course(*(series[window] for series in everything)), dof, len(log.discs)),
+        *_averages(parameters, fast, t0, TimeSeries(*(each[window] for each in everything)), dof, len(log.discs)),
         early,
         late,
         together,
         caveats=(
-            *_untested(log, grains),
+            *_untested(log, parameters),
             *narrow(log),
             *_caveats(early.value, late.value, together.value, counted.number),
         ),
     )
 
 
-class Course(NamedTuple):
+class TimeSeries(NamedTuple):
     """Series at the times of a window: as the fields of `Cooling` of these names."""
 
     time: np.ndarray
@@ -158,40 +158,42 @@ class Course(NamedTuple):
 
 
 def _averages(
-    grains: Grains, rate: float | None, t0: float, course: Course, dof: int, n: int
+    parameters: GranularParameters, rate: float | None, t0: float, series: TimeSeries, dof: int, n: int
 ) -> tuple[Estimate, Estimate, Estimate, Estimate | None]:
     """Loss per collision, Haff's time, a₂ and the temperature ratio.
 
     rate: collision rate of a disc of a gas that keeps no momentum, 1/time. t0: temperature at time 0. dof: degrees of
     freedom of the motion of the n discs.
     """
-    energy, few = course.temperature + n / dof * course.spin, 1 / dof
-    temperature = energy * (course.temperature / energy).mean()  # without the exchange between motion and spin
-    lost, apart = -np.diff(np.log(temperature)), np.diff(course.collisions)
-    expected = granular.cooling_per_collision(grains) * 2 * n / dof
-    loss = ratio(lost, apart, _theory(grains, expected, math.hypot(LOSS_ERROR, few)))
-    slopes = np.diff(temperature**-0.5) / np.diff(course.time)  # the same at all times
-    tau = None if rate is None else granular.cooling_time(grains, rate)
-    law = _theory(grains, tau, math.hypot(TIME_ERROR, few))
+    energy, few = series.temperature + n / dof * series.spin, 1 / dof
+    temperature = energy * (series.temperature / energy).mean()  # without the exchange between motion and spin
+    lost, apart = -np.diff(np.log(temperature)), np.diff(series.collisions)
+    expected = granular.cooling_per_collision(parameters) * 2 * n / dof
+    loss = ratio(lost, apart, _theory(parameters, expected, math.hypot(LOSS_ERROR, few)))
+    slopes = np.diff(temperature**-0.5) / np.diff(series.time)  # the same at all times
+    tau = None if rate is None else granular.cooling_time(parameters, rate)
+    law = _theory(parameters, tau, math.hypot(TIME_ERROR, few))
     haff = estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=law)
-    if not grains.rough:
-        a2 = _theory(grains, granular.fourth_cumulant(grains.normal), CUMULANT_ERROR)
-        return loss, haff, mean(course.cumulant, a2), None
-    share = mean(course.spin / course.temperature, _theory(grains, granular.temperature_ratio(grains), RATIO_ERROR))
-    return loss, haff, mean(course.cumulant), share
+    if not parameters.rough:
+        a2 = _theory(parameters, granular.fourth_cumulant(parameters.normal), CUMULANT_ERROR)
+        return loss, haff, mean(series.cumulant, a2), None
+    share = mean(
+        series.spin / series.temperature, _theory(parameters, granular.temperature_ratio(parameters), RATIO_ERROR)
+    )
+    return loss, haff, mean(series.cumulant), share
 
 
-def _theory(grains: Grains, value: float | None, relative: float) -> Theory | None:
-    if value is None or grains.normal < granular.TESTED_FROM:
+def _theory(parameters: GranularParameters, value: float | None, relative: float) -> Theory | None:
+    if value is None or parameters.normal < granular.TESTED_FROM:
         return None
     return Theory(value, relative * abs(value), "homogeneous cooling")
 
 
-def _untested(log: Log, grains: Grains) -> Iterator[str]:
+def _untested(log: Log, parameters: GranularParameters) -> Iterator[str]:
     """Sentences on a gas of few discs, and on losses beyond the range of the laws."""
     if (number := len(log.discs)) < FEW:
         yield f"The laws are those of many discs, and here are {number}."
-    if grains.normal < granular.TESTED_FROM:
+    if parameters.normal < granular.TESTED_FROM:
         yield f"There is no theory of collisions that lose more than those with e = {granular.TESTED_FROM:g}."
 
 
@@ -223,7 +225,7 @@ def _collisions(log: Log, time: np.ndarray) -> np.ndarray:
 
 
 def _temperature(log: Log, state: LogState, dof: int) -> float:
-    return float((log.discs.mass * ((state.velocity - drift(log)) ** 2).sum(axis=1)).sum() / dof)
+    return float((log.discs.mass * ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)).sum() / dof)
 
 
 def _spin(log: Log, state: LogState) -> float:
@@ -234,7 +236,7 @@ def _spin(log: Log, state: LogState) -> float:
 
 def _cumulant(log: Log, state: LogState, dof: int) -> float:
     """a₂ at one instant, without the bias of few discs: at fixed energy Gaussian ones have -2/(D + 2) on average."""
-    square = ((state.velocity - drift(log)) ** 2).sum(axis=1)
+    square = ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)
     return float((dof + 2) / dof * (square**2).mean() / (2 * square.mean() ** 2) - 1)
 
 

@@ -8,7 +8,7 @@ ROWS = 9
 
 
 def cooling_tables(result: Cooling) -> list[Table]:
-    """Tables of what a uniform gas keeps while it cools, and of its course."""
+    """Tables of what a uniform gas keeps while it cools, and its time series."""
     rows = [
         ("T lost per collision of a disc (share)", result.loss),
         ("Haff's time τ, T = T₀/(1 + t/τ)² (time)", result.haff),
@@ -25,12 +25,12 @@ def cooling_tables(result: Cooling) -> list[Table]:
     cells = (
         f"{result.cells} cells; scatter of numbers: variance over mean; 1, as is the momenta's, for independent discs"
     )
-    columns = {"collisions": result.collisions, "m v²/2 a disc": result.temperature}
+    columns = {"collisions": result.collisions, "kinetic energy per disc": result.temperature}
     if result.law is not None:
         columns["law"] = result.law
     if result.spin is not None:
-        columns["I ω² a disc"] = result.spin
+        columns["I ω² per disc"] = result.spin
     columns |= {"a₂": result.cumulant, "scatter": result.scatter, "flow": result.flow}
     values = zip(*(column.tolist() for column in (result.time, *columns.values())), strict=True)
-    course = Table("Course in time", ("t", *columns), [tuple(map(Number, row)) for row in values], most=ROWS)
-    return [estimates("Cooling", rows, (window, cells)), course]
+    series = Table("Time series", ("t", *columns), [tuple(map(Number, row)) for row in values], most=ROWS)
+    return [estimates("Cooling", rows, (window, cells)), series]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from idealgas.analysis.theory import granular, hard_discs
-from idealgas.analysis.theory.granular import Grains
+from idealgas.analysis.theory.granular import GranularParameters
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -18,14 +18,14 @@ CUMULANT_ERROR = 0.05
 """Relative error of a₂: terms of higher order in it."""
 
 
-def grains_of(log: Log) -> Grains:
+def granular_parameters(log: Log) -> GranularParameters:
     """Coefficients of the collisions of the discs of a log.
 
     Raises:
         NotApplicableError: unless equal discs lose energy in collisions with each other, and nothing else changes it.
     """
     properties, scene = log.scene.properties, log.scene
-    found = Grains(
+    found = GranularParameters(
         1.0 if scene.restitution is None else scene.restitution.normal,
         -1.0 if scene.rotation is None else scene.rotation.roughness,
         properties.inertia,
@@ -61,10 +61,10 @@ def collision_rate(log: Log, temperature: float) -> float | None:
     return rate if np.isfinite(rate) else None
 
 
-def expected_course(
-    grains: Grains, rate: float | None, temperature: float, spin: float, time: np.ndarray
+def expected_series(
+    parameters: GranularParameters, rate: float | None, temperature: float, spin: float, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Temperatures of motion and spin (F,) of the uniform gas at times (F,); None without a rate or a theory."""
-    if rate is None or grains.normal < granular.TESTED_FROM:
+    if rate is None or parameters.normal < granular.TESTED_FROM:
         return None
-    return granular.homogeneous_cooling(grains, rate, temperature, spin, time)
+    return granular.homogeneous_cooling(parameters, rate, temperature, spin, time)

@@ -229,6 +229,6 @@ class Analysis:
     @classmethod
     def titled_figure(cls, combined: Any) -> "Figure":
         """Picture of a combined result, with the names of the run and the analysis above it."""
-        from idealgas.analysis.core.style import entitle
+        from idealgas.analysis.core.style import add_title
 
-        return entitle(cls.figure(combined), f"{combined.title}: {cls.key}")
+        return add_title(cls.figure(combined), f"{combined.title}: {cls.key}")

@@ -31,14 +31,14 @@ ROUNDING = 1e-9
 class Ensemble:
     """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath.
 
-    drift: (2,), velocity of the centre of mass that is subtracted from all velocities, length/time; see `drift`.
+    centre_of_mass_velocity: (2,), subtracted from all velocities, length/time; 0 along axes of no conserved momentum.
     dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
     temperature: T = 2E/D, energy (k_B = 1).
     of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
     not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs.
     """
 
-    drift: np.ndarray
+    centre_of_mass_velocity: np.ndarray
     dof: float
     temperature: float
     of_axes: np.ndarray
@@ -49,24 +49,24 @@ class Ensemble:
         return self.of_axes.mean(axis=1)
 
 
-def kept_momentum(log: Log) -> np.ndarray:
+def conserved_momentum(log: Log) -> np.ndarray:
     """Whether the total momentum of the discs is conserved along x and along y: (2,) bool; see `conserved`."""
-    return conserved.kept_momentum(log.scene)
+    return conserved.conserved_momentum(log.scene)
 
 
-def drift(log: Log) -> np.ndarray:
+def centre_of_mass_velocity(log: Log) -> np.ndarray:
     """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
-    return conserved.common_motion(log.scene, log.discs)
+    return conserved.centre_of_mass_velocity(log.scene, log.discs)
 
 
-def energy_of_drift(log: Log) -> float:
+def centre_of_mass_energy(log: Log) -> float:
     """Kinetic energy of the motion of the whole gas that is conserved, energy."""
-    return conserved.energy_of_motion(log.scene, log.discs)
+    return conserved.centre_of_mass_energy(log.scene, log.discs)
 
 
 def degrees_of_freedom(log: Log) -> int:
     """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
-    return 2 * len(log.discs) - int(kept_momentum(log).sum())
+    return 2 * len(log.discs) - int(conserved_momentum(log).sum())
 
 
 def ensemble(log: Log) -> Ensemble:
@@ -91,7 +91,7 @@ def known_ensemble(log: Log) -> Ensemble | None:
     properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
     if not properties.conserves_energy or len(properties.temperatures) > 1:
         return None
-    kept, frame = kept_momentum(log), drift(log)
+    kept, frame = conserved_momentum(log), centre_of_mass_velocity(log)
     dof = 2 * len(gas) - int(kept.sum())
     energy = float((gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum())  # twice
     if log.inertia is not None:

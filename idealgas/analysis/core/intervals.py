@@ -120,7 +120,7 @@ def _total_since_collision(
             total[i], since[i] = 0.0, end[k]
 
 
-class Waits(_Intervals):
+class WaitingTimes(_Intervals):
     """Time between successive events of the gas, a pair collision being one event."""
 
     columns = ("disc", "block", "end", "partner")

@@ -14,7 +14,7 @@ from idealgas.state import Gas
 class MovingWall:
     """Depth of the room between a piston and the opposite side of the box, as a tally over the flights of a log.
 
-    The place of the piston is known at its samples and at every hit of a disc, and lies on a parabola in between. A
+    The piston position is known at its samples and at every hit of a disc, and lies on a parabola in between. A
     bounce at the piston's end stop between two such times is left out.
 
     wall: number of the side that the piston stands for. axis: along which it moves, 0 for x, 1 for y. across: its

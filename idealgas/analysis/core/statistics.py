@@ -87,15 +87,15 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class CheckResult:
     """Result of a check of measurement against theory.
 
-    agrees: whether they agree; None if theory has no value. judged: names of the quantities that were compared.
+    agrees: whether they agree; None if theory has no value. compared: names of the quantities that were compared.
     why_not: why theory has no value, as part of a sentence.
     """
 
     agrees: bool | None
-    judged: tuple[str, ...] = ()
+    compared: tuple[str, ...] = ()
     why_not: Annotated[str | None, Key("no_theory")] = None
 
     def as_dict(self) -> dict[str, Any]:
@@ -106,11 +106,11 @@ class Verdict:
         """One sentence for people."""
         if self.agrees is None:
             return f"No theory here: {self.why_not}."
-        verdict = "agree" if self.agrees else "do not agree"
-        return f"Measurement and theory {verdict} within {TOLERANCE:g} standard errors in {'; '.join(self.judged)}."
+        checked = "agree" if self.agrees else "do not agree"
+        return f"Measurement and theory {checked} within {TOLERANCE:g} standard errors in {'; '.join(self.compared)}."
 
 
-def judge(found: Iterable[tuple[str, Estimate]], why_not: str | None = None) -> Verdict:
+def check_theory(found: Iterable[tuple[str, Estimate]], why_not: str | None = None) -> CheckResult:
     """Check that every estimate with a theory agrees with it within TOLERANCE.
 
     Args:
@@ -122,10 +122,10 @@ def judge(found: Iterable[tuple[str, Estimate]], why_not: str | None = None) -> 
     """
     known = {name: one.deviation for name, one in found if one.theory is not None}
     if not known:
-        return Verdict(None, why_not=why_not)
+        return CheckResult(None, why_not=why_not)
     if any(deviation is None or not math.isfinite(deviation) for deviation in known.values()):
         raise UserError("nothing to check: too few events for an error bar")
-    return Verdict(all(abs(deviation or 0.0) <= TOLERANCE for deviation in known.values()), tuple(known))
+    return CheckResult(all(abs(deviation or 0.0) <= TOLERANCE for deviation in known.values()), tuple(known))
 
 
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:

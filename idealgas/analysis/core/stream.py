@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.errors import UserError
 from idealgas.log import Flights, Log
 from idealgas.log.flights import FlightReader
@@ -57,7 +57,7 @@ def stream(
     Velocities are relative to the centre of mass along axes where momentum is conserved. progress(done, total) is
     called with the number of rows read and the number of all rows.
     """
-    frame = drift(log)
+    frame = centre_of_mass_velocity(log)
     state = log.state_at(edges[0])
     gas = replace(log.discs, position=state.position, velocity=state.velocity - frame)
     tallies = list(tallies)

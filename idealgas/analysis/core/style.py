@@ -47,7 +47,7 @@ TITLE_CHARACTERS, TITLE_LINES = 10, 2
 """Characters of a title on an inch, and largest number of its lines."""
 
 
-def look(k: int) -> tuple[str, str, str]:
+def curve_style(k: int) -> tuple[str, str, str]:
     """Colour, line and marker of curve k of several: where a colour comes again, its line and marker are others."""
     again, colour = divmod(k, len(COLOURS))
     return COLOURS[colour], LINES[again % len(LINES)], MARKERS[again % len(MARKERS)]
@@ -115,7 +115,7 @@ class Picture(Figure):
 
     def _repr_png_(self) -> bytes:
         """The picture as PNG."""
-        show_names(self)
+        disable_mathtext(self)
         file = io.BytesIO()
         self.savefig(file, format="png")
         return file.getvalue()
@@ -128,7 +128,7 @@ def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> N
         OutputError: if the file cannot be written.
     """
     kind = Path(path).suffix.lower()
-    show_names(figure)
+    disable_mathtext(figure)
     with written(path, kind, force) as part:
         file = io.BytesIO()  # not every format of matplotlib ends well on a disk that is full
         figure.savefig(file, dpi=DPI, format=kind.removeprefix("."))
@@ -140,7 +140,7 @@ def name_rows(ax: Axes, names: Sequence[str], **options: Any) -> None:
     ax.set_yticks(range(len(names)), list(map(plain, names)), **options)
 
 
-def show_names(figure: Figure) -> None:
+def disable_mathtext(figure: Figure) -> None:
     """Show every text of a figure as it is: `$` and control characters in names have no meaning."""
     for text in figure.findobj(Text):
         text.set_text("\n".join(map(plain, text.get_text().split("\n"))))
@@ -148,7 +148,7 @@ def show_names(figure: Figure) -> None:
             text.set_parse_math(False)
 
 
-def entitle(figure: Figure, title: str) -> Figure:
+def add_title(figure: Figure, title: str) -> Figure:
     """Write a title above a picture, in at most TITLE_LINES lines, and return the picture."""
     width = int(TITLE_CHARACTERS * figure.get_figwidth())
     text = fill(plain(title), width, max_lines=TITLE_LINES, placeholder=" …")

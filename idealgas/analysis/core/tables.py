@@ -58,7 +58,7 @@ class Table:
         return [[str(cell) for cell in row] for row in rows]
 
 
-ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "dev./s.e.")
+ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "deviation (σ)")
 
 THEORY_ERROR = "± theory"
 """Heading of the error of theory, a column of those tables in which a theory has one."""
@@ -68,7 +68,7 @@ CSV_HEADS = {
     "± s.e.": "standard_error",
     "samples": "independent_samples",
     THEORY_ERROR: "theory_error",
-    "dev./s.e.": "deviation",
+    "deviation (σ)": "deviation",
 }
 """Column names in CSV that differ from the shown headings; they are those of the results of a sweep."""
 
@@ -104,7 +104,7 @@ def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath
     ]
     return [
         estimates("Collisions per disc (1/time)", [(f"{r.species} with {r.other}", r.rate) for r in rates]),
-        estimates("Between collisions of a disc (in units of length and time)", between),
+        estimates("Mean free path and time (in units of length and time)", between),
     ]
 
 

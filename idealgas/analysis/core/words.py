@@ -5,7 +5,7 @@ import math
 from idealgas.analysis.core.statistics import Estimate
 
 
-def in_words(found: Estimate) -> str:
+def format_estimate(found: Estimate) -> str:
     """An estimate with as many digits as its standard error allows, and its theory, such as "1.02 ± 0.03, theory 1"."""
     error = found.standard_error
     known = math.isfinite(error) and error > 0

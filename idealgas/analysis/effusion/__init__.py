@@ -22,7 +22,7 @@ class EffusionAnalysis(Analysis):
         Effusion,
         Effusions,
     )
-    sections = (Section("Effusion", "Share of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),)
+    sections = (Section("Effusion", "Fraction of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),)
     averages = True
     start = "the opening of the gate"
     reads = "frames"

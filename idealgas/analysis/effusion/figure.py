@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import GREY, look, panels
+from idealgas.analysis.core.style import GREY, curve_style, panels
 from idealgas.analysis.effusion.combine import Effusions
 
 
@@ -12,7 +12,7 @@ def effusion_figure(found: Effusions) -> Figure:
     groups, together = found.groups, found.together
     figure, (course, flux) = panels(2)
     for k, (name, runs) in enumerate(groups.items()):
-        colour, line, marker = look(k)
+        colour, line, marker = curve_style(k)
         beyond = np.mean([run.beyond for run in runs], axis=0)
         course.plot(runs[0].time, beyond, line, color=colour, label=name)
         if laws := [run.expected for run in runs if run.expected is not None]:

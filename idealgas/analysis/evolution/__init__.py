@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.evolution.measure import Evolution, evolution
 from idealgas.analysis.evolution.tables import evolution_tables
-from idealgas.analysis.evolution.words import evolution_words
+from idealgas.analysis.evolution.words import evolution_summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +32,7 @@ class EvolutionAnalysis(Analysis):
 
     measure = staticmethod(evolution)
     tables = staticmethod(evolution_tables)
-    summary = staticmethod(evolution_words)
+    summary = staticmethod(evolution_summary)
 
     @staticmethod
     def figure(result: Any) -> "Figure":

@@ -6,14 +6,14 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import drift, energy_of_drift
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import span
-from idealgas.analysis.evolution.course import PressureCourse, pressure_course
-from idealgas.analysis.evolution.theory import Law, expected_course
+from idealgas.analysis.evolution.pressure_series import PressureSeries, pressure_series
+from idealgas.analysis.evolution.theory import Law, expected_law
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -23,20 +23,23 @@ from idealgas.scene.walls import walls_inside
 INSTANTS = 257
 
 
+PISTON = "piston"
+"""Name of the side with the piston among the sources of energy."""
+
+
 @dataclass(frozen=True)
 class Evolution(Result):
     """Evolution of a gas, at F evenly spaced times and at the P times of the samples stored during the run.
 
     time: (F,), times. temperature: (F,), mean m v²/2 per disc, energy. spin: (F,), mean I ω² per disc, energy; None
-    without spin. beyond: share of the discs of each species beyond the first gate along an axis, (F,), by the name of
-    the species. law: theory of the temperature at these times; None without one.
-    samples: (P,), times of the samples. parts: parts of the energy, (P,), by name. given: energy that each wall, and
-    a heat bath, gave since the start, (P,), by name. piston: (P,), its coordinate, length; None without one.
-    balance: (P,), change since the start of the energy of discs and piston minus the energy from outside, relative to
-    the largest part of the energy: rounding only. dissipated: energy lost since the start, (P,), in collisions of two
-    discs and at walls, by name.
-    pressure: mechanical pressure on walls in bins of time; None without events or hits of walls. rest: mean place of a
-    piston with a mass once it is steady, length; None without one, or if it is not steady by the end.
+    without spin. beyond: fraction of the discs of each species beyond the first gate along an axis, (F,), by the name
+    of the species. law: theory of the temperature at these times; None without one. samples: (P,), times of the
+    samples. parts: parts of the energy, (P,), by name. given: energy from each wall, the piston (its work) and a heat
+    bath since the start, (P,), by name. piston: (P,), its coordinate, length; None without one. balance: (P,), change
+    since the start of the energy of discs and piston minus the energy from outside, relative to the largest part of the
+    energy: rounding only. dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by
+    name. pressure: mechanical pressure on walls in bins of time; None without events or hits of walls. rest: mean
+    position of a piston with a mass once it is steady, length; None without one, or if it is not steady by the end.
     """
 
     time: np.ndarray
@@ -50,7 +53,7 @@ class Evolution(Result):
     piston: Annotated[np.ndarray | None, OPTIONAL]
     balance: np.ndarray
     dissipated: dict[str, np.ndarray]
-    pressure: PressureCourse | None = None
+    pressure: PressureSeries | None = None
     rest: Estimate | None = None
 
     @property
@@ -96,8 +99,8 @@ def evolution(
     inside = (samples >= first) & (samples <= last)
     time, temperature, spin, beyond = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
     parts, given, dissipated, balance = _account(log, observed)
-    law = expected_course(log, time)
-    pressure = pressure_course(log, first, last)
+    law = expected_law(log, time)
+    pressure = pressure_series(log, first, last)
     return Evolution(
         time,
         temperature,
@@ -116,22 +119,22 @@ def evolution(
     )
 
 
-Course = tuple[np.ndarray, np.ndarray, np.ndarray | None, dict[str, np.ndarray]]
+TimeSeries = tuple[np.ndarray, np.ndarray, np.ndarray | None, dict[str, np.ndarray]]
 
 
-def _samples(log: Log, inside: np.ndarray) -> Course:
+def _samples(log: Log, inside: np.ndarray) -> TimeSeries:
     """Evolution from the samples stored during the run, for a log without events."""
     time, kinetic = log.observables["kinetic_energy"]
-    n, kinetic = len(log.discs), kinetic - energy_of_drift(log)
+    n, kinetic = len(log.discs), kinetic - centre_of_mass_energy(log)
     spin = None
     if "rotational_energy" in log.observables:
         spin = 2 * log.observables["rotational_energy"][1][inside] / n
     return time[inside], kinetic[inside] / n, spin, {}
 
 
-def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> Course:
+def _frames(log: Log, first: float, last: float, progress: Callable[[int, int], None] | None) -> TimeSeries:
     """Evolution at evenly spaced times, from the events of a log."""
-    gas, frame, inertia, gate = log.discs, drift(log), log.inertia, _gate(log)
+    gas, frame, inertia, gate = log.discs, centre_of_mass_velocity(log), log.inertia, _gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -157,11 +160,11 @@ def _gate(log: Log) -> tuple[int, float] | None:
     return None
 
 
-def _rest(log: Log, course: PressureCourse | None, law: Law | None) -> Estimate | None:
+def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate | None:
     """Mean place of a piston with a mass from when on it is steady, beside that of theory."""
-    if not log.scene.piston or not log.scene.piston.mass or course is None or course.track is None:
+    if not log.scene.piston or not log.scene.piston.mass or series is None or series.track is None:
         return None
-    places = course.track[1]
+    places = series.track[1]
     start = detect_equilibration([places])
     if start is None:
         return None
@@ -173,8 +176,13 @@ def _rest(log: Log, course: PressureCourse | None, law: Law | None) -> Estimate 
 Series = dict[str, np.ndarray]
 
 
+def source_label(name: str) -> str:
+    """Heading of the energy that a wall, the piston or a heat bath gave to the discs."""
+    return "work done by the piston" if name == PISTON else f"energy from {name}"
+
+
 def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
-    """Parts of the energy by name, given by walls and a heat bath, lost by collisions of each kind, and the balance."""
+    """Parts of the energy, energy from walls and a heat bath, energy lost by kind of collision, and the balance."""
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
     given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
@@ -191,7 +199,7 @@ def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.nda
     from_outside = given[:, counted].sum(axis=1) + bath
     total = sum(parts.values()) + unpaid - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
-    walls = [wall.name for wall in log.walls]
+    walls = [PISTON if piston and wall.name == piston.side else wall.name for wall in log.walls]
     sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath}
     rounding = ROUNDING * scale  # of elastic collisions
     by_source = {name: series for name, series in sources.items() if series.any()}

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from idealgas.analysis.core.tables import Number, Table
-from idealgas.analysis.evolution.course import PressureCourse
-from idealgas.analysis.evolution.measure import Evolution
+from idealgas.analysis.evolution.measure import Evolution, source_label
+from idealgas.analysis.evolution.pressure_series import PressureSeries
 
 ROWS = 9
 """Number of instants that are shown; the picture and CSV have all."""
@@ -14,31 +14,31 @@ ROWS = 9
 
 def evolution_tables(result: Evolution) -> list[Table]:
     """Tables of temperature and of discs beyond the gate, of the pressure, and of the energies."""
-    course = {"m v²/2 a disc": result.temperature}
+    series = {"kinetic energy per disc": result.temperature}
     if result.law is not None:
-        course["law"] = result.law.temperature
+        series["law"] = result.law.temperature
     if result.spin is not None:
-        course["I ω² a disc"] = result.spin
-    course |= {f"{name} beyond the gate": share for name, share in result.beyond.items()}
+        series["I ω² per disc"] = result.spin
+    series |= {f"fraction of {name} beyond the gate": share for name, share in result.beyond.items()}
     energy = {f"energy of {name}": values for name, values in result.parts.items()}
-    energy |= {f"given by {name}": values for name, values in result.given.items()}
+    energy |= {source_label(name): values for name, values in result.given.items()}
     energy |= {f"lost by {name}": values for name, values in result.dissipated.items()}
     if result.piston is not None:
-        energy["piston at"] = result.piston
+        energy["piston position"] = result.piston
     energy["balance, relative"] = result.balance
     notes = (f"law: {result.law.text if result.law else 'none for this scene'}",)
     return [
-        _in_time("Course in time", result.time, course, notes),
+        _in_time("Time series", result.time, series, notes),
         *([_pressure(result.pressure)] if result.pressure else []),
         _in_time("Energy", result.samples, energy),
     ]
 
 
-def _pressure(course: PressureCourse) -> Table:
-    columns = {"area": course.area}
-    for name in course.shown:
-        columns |= {f"P on {name}": course.pressure[name], f"± s.e. ({name})": course.error[name]}
-    return _in_time("Pressure on walls, means over bins of time", course.middles, columns)
+def _pressure(series: PressureSeries) -> Table:
+    columns = {"area": series.area}
+    for name in series.shown:
+        columns |= {f"P on {name}": series.pressure[name], f"± s.e. ({name})": series.error[name]}
+    return _in_time("Pressure on walls, means over bins of time", series.middles, columns)
 
 
 def _in_time(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], notes: Sequence[str] = ()) -> Table:

@@ -6,7 +6,12 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import column_temperature, drift, kept_momentum, known_ensemble
+from idealgas.analysis.core.ensemble import (
+    centre_of_mass_velocity,
+    column_temperature,
+    conserved_momentum,
+    known_ensemble,
+)
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.log import Log
@@ -58,7 +63,7 @@ class StateLines:
     adiabat: np.ndarray | None
 
 
-def expected_course(log: Log, time: np.ndarray) -> Law | None:
+def expected_law(log: Log, time: np.ndarray) -> Law | None:
     """Law of the temperature at times (F,); None if no simple theory applies to the scene."""
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
@@ -88,11 +93,11 @@ def haff_time(log: Log) -> float:
     """
     gas, table = log.discs, log.scene.restitution
     e = 1.0 if table is None else table.normal
-    n, share = len(gas), 1 - kept_momentum(log).mean() / len(gas)
+    n, share = len(gas), 1 - conserved_momentum(log).mean() / len(gas)
     t = _kinetic(log) / (n * share)
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(t, gas.mass[0])
-    return share * granular.cooling_time(granular.Grains(e), rate)
+    return share * granular.cooling_time(granular.GranularParameters(e), rate)
 
 
 def _haff(log: Log, time: np.ndarray) -> Law | None:
@@ -110,7 +115,7 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
 def _kinetic(log: Log) -> float:
     """Kinetic energy at the start, relative to the centre of mass along axes where momentum is conserved."""
     gas = log.discs
-    return float((gas.mass * ((gas.velocity - drift(log)) ** 2).sum(axis=1)).sum() / 2)
+    return float((gas.mass * ((gas.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)).sum() / 2)
 
 
 def room(log: Log, piston: np.ndarray) -> np.ndarray:
@@ -126,7 +131,7 @@ def push(log: Log, length: float) -> float:
     gas, table = log.discs, log.scene.piston
     size = list(gas.box)
     size[0 if table is None else table.axis] = length
-    z = hard_discs.box_compressibility(gas.radius[:1], [len(gas)], (size[0], size[1]), log.periodic)
+    z = hard_discs.box_compressibility_factor(gas.radius[:1], [len(gas)], (size[0], size[1]), log.periodic)
     return z / (length - 2 * float(gas.radius[0]))
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import energy_of_drift
+from idealgas.analysis.core.ensemble import centre_of_mass_energy
 from idealgas.analysis.core.equilibration import equilibrated_from, measure
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -54,7 +54,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         grid = np.arange(first_time, last + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample at a point of the grid, but for rounding
         at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(last, "right"))]
-    common = energy_of_drift(log)
+    common = centre_of_mass_energy(log)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
     if scene.piston and scene.piston.mass:

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.ensemble import degrees_of_freedom, energy_of_drift
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean
@@ -178,8 +178,10 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
     phi = gas.packing_fraction * gas.area / (room * across)
     if phi > hard_discs.HIGHEST:
         return None, None
-    z, step = float(hard_discs.compressibility(phi)), 1e-4 * phi
-    slope = float(hard_discs.compressibility(phi + step) - hard_discs.compressibility(phi - step)) / (2 * step)
+    z, step = float(hard_discs.compressibility_factor(phi)), 1e-4 * phi
+    slope = float(hard_discs.compressibility_factor(phi + step) - hard_discs.compressibility_factor(phi - step)) / (
+        2 * step
+    )
     excess = z * z / (z + phi * slope)
     return Theory(per_disc + excess, 0.0, SOURCE), excess
 
@@ -189,13 +191,13 @@ def _closed_box(
 ) -> Measured:
     """Heat capacity E/T of a gas in a closed box: hard discs have no energy scale, so that E is proportional to T."""
     measured = pressure(log, start, end, progress)
-    walls = next((route.compressibility for route in measured.routes if route.name == WALLS), None)
+    walls = next((route.compressibility_factor for route in measured.routes if route.name == WALLS), None)
     if walls is None or walls.theory is None or not walls.value > 0:
         raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, expected = measured.number, degrees_of_freedom(log) / (2 * measured.number)
-    energy = (log.discs.kinetic_energy - energy_of_drift(log)) / n
+    energy = (log.discs.kinetic_energy - centre_of_mass_energy(log)) / n
     error = energy * t.standard_error / t.value**2
     per_disc = Estimate(energy / t.value, error, t.independent_samples, expected, relative * expected)
     exact = Estimate(energy, 0.0, math.inf)

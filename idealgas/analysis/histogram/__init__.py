@@ -1,6 +1,6 @@
 """Measure the distribution of a quantity and test it against theory.
 
-Velocities and energies are weighted with the time that discs spend at them. A wait is the time between successive
+Velocities and energies are weighted with the time that discs spend at them. A waiting time is that between successive
 events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
 """
 
@@ -31,7 +31,7 @@ class HistogramAnalysis(Analysis):
         _section("Energies", "energy"),
         _section("Free paths", "free-path"),
         _section("Free times", "free-time"),
-        _section("Waits between events", "wait"),
+        _section("Waiting times between events", "waiting-time"),
     )
     options = (
         Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),

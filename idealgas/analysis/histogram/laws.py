@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.ensemble import Ensemble, energy_of_drift, known_ensemble, nonequilibrium_reason
+from idealgas.analysis.core.ensemble import Ensemble, centre_of_mass_energy, known_ensemble, nonequilibrium_reason
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -74,7 +74,7 @@ def _highest(log: Log, start: float | None, end: float | None) -> float:
     time, kinetic = log.observables["kinetic_energy"]
     first, last = log.start_time if start is None else start, log.end_time if end is None else end
     inside = (time >= first) & (time <= last)
-    highest = (float(kinetic[inside].max(initial=0.0)) - energy_of_drift(log)) / len(log.discs)
+    highest = (float(kinetic[inside].max(initial=0.0)) - centre_of_mass_energy(log)) / len(log.discs)
     highest = max(highest, log.discs.temperature) if not inside.any() else highest
     if not highest > 0:
         raise UserError(f"{log.path}: no disc moves")

@@ -19,7 +19,7 @@ from idealgas.analysis.core.ensemble import nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
-from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
 from idealgas.analysis.histogram.laws import expectation
@@ -36,7 +36,7 @@ QUANTITIES = {
     "energy": "energy",
     "free-path": "length",
     "free-time": "time",
-    "wait": "time",
+    "waiting-time": "time",
 }
 """Quantities whose distribution can be measured, with their units."""
 
@@ -113,11 +113,11 @@ def histogram(
     """Measure a distribution between two times of a log, species by species, and test it against its laws.
 
     quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with discs;
-    or wait, the time between two successive events of the gas. Velocities are compared with the Maxwell-Boltzmann
-    distribution and that of N discs at fixed energy, free flights with a dilute gas, waits with an exponential one.
-    The p-values are those of Kolmogorov and Smirnov's test of decorrelated samples. Under gravity or a piston the
-    temperature of the law is the measured one. A gas that never comes to equilibrium has no law, and its window is
-    the whole log by default.
+    or waiting-time, the time between two successive events of the gas. Velocities are compared with the
+    Maxwell-Boltzmann distribution and that of N discs at fixed energy, free flights with a dilute gas, and waiting
+    times with an exponential distribution. The p-values are those of the Kolmogorov-Smirnov test of decorrelated
+    samples. Under gravity or a piston the temperature of the law is the measured one. A gas that never comes to
+    equilibrium has no law, and its window is the whole log by default.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if no disc moves or if there are too few events in the window.
@@ -126,8 +126,8 @@ def histogram(
         start = log.start_time
     if quantity in VELOCITY_QUANTITIES:
         window, found, no_law = _velocities(log, quantity, start, end, progress)
-    elif quantity == "wait":
-        window, found, no_law = _waits(log, start, end, progress)
+    elif quantity == "waiting-time":
+        window, found, no_law = _waiting_times(log, start, end, progress)
     else:
         window, found, no_law = _flights(log, quantity, start, end, progress)
     few = [
@@ -251,23 +251,23 @@ def _free_flight_rates(
     return known.scale, np.diag(np.full(len(discs.name), rate)), mean_speed(known.scale, discs.mass), why_not
 
 
-def _waits(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
+def _waiting_times(log: Log, start: float | None, end: float | None, progress: Progress) -> Found:
     longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
-    tally = Waits(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
+    tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
     why_not = nonstationary_reason(log)
     if log.has_positions and len(log.discs) < FEW:
         why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
-        law = distributions.WaitLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
+        law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible = {} if why_not else {"exponential": law}
     return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None)], why_not
 
 
 def _intervals(
     name: str,
-    tally: FreeFlights | Waits,
+    tally: FreeFlights | WaitingTimes,
     s: int,
     blocks: slice,
     high: float,

@@ -13,11 +13,11 @@ from idealgas.analysis.order.structure import Structure
 def order_figure(result: Order) -> Figure:
     """Picture of hexagonal order against time and distance; in a periodic box of S against wave number and vector."""
     figure, axes = panels(1 if result.structure is None else 2, 2)
-    course, correlation = axes[:2]
-    course.plot(result.time, result.course, color=COLOURS[0], label="measured")
-    course.axvspan(result.window.start, result.window.end, color=GREY, alpha=0.12, label="window of the averages")
-    course.time_axis()
-    course.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
+    series, correlation = axes[:2]
+    series.plot(result.time, result.series, color=COLOURS[0], label="measured")
+    series.axvspan(result.window.start, result.window.end, color=GREY, alpha=0.12, label="window of the averages")
+    series.time_axis()
+    series.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
     x, y, error = result.distance, result.correlation, result.correlation_error
     correlation.errorbar(x, y, error, fmt=".", ms=3, color=COLOURS[0], label="measured")
     correlation.axhline(result.whole.value**2, color=GREY, linewidth=0.9, label="|Ψ₆|² (no correlation left)")

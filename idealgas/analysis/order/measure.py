@@ -35,7 +35,7 @@ class Order(Result):
 
     window: the time that was used. frames: number of instants in it. local: mean |ψ₆| of a disc. whole: |Ψ₆|, size of
     the mean of ψ₆ over all discs. square: N ⟨|Ψ₆|²⟩, the number of discs that turn together. hexagons: share of the
-    discs with six neighbours. time, course: (F,), instants from the start of the log on, and |Ψ₆| there. distance,
+    discs with six neighbours. time, series: (F,), instants from the start of the log on, and |Ψ₆| there. distance,
     correlation, correlation_error: (B,), distance in the middle of a bin, length, g₆ = ⟨Re ψ₆*(0) ψ₆(r)⟩ of two discs
     so far apart, and its standard error. structure: structure factor; None unless the box is periodic.
     compressibility: limit of S(k) at small k by theory, nT times the isothermal compressibility; None without a theory.
@@ -48,7 +48,7 @@ class Order(Result):
     square: Estimate
     hexagons: Estimate
     time: np.ndarray
-    course: np.ndarray
+    series: np.ndarray
     distance: np.ndarray
     correlation: np.ndarray
     correlation_error: np.ndarray
@@ -98,7 +98,7 @@ def order(
         square=mean(number * whole[first:] ** 2),
         hexagons=mean(six[first:]),
         time=times,
-        course=whole,
+        series=whole,
         distance=distance,
         correlation=correlation,
         correlation_error=error,

@@ -13,7 +13,7 @@ from idealgas.analysis.pressure.combine import combine_pressure, restore_pressur
 from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample
 from idealgas.analysis.pressure.measure import Pressure, pressure
 from idealgas.analysis.pressure.tables import pressure_tables
-from idealgas.analysis.pressure.words import pressure_words
+from idealgas.analysis.pressure.words import pressure_summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,7 +39,7 @@ class PressureAnalysis(Analysis):
     tables = staticmethod(pressure_tables)
     combine = staticmethod(combine_pressure)
     restore = staticmethod(restore_pressure)
-    summary = staticmethod(pressure_words)
+    summary = staticmethod(pressure_summary)
 
     @staticmethod
     def figure(result: Any) -> "Figure":

@@ -28,5 +28,5 @@ def restore_pressure(found: dict[str, Any], label: str) -> Sample:
     """
     if not found["routes"]:
         raise UserError(f"{label}: {found['no_theory']}")
-    pairs = next(route["compressibility"] for route in found["routes"] if route["route"] == PAIRS)
+    pairs = next(route["compressibility_factor"] for route in found["routes"] if route["route"] == PAIRS)
     return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

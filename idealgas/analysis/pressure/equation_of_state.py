@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean_of_replicates
+from idealgas.analysis.core.statistics import CheckResult, Estimate, check_theory, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import SOLID, crystal
@@ -33,7 +33,7 @@ class Sample(Result):
 
     packing_fraction: float
     number: int
-    compressibility: Estimate
+    compressibility_factor: Estimate
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,11 @@ class State:
     """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
     packing_fraction: φ. number: of discs. kind: kind of gas in words; empty if unknown. runs: number of runs.
-    compressibility: mean of Z over the runs; its theory is that of the same number of discs in the same box. infinite:
-    up to φ = 0.62 Z extrapolated to an infinite gas, by the ratio of the theories, beside the resummed virial series;
-    above, and where the ratio is not known, Z as it is, beside published simulations or, of a crystal, free-volume
-    theory, or nothing. source: which theory this is; None without one. virial: virial series to B10. henderson:
+    compressibility_factor: mean of Z over the runs; its theory is that of the same number of discs in the same box.
+    infinite: up to φ = 0.62 Z extrapolated to an infinite gas, by the ratio of the theories, next to the resummed
+    virial series; above, and where the ratio is not known, Z as it is, next to published simulations or, for a crystal,
+    free-volume theory, or nothing.
+    source: which theory this is; None without one. virial: virial series to B10. henderson:
     Henderson (1975); both None above φ = 0.62.
     """
 
@@ -52,7 +53,7 @@ class State:
     number: int
     kind: Annotated[str, Key("gas")]
     runs: int
-    compressibility: Estimate
+    compressibility_factor: Estimate
     infinite: Estimate
     source: Annotated[str | None, Key("theory")]
     virial: Annotated[float | None, Key("virial_series_to_B10")]
@@ -70,7 +71,7 @@ class EquationOfState(Result):
     b2: Annotated[Estimate | None, Key("B2")]
     b3: Annotated[Estimate | None, Key("B3")]
 
-    def check(self) -> Verdict:
+    def check(self) -> CheckResult:
         """Check that Z agrees with theory in every state that has one.
 
         Raises:
@@ -79,7 +80,7 @@ class EquationOfState(Result):
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
         why_not = f"there is none for a gas of packing fraction {self.states[0].packing_fraction:.5g}"
-        return judge(zip(names, (s.infinite for s in self.states), strict=True), why_not)
+        return check_theory(zip(names, (s.infinite for s in self.states), strict=True), why_not)
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -95,7 +96,7 @@ def sample_of(measured: Pressure) -> Sample:
     """
     if not measured.routes:
         raise UserError(measured.no_theory or "")
-    pairs = next(route.compressibility for route in measured.routes if route.name == PAIRS)
+    pairs = next(route.compressibility_factor for route in measured.routes if route.name == PAIRS)
     return Sample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
 
 
@@ -125,10 +126,10 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
 
 def _state(kind: str, runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
-    found, fluid = mean_of_replicates([run.compressibility for run in runs]), phi <= hard_discs.HIGHEST
+    found, fluid = mean_of_replicates([run.compressibility_factor for run in runs]), phi <= hard_discs.HIGHEST
     infinite, source = found, "published simulations" if found.theory is not None else None
     if fluid and found.theory is not None:
-        infinite, source = found.times(float(hard_discs.compressibility(phi)) / found.theory), RESUMMED
+        infinite, source = found.times(float(hard_discs.compressibility_factor(phi)) / found.theory), RESUMMED
     elif SOLID <= phi < hard_discs.CLOSE_PACKING and found.theory is None:
         solid = crystal(phi)
         infinite, source = replace(found, theory=solid.value, theory_error=solid.error), solid.source
@@ -141,7 +142,7 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
         infinite,
         source,
         virial=float(hard_discs.virial_series(phi)) if fluid else None,
-        henderson=float(hard_discs.henderson_compressibility(phi)) if fluid else None,
+        henderson=float(hard_discs.henderson_compressibility_factor(phi)) if fluid else None,
     )
 
 

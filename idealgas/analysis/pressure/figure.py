@@ -42,9 +42,13 @@ def _of_log(result: Pressure) -> Figure:
         return _of_walls(result, result.mechanical)
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
-    values = [route.compressibility.value for route in routes]
-    errors = [route.compressibility.standard_error for route in routes]
-    known = [(route.compressibility.theory, k) for k, route in enumerate(routes) if route.compressibility.theory]
+    values = [route.compressibility_factor.value for route in routes]
+    errors = [route.compressibility_factor.standard_error for route in routes]
+    known = [
+        (route.compressibility_factor.theory, k)
+        for k, route in enumerate(routes)
+        if route.compressibility_factor.theory
+    ]
     for z, k in known:
         label = "theory of what is measured" if (z, k) == known[-1] else None
         ax.plot([z, z], [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label=label)
@@ -69,14 +73,14 @@ def _of_states(result: EquationOfState) -> Figure:
     best = np.array([state.infinite.theory or np.nan for state in result.states])
     x = np.linspace(1e-9, min(1.05 * phi.max(), hard_discs.HIGHEST), 400)
     curves = (
-        ("virial series, resummed", hard_discs.compressibility, "-", COLOURS[1]),
+        ("virial series, resummed", hard_discs.compressibility_factor, "-", COLOURS[1]),
         ("virial series to B10", hard_discs.virial_series, "--", COLOURS[2]),
-        ("Henderson 1975", hard_discs.henderson_compressibility, ":", COLOURS[3]),
+        ("Henderson 1975", hard_discs.henderson_compressibility_factor, ":", COLOURS[3]),
     )
     above.axhline(1.0, color=GREY, label="ideal gas")
     for name, function, style, colour in curves:
         above.plot(x, function(x), style, color=colour, label=name)
-        below.plot(x, 1e3 * (function(x) / hard_discs.compressibility(x) - 1), style, color=colour)
+        below.plot(x, 1e3 * (function(x) / hard_discs.compressibility_factor(x) - 1), style, color=colour)
     if phi.max() > hard_discs.HIGHEST:
         _draw_dense(above, float(phi.max()))
     above.errorbar(phi, z, error, fmt="o", ms=4, color=COLOURS[0], label="measured")
@@ -100,5 +104,11 @@ def _draw_dense(ax: Axes, most: float) -> None:
     ax.axvspan(FREEZING, MELTING, color=GREY, alpha=0.2, label="two phases in a large gas")
     if most > SOLID:
         x = np.linspace(SOLID, min(1.01 * most, 0.99 * hard_discs.CLOSE_PACKING), 200)
-        ax.plot(x, hard_discs.free_volume_compressibility(x), "-.", color=COLOURS[5], label="free volume, of a crystal")
+        ax.plot(
+            x,
+            hard_discs.free_volume_compressibility_factor(x),
+            "-.",
+            color=COLOURS[5],
+            label="free volume, of a crystal",
+        )
         ax.set_yscale("log")

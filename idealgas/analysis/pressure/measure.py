@@ -30,7 +30,7 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import SampledImpacts, SampledWalls, sampled
-from idealgas.analysis.core.statistics import Estimate, Verdict, judge, mean, mean_of_flux
+from idealgas.analysis.core.statistics import CheckResult, Estimate, check_theory, mean, mean_of_flux
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
@@ -52,7 +52,7 @@ class Route:
 
     name: Annotated[str, Key("route")]
     pressure: Estimate
-    compressibility: Estimate
+    compressibility_factor: Estimate
 
 
 @dataclass(frozen=True)
@@ -92,14 +92,14 @@ class Pressure(Result):
         """Standard deviation of the error of Z by the name of each theory."""
         return {name: theory.error for name, theory in self.known_theories.items()}
 
-    def check(self) -> Verdict:
+    def check(self) -> CheckResult:
         """Check that Z by the virial of the walls and of the pairs agrees with theory.
 
         Raises:
             UserError: if a route with a theory has no error bar.
         """
-        judged = ((route.name, route.compressibility) for route in self.routes if route.name in (WALLS, PAIRS))
-        return judge(judged, self.no_theory)
+        compared = ((route.name, route.compressibility_factor) for route in self.routes if route.name in (WALLS, PAIRS))
+        return check_theory(compared, self.no_theory)
 
 
 def pressure(
@@ -222,11 +222,11 @@ def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[
     except NoTheoryError:
         return theories
     if np.ptp(discs.radius) > 0:
-        z = hard_discs.mixture_compressibility(discs.radius, discs.number, gas.area)
+        z = hard_discs.mixture_compressibility_factor(discs.radius, discs.number, gas.area)
         return theories | {"Jenkins & Mancini 1987": Theory(z, mixture_error(phi) * (z - 1), "Jenkins & Mancini 1987")}
     others = {
         "virial series to B10": float(hard_discs.virial_series(phi)),
-        "Henderson 1975": float(hard_discs.henderson_compressibility(phi)),
+        "Henderson 1975": float(hard_discs.henderson_compressibility_factor(phi)),
     }
     endless = {name: Theory(z, math.hypot(z - series.value, series.error), name) for name, z in others.items()}
     return theories | {series.source: series} | endless

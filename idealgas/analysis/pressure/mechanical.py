@@ -6,15 +6,15 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import kept_momentum, nonstationary_reason
+from idealgas.analysis.core.ensemble import conserved_momentum, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import Estimate, mean_of_flux, mean_of_replicates, ratio
 from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
 from idealgas.log import Log
 
-PIECES = 8
-"""Number of pieces of the window that are averaged one by one if the state of the gas changes all the time."""
+SEGMENTS = 8
+"""Number of segments of the window that are averaged one by one if the state of the gas changes all the time."""
 
 SMOOTH = 1e-9
 """Largest stress along a wall, relative to the pressure, that is rounding."""
@@ -71,7 +71,7 @@ class Mechanical:
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
     some, why = slice(window.first, None), nonstationary_reason(log)
-    faces = [(face, _holding(gauge, face, window)) for face in gauge.faces(window.edges)]
+    faces = [(face, _external_pressure(gauge, face, window)) for face in gauge.faces(window.edges)]
     balances = None if why else _balances(log, gauge, window, faces)
     return Mechanical(
         area=float(gauge.area(window.edges)[some].mean()),
@@ -81,7 +81,7 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     )
 
 
-def _holding(gauge: WallGauge, face: Face, window: Window) -> float | None:
+def _external_pressure(gauge: WallGauge, face: Face, window: Window) -> float | None:
     """Pressure that holds a piston from outside; None for other walls."""
     moving = gauge.moving
     return moving.balance(window.start, window.end) if moving is not None and face.wall == moving.wall else None
@@ -103,7 +103,7 @@ def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[
 
 def _carried(log: Log) -> np.ndarray:
     """Whether walls alone balance the weight of the discs, along x and y: (2,) bool; a heat bath holds them too."""
-    return ~kept_momentum(log) & (log.scene.properties.bath is None)
+    return ~conserved_momentum(log) & (log.scene.properties.bath is None)
 
 
 def _weight(log: Log) -> np.ndarray:
@@ -126,7 +126,7 @@ def _pressure(face: Face, some: slice, balances: np.ndarray | None, holding: flo
 def _average(
     given: np.ndarray, exposed: np.ndarray, balances: np.ndarray | None, theory: float | None = None
 ) -> Estimate:
-    """Mean of momentum given per exposed length; of a changing state over pieces, as its change is no error.
+    """Mean of momentum given per exposed length; of a changing state over segments, as its change is no error.
 
     theory: what balances the force. balances: see `_balances`; None for a changing state. The part of a force that goes
     with them fluctuates much, but its mean is only off by the change of what is stored.
@@ -136,8 +136,8 @@ def _average(
     if theory is not None:
         return mean_of_flux(given / exposed, np.full(len(given), theory), theory)
     if balances is None:
-        pieces = zip(np.array_split(given, PIECES), np.array_split(exposed, PIECES), strict=True)
-        return mean_of_replicates([ratio(*piece) for piece in pieces])
+        segments = zip(np.array_split(given, SEGMENTS), np.array_split(exposed, SEGMENTS), strict=True)
+        return mean_of_replicates([ratio(*piece) for piece in segments])
     if np.ptp(exposed) > SMOOTH * exposed.max():
         return ratio(given, exposed)
     force = given / exposed
@@ -150,7 +150,7 @@ def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | N
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
-    all_time, known = np.ones(len(given)), ~kept_momentum(log) & (balances is not None)
+    all_time, known = np.ones(len(given)), ~conserved_momentum(log) & (balances is not None)
     weight = [float(force) if balanced else None for force, balanced in zip(_weight(log), known, strict=True)]
     bounded = _carried(log)
 

@@ -36,7 +36,10 @@ def _of_log(result: Pressure) -> list[Table]:
     gas = (
         f"N = {result.number}, A = {result.area:g}, φ = {result.packing_fraction:.5g}, T = {result.temperature:.6g}",
     )
-    exact = (1.0, result.routes[-1].compressibility.theory)  # of the ideal gas, and of this number of discs in this box
+    exact = (
+        1.0,
+        result.routes[-1].compressibility_factor.theory,
+    )  # of the ideal gas, and of this number of discs in this box
     theories = [
         (name if one.value in exact else f"{name}, N → ∞", Number(one.value, ".6f"), Number(one.error, ".1g"))
         for name, one in result.known_theories.items()
@@ -45,7 +48,7 @@ def _of_log(result: Pressure) -> list[Table]:
     return [
         estimates(
             "Z = PA/NT (no unit)",
-            [(route.name, route.compressibility) for route in result.routes],
+            [(route.name, route.compressibility_factor) for route in result.routes],
             (describe(result.window), *gas),
         ),
         Table("Z by theory (no unit)", ("", "value", "± error"), theories, missing),
@@ -63,7 +66,7 @@ def _of_states(result: EquationOfState) -> list[Table]:
         "runs",
         "Z",
         "± s.e.",
-        "dev./s.e.",
+        "deviation (σ)",
         "theory",
         "to B10",
         "Henderson",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from idealgas.analysis.core.analysis import Analysis, Option, Section
 from idealgas.analysis.profile.measure import BINS, Profile, profile
 from idealgas.analysis.profile.tables import profile_tables
-from idealgas.analysis.profile.words import profile_words
+from idealgas.analysis.profile.words import profile_summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,7 +34,7 @@ class ProfileAnalysis(Analysis):
 
     measure = staticmethod(profile)
     tables = staticmethod(profile_tables)
-    summary = staticmethod(profile_words)
+    summary = staticmethod(profile_summary)
 
     @staticmethod
     def figure(result: Any) -> "Figure":

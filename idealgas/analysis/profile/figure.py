@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.style import BLACK, Panel, Strips, look, panels
+from idealgas.analysis.core.style import BLACK, Panel, Strips, curve_style, panels
 from idealgas.analysis.profile.measure import Profile
 
 
@@ -12,7 +12,7 @@ def profile_figure(result: Profile) -> Figure:
     """Picture of density and temperature against position, theory dashed; spin temperature as crosses."""
     figure, (density, temperature) = panels(2)
     for k, entry in enumerate(result.species):
-        colour, _, marker = look(k)
+        colour, _, marker = curve_style(k)
         points = {"fmt": marker, "ms": 4, "color": colour, "capsize": 2}
         _draw(density, result, entry.density, points | {"label": entry.species})
         _draw(temperature, result, entry.temperature, points | {"label": f"{entry.species}: m v²/2"})

@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import drift
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
@@ -131,7 +131,7 @@ def _not_dilute(
     if expected is None:
         return ()
     if not expected.dilute:
-        crowding = float(hard_discs.compressibility(min(log.discs.packing_fraction, hard_discs.HIGHEST))) - 1
+        crowding = float(hard_discs.compressibility_factor(min(log.discs.packing_fraction, hard_discs.HIGHEST))) - 1
         if log.periodic[axis] or crowding * min(log.discs.radius.max() / width, 1.0) <= LAYERED:
             return ()
         return ("Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them.",)
@@ -153,7 +153,7 @@ def _collect(
     log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Callable[[int, int], None] | None
 ) -> np.ndarray:
     """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, at F times."""
-    gas, frame = log.discs, drift(log)
+    gas, frame = log.discs, centre_of_mass_velocity(log)
     shape = (len(gas.species_names), len(edges) - 1)
     sums = np.zeros((len(times), *shape, 3))
     inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia

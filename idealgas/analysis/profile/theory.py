@@ -70,7 +70,7 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
     size = np.diff(inside)
     places = inside[:, :-1, None] + size[:, :, None] * (np.arange(POINTS) + 0.5) / POINTS
-    found = _course(log, axis, places, discs)
+    found = _curve(log, axis, places, discs)
     if found is None:
         return None
     law, weight, temperature, error = found
@@ -81,10 +81,10 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     return Expected(law, law != UNIFORM, number / strips, mean_temperature, error)
 
 
-Course = tuple[str, np.ndarray, np.ndarray, float]
+Curve = tuple[str, np.ndarray, np.ndarray, float]
 
 
-def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Course | None:
+def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve | None:
     """Name of the law, relative density and temperature at the coordinates `places` (S, K, P), and the error of T.
 
     None if unknown.
@@ -106,7 +106,7 @@ def _course(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Cour
     return UNIFORM, one, equilibrium.of_species[:, None, None] * one, 0.0
 
 
-def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, float]) -> Course | None:
+def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, float]) -> Curve | None:
     """Fourier's law between two thermal sides across an axis, for equal discs without spin and no other heat."""
     properties, gas = log.scene.properties, log.discs
     others = properties.bath is not None or any(properties.emits[side] is not None for side in sides_across(1 - axis))

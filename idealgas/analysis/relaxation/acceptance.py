@@ -61,7 +61,7 @@ def acceptance(log: Log) -> Acceptance | None:
     share = collisions / max(number, 1)
     error = float(np.sqrt(share * (1 - share) / max(number, 1)))
     equilibrium, raises = ensemble(log), raises_of(log)
-    still = conserved.share_of_motion(log.discs, equilibrium.drift) <= conserved.SAID_FROM
+    still = conserved.share_of_motion(log.discs, equilibrium.centre_of_mass_velocity) <= conserved.SAID_FROM
     v_ref = mean_reference_speed(raises, number)
     fixed = equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
     expected = {

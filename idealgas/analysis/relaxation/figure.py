@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from idealgas.analysis.core.style import BLACK, Panel, look, panels
+from idealgas.analysis.core.style import BLACK, Panel, curve_style, panels
 from idealgas.analysis.relaxation.combine import Relaxations
 
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
@@ -33,7 +33,7 @@ def _draw(axes: Sequence[Panel], found: Relaxations, in_time: bool) -> None:
     """Draw three panels against time, or against collisions per disc."""
     kurtosis, distance, entropy = axes
     for k, result in enumerate(found.logs):
-        colour, line, _ = look(k)
+        colour, line, _ = curve_style(k)
         name = f"{Path(result.path).stem}, N = {result.number}"
         x, fit = (result.time, result.in_time) if in_time else (result.collisions, result.in_collisions)
         kurtosis.plot(x, result.kurtosis, line, color=colour, linewidth=1.2, label=name)

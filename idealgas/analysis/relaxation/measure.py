@@ -182,7 +182,7 @@ def _late(fit: Estimate | None, late: bool) -> tuple[str, ...]:
     """Sentence on a course that begins after the start of the log, by chance nearer to equilibrium or farther."""
     if fit is None or not late:
         return ()
-    return ("The error of the relaxation time is that of a start with equal speeds; later courses scatter more.",)
+    return ("The error of the relaxation time is that of a start with equal speeds; later curves scatter more.",)
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

@@ -66,11 +66,11 @@ def speed_distributions(
         _check_number((last - first) / every)
         time = np.array(list(takewhile(lambda t: t <= last, (first + k * every for k in count()))))
     gas, equilibrium = log.discs, ensemble(log)
-    rms = math.sqrt(((gas.velocity - equilibrium.drift) ** 2).sum() / len(gas))
+    rms = math.sqrt(((gas.velocity - equilibrium.centre_of_mass_velocity) ** 2).sum() / len(gas))
     edges = rms * CLASSES
     counts, distance = [], []
     for state in log.frames(time):
-        speed = np.hypot(*(state.velocity - equilibrium.drift).T)
+        speed = np.hypot(*(state.velocity - equilibrium.centre_of_mass_velocity).T)
         counts.append(np.histogram(speed, [*edges, math.inf])[0])
         distance.append(ks_distance(reduced_energy(log, state.velocity, equilibrium), reduced_energy_cdf))
     species = zip(equilibrium.of_species, range(len(gas.species_names)), strict=True)

@@ -33,7 +33,7 @@ def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
 def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
     """Reduced energy m v²/2T of every disc (no unit), with its mean kinetic energy T in equilibrium."""
     gas = log.discs
-    square = ((velocity - equilibrium.drift) ** 2).sum(axis=1)
+    square = ((velocity - equilibrium.centre_of_mass_velocity) ** 2).sum(axis=1)
     return gas.mass * square / (2 * equilibrium.of_species[gas.species])
 
 

@@ -1,6 +1,6 @@
 """Measure the speed and the damping of sound by the longest waves of density in a periodic box.
 
-Theory: the speed by the equation of state, the damping by Enskog's viscosities and heat conductivity.
+Theory: the speed by the equation of state, the damping by Enskog's viscosities and thermal conductivity.
 """
 
 from typing import TYPE_CHECKING, Any

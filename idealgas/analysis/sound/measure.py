@@ -129,7 +129,7 @@ def _amplitudes(
     log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Callable[[int, int], None] | None
 ) -> np.ndarray:
     """Σ exp(-ikx) over all discs (A, G) at G times, complex, of the longest waves along the axes."""
-    drift, discs = ensemble(log).drift, np.arange(len(log.discs))
+    drift, discs = ensemble(log).centre_of_mass_velocity, np.arange(len(log.discs))
     found = np.empty((len(axes), len(times)), complex)
     some = max(AT_ONCE // len(discs), 1)
     for first in range(0, len(times), some):

@@ -22,6 +22,6 @@ def sound_tables(result: Sound) -> list[Table]:
     ]
     notes = (
         f"{describe(result.window)}, {result.frames} instants",
-        "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and heat conductivity",
+        "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and thermal conductivity",
     )
     return [replace(tables[0], notes=notes), *tables[1:]]

@@ -45,7 +45,7 @@ def expected_sound(log: Log, k: float) -> Expected:
 
 def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float) -> Fluid:
     """Fluid of hard discs, of a packing fraction φ up to 0.62: c² = (T/m)(d(φZ)/dφ + Z²), γ = 1 + Z²/(d(φZ)/dφ)."""
-    z, slope = float(hard_discs.compressibility(phi)), float(hard_discs.inverse_compressibility(phi))
+    z, slope = float(hard_discs.compressibility_factor(phi)), float(hard_discs.inverse_compressibility(phi))
     density, gamma = 4 * phi / (math.pi * diameter**2), 1 + z**2 / slope
     state = diameter, density, temperature, mass, hard_discs.fluid_contact_value(phi)
     viscous = hard_discs.enskog_viscosity(*state) + hard_discs.enskog_bulk_viscosity(*state)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.temperature.measure import Temperature, temperature
 from idealgas.analysis.temperature.tables import temperature_tables
-from idealgas.analysis.temperature.words import temperature_words
+from idealgas.analysis.temperature.words import temperature_summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ class TemperatureAnalysis(Analysis):
 
     measure = staticmethod(temperature)
     tables = staticmethod(temperature_tables)
-    summary = staticmethod(temperature_words)
+    summary = staticmethod(temperature_summary)
 
     @staticmethod
     def figure(result: Any) -> "Figure":

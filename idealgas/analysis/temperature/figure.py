@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import BLACK, GREY, look, panels
+from idealgas.analysis.core.style import BLACK, GREY, curve_style, panels
 from idealgas.analysis.temperature.measure import Temperature
 
 LEAST_RANGE = 0.05
@@ -15,11 +15,11 @@ def temperature_figure(result: Temperature) -> Figure:
     edges = result.window.edges
     if len(result.apart) == 1:
         x, y = result.apart[0].directions.T
-        courses = {"m vx²": x, "m vy²": y}
+        curves = {"m vx²": x, "m vy²": y}
     else:
-        courses = {f"{entry.species} (N = {entry.number})": entry.history for entry in result.apart}
-    for k, (name, values) in enumerate(courses.items()):
-        colour, line, _ = look(k)
+        curves = {f"{entry.species} (N = {entry.number})": entry.history for entry in result.apart}
+    for k, (name, values) in enumerate(curves.items()):
+        colour, line, _ = curve_style(k)
         ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
     if result.expected is not None:
         ax.axhline(result.expected, color=BLACK, linestyle="--", label="theory: E/N")

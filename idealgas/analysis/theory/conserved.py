@@ -18,7 +18,7 @@ SAID_FROM = 0.01
 """Least share of the kinetic energy from which on a conserved motion of the whole gas is mentioned."""
 
 
-def kept_momentum(scene: Scene) -> np.ndarray:
+def conserved_momentum(scene: Scene) -> np.ndarray:
     """Whether the total momentum of the discs is conserved along x and along y: (2,) bool.
 
     Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
@@ -28,14 +28,14 @@ def kept_momentum(scene: Scene) -> np.ndarray:
     return np.array((True, True) if without_positions else scene.properties.conserves_momentum)
 
 
-def common_motion(scene: Scene, gas: Gas) -> np.ndarray:
+def centre_of_mass_velocity(scene: Scene, gas: Gas) -> np.ndarray:
     """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
-    return np.where(kept_momentum(scene), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
+    return np.where(conserved_momentum(scene), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
 
 
-def energy_of_motion(scene: Scene, gas: Gas) -> float:
+def centre_of_mass_energy(scene: Scene, gas: Gas) -> float:
     """Kinetic energy of the motion of the whole gas that is conserved, energy."""
-    velocity = common_motion(scene, gas)
+    velocity = centre_of_mass_velocity(scene, gas)
     return float(gas.mass.sum() * (velocity @ velocity) / 2)
 
 
@@ -46,12 +46,12 @@ def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
     """
     velocity = gas.mass @ gas.velocity / gas.mass.sum()
     chance = [share_of_motion(gas, velocity * axis) * len(gas) <= CHANCE for axis in np.eye(2)]
-    return np.where(chance, common_motion(scene, gas), velocity)
+    return np.where(chance, centre_of_mass_velocity(scene, gas), velocity)
 
 
 def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
     """Sentence on the part of `motion_at_start` that walls or a heat bath take away; empty if there is none."""
-    lost = motion_at_start(scene, gas) - common_motion(scene, gas)
+    lost = motion_at_start(scene, gas) - centre_of_mass_velocity(scene, gas)
     if not lost.any():
         return ()
     return (
@@ -96,7 +96,7 @@ def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
             "temperatures along x and y may differ indefinitely. Give them velocities of their own."
         )
-    velocity = common_motion(scene, gas)
+    velocity = centre_of_mass_velocity(scene, gas)
     if (share := share_of_motion(gas, velocity)) > SAID_FROM:
         found.append(
             f"The gas moves as a whole with the velocity ({velocity[0]:.4g}, {velocity[1]:.4g}), {share:.1%} of its "

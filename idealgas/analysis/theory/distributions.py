@@ -207,7 +207,7 @@ class FreePathLaw(_FlightLaw):
 
 
 @dataclass(frozen=True)
-class WaitLaw:
+class WaitingTimeLaw:
     """Distribution of the time between events of the whole gas: exponential if many discs collide independently.
 
     rate: events per time, 1/time.

@@ -208,8 +208,8 @@ def _spin_energy(scene: Scene) -> float:
 def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     """Rates of a uniform gas; None if a disc has no room to move."""
     freedom = 2 + scene.properties.spins
-    kinetic = gas.kinetic_energy - conserved.energy_of_motion(scene, gas)
-    dof = freedom * len(gas) - int(conserved.kept_momentum(scene).sum())
+    kinetic = gas.kinetic_energy - conserved.centre_of_mass_energy(scene, gas)
+    dof = freedom * len(gas) - int(conserved.conserved_momentum(scene).sum())
     temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / max(dof, 1)
     if scene.properties.bath is not None:
         temperature = scene.properties.bath
@@ -323,7 +323,7 @@ def _wall_hit_rate(
 
     The density of hard discs at a wall is Z times the mean density.
     """
-    crowding = hard_discs.mixture_compressibility(radius, number, gas.area)
+    crowding = hard_discs.mixture_compressibility_factor(radius, number, gas.area)
     rate = 0.0
     for r, m, n in zip(radius, mass, number, strict=True):
         width, height = (

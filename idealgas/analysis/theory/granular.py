@@ -26,7 +26,7 @@ Eight runs of 300 discs at φ = 0.05 had 0.91 of the loss at e = 0.6, and 0.74 a
 """
 
 
-class Grains(NamedTuple):
+class GranularParameters(NamedTuple):
     """Coefficients of the collisions of discs: e, β and κ as above; β is -1 and κ is None for discs without spin."""
 
     normal: float
@@ -47,77 +47,82 @@ def fourth_cumulant(e: float) -> float:
     return 16 * (1 - e) * (1 - 2 * e**2) / (57 - 25 * e + 30 * e**2 * (1 - e))
 
 
-def loss_of_motion(grains: Grains, x: float) -> float:
+def loss_of_motion(parameters: GranularParameters, x: float) -> float:
     """Part of T that a disc loses per collision, -d ln T, with Maxwellian velocities at the ratio x = S/T."""
-    smooth = (1 - grains.normal**2) / 2
-    if not grains.rough or grains.inertia is None:
+    smooth = (1 - parameters.normal**2) / 2
+    if not parameters.rough or parameters.inertia is None:
         return smooth
-    b, q = 1 + grains.roughness, grains.inertia / (1 + grains.inertia)
-    return smooth + b * q / 2 - b**2 * q**2 / 4 * (1 + x / grains.inertia)
+    b, q = 1 + parameters.roughness, parameters.inertia / (1 + parameters.inertia)
+    return smooth + b * q / 2 - b**2 * q**2 / 4 * (1 + x / parameters.inertia)
 
 
-def loss_of_spin(grains: Grains, x: float) -> float:
+def loss_of_spin(parameters: GranularParameters, x: float) -> float:
     """Loss of S per collision in units of T, -dS/T, with Maxwellian velocities at the ratio x = S/T."""
-    if not grains.rough or grains.inertia is None:
+    if not parameters.rough or parameters.inertia is None:
         return 0.0
-    b, q = 1 + grains.roughness, grains.inertia / (1 + grains.inertia)
-    return b * q / grains.inertia * x - b**2 * q**2 / (2 * grains.inertia) * (1 + x / grains.inertia)
+    b, q = 1 + parameters.roughness, parameters.inertia / (1 + parameters.inertia)
+    return b * q / parameters.inertia * x - b**2 * q**2 / (2 * parameters.inertia) * (1 + x / parameters.inertia)
 
 
-def temperature_ratio(grains: Grains) -> float | None:
+def _ratio_loss(parameters: GranularParameters, x: float) -> float:
+    """Loss of the ratio x of spin to motion per collision, times the temperature of motion; 0 where it is steady."""
+    return loss_of_spin(parameters, x) - x * loss_of_motion(parameters, x)
+
+
+def temperature_ratio(parameters: GranularParameters) -> float | None:
     """Ratio x = S/T to which rough discs that cool homogeneously come; None for smooth ones, which keep their spin."""
-    if not grains.rough:
+    if not parameters.rough:
         return None
-    return float(brentq(lambda x: loss_of_spin(grains, x) - x * loss_of_motion(grains, x), 0.0, 1e6, xtol=1e-14))
+    return float(brentq(lambda x: _ratio_loss(parameters, x), 0.0, 1e6, xtol=1e-14))
 
 
-def relaxation(grains: Grains) -> float:
+def relaxation(parameters: GranularParameters) -> float:
     """Collisions of a disc in which the ratio x comes nearer to `temperature_ratio` by e; 0 for smooth discs."""
-    if (ratio := temperature_ratio(grains)) is None:
+    if (ratio := temperature_ratio(parameters)) is None:
         return 0.0
-    low, high = (loss_of_spin(grains, x) - x * loss_of_motion(grains, x) for x in (ratio * 0.999, ratio * 1.001))
+    low, high = (_ratio_loss(parameters, x) for x in (ratio * 0.999, ratio * 1.001))
     return 0.002 * ratio / (high - low)
 
 
-def cooling_per_collision(grains: Grains) -> float:
+def cooling_per_collision(parameters: GranularParameters) -> float:
     """Part of T that a disc loses per collision once the gas cools homogeneously.
 
     Smooth discs: with the first Sonine polynomial, (1 - e²)/2 · (1 + 3a₂/16)/(1 - a₂/16); a₂ raises the energy lost per
     time by 3a₂/16 and changes the collision rate by -a₂/16. Rough ones: Maxwellian.
     """
-    if (ratio := temperature_ratio(grains)) is not None:
-        return loss_of_motion(grains, ratio)
-    a2 = fourth_cumulant(grains.normal)
-    return loss_of_motion(grains, 0.0) * (1 + 3 * a2 / 16) / (1 - a2 / 16)
+    if (ratio := temperature_ratio(parameters)) is not None:
+        return loss_of_motion(parameters, ratio)
+    a2 = fourth_cumulant(parameters.normal)
+    return loss_of_motion(parameters, 0.0) * (1 + 3 * a2 / 16) / (1 - a2 / 16)
 
 
-def cooling_time(grains: Grains, rate: float) -> float:
+def cooling_time(parameters: GranularParameters, rate: float) -> float:
     """Haff's time τ of T = T₀/(1 + t/τ)², time: dT/dt = -(2/τ) T √(T/T₀); Haff, J. Fluid Mech. 134, 401 (1983).
 
     rate: Γ at T₀ with Maxwellian velocities, 1/time. Smooth discs: with the first Sonine polynomial.
     """
-    ratio = temperature_ratio(grains)
+    ratio = temperature_ratio(parameters)
     if ratio is not None:
-        return 2 / (rate * loss_of_motion(grains, ratio))
-    return 2 / (rate * loss_of_motion(grains, 0.0) * (1 + 3 * fourth_cumulant(grains.normal) / 16))
+        return 2 / (rate * loss_of_motion(parameters, ratio))
+    return 2 / (rate * loss_of_motion(parameters, 0.0) * (1 + 3 * fourth_cumulant(parameters.normal) / 16))
 
 
 def homogeneous_cooling(
-    grains: Grains, rate: float, temperature: float, spin: float, time: np.ndarray
+    parameters: GranularParameters, rate: float, temperature: float, spin: float, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Temperatures T and S (F,) of a gas that stays uniform, at times (F,).
 
     rate: Γ at the start with Maxwellian velocities, 1/time. temperature, spin: T and S at the start, energy. Smooth
     discs follow Haff's law with `cooling_time`.
     """
-    if not grains.rough:
-        return temperature / (1 + time / cooling_time(grains, rate)) ** 2, np.full(len(time), spin)
+    if not parameters.rough:
+        return temperature / (1 + time / cooling_time(parameters, rate)) ** 2, np.full(len(time), spin)
 
     def slopes(_: float, state: np.ndarray) -> list[float]:
         """Of ln T, of S/T₀ and of the time, against the collisions of a disc."""
         t = math.exp(state[0])
         x = state[1] / t
-        return [-loss_of_motion(grains, x), -t * loss_of_spin(grains, x), 1 / (rate * math.sqrt(t))]
+        return [-loss_of_motion(parameters, x), -t * loss_of_spin(parameters, x), 1 / (rate * math.sqrt(t))]
 
     def late(_: float, state: np.ndarray) -> float:
         return state[2] - float(time[-1])

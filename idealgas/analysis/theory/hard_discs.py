@@ -35,7 +35,7 @@ def virial_series(packing_fraction: ArrayLike, terms: int = len(VIRIAL)) -> np.n
     return Polynomial(_SERIES.coef[:terms])(np.asarray(packing_fraction, float))
 
 
-def compressibility(packing_fraction: ArrayLike, number: float = math.inf) -> np.ndarray:
+def compressibility_factor(packing_fraction: ArrayLike, number: float = math.inf) -> np.ndarray:
     """Compressibility factor Z = PA/NT of the hard-disc fluid: virial series to B10, resummed with 1/(1 - φ)².
 
     The polynomial over (1 - φ)² has quickly decreasing coefficients, so that the neglected ones are unimportant up to
@@ -57,13 +57,13 @@ def inverse_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
     return _PRESSURE.deriv()(phi) / (1 - phi) ** 2 + 2 * _PRESSURE(phi) / (1 - phi) ** 3
 
 
-def henderson_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
+def henderson_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
     """Compressibility factor Z = (1 + φ²/8)/(1 - φ)² of hard discs: Henderson, Mol. Phys. 30, 971 (1975)."""
     phi = np.asarray(packing_fraction, float)
     return (1 + phi**2 / 8) / (1 - phi) ** 2
 
 
-def free_volume_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
+def free_volume_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
     """Compressibility factor Z = 1/(1 - √(φ/φcp)) of a crystal of hard discs, each in the cage of its neighbours.
 
     Free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950); φcp is that of close packing, near which it is exact.
@@ -73,7 +73,7 @@ def free_volume_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
 
 def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:
     """Contact value χ = (Z - 1)/2φ of equal discs by the resummed virial series, for `number` discs in all."""
-    return float((compressibility(packing_fraction, number) - 1) / (2 * packing_fraction))
+    return float((compressibility_factor(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
 def mixture_contact_value(radius: ArrayLike, number: ArrayLike, area: float) -> np.ndarray:
@@ -87,7 +87,7 @@ def mixture_contact_value(radius: ArrayLike, number: ArrayLike, area: float) -> 
     return 1 / (1 - phi) + 9 / 8 * math.pi * (density * radius).sum() * reduced / (1 - phi) ** 2
 
 
-def mixture_compressibility(radius: ArrayLike, number: ArrayLike, area: float) -> float:
+def mixture_compressibility_factor(radius: ArrayLike, number: ArrayLike, area: float) -> float:
     """Compressibility factor Z = 1 + (π/2NA) Σ N_i N_j σ_ij² χ_ij of a mixture, with `mixture_contact_value`."""
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     sigma = radius[:, None] + radius
@@ -167,7 +167,7 @@ def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[
     return 2 * (radius[:, None] + radius) * (number - np.eye(len(number))) / area * chi
 
 
-def box_compressibility(
+def box_compressibility_factor(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
     """Compressibility factor Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij in a box: expected value of both virials.
@@ -275,7 +275,7 @@ def enskog_bulk_viscosity(diameter: float, number_density: float, temperature: f
 
 
 def enskog_conductivity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Heat conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) by Enskog's theory, 1/time; y = πnσ²/2.
+    """Thermal conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) by Enskog's theory, 1/time; y = πnσ²/2.
 
     λ₀ = 1.029 (2/σ) √(T/πm): Gass, J. Chem. Phys. 54, 1898 (1971).
     """

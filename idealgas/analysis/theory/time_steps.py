@@ -14,7 +14,7 @@ def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
     """
     if scene.run.method != "time_driven" or scene.run.dt is None:
         return ()
-    heat = gas.kinetic_energy - conserved.energy_of_motion(scene, gas)
+    heat = gas.kinetic_energy - conserved.centre_of_mass_energy(scene, gas)
     if not heat > 0:
         return (
             "By time steps, in which collisions come late or are missed; `idealgas accuracy` measures what that does.",

@@ -3,13 +3,13 @@
 Outside its range a theory has no value, only a reason. Errors are standard deviations, to be combined with those of a
 measurement as √(s.e.² + error²).
 
-Resummed virial series (`hard_discs.compressibility`): within 1.5e-4 of Z - 1 up to φ = 0.5 and 2.5e-4 at 0.6, by
+Resummed virial series (`hard_discs.compressibility_factor`): within 1.5e-4 of Z - 1 up to φ = 0.5 and 2.5e-4 at 0.6, by
 molecular dynamics (Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985)) and by this engine. Above, the error grows by a
 factor e every 0.0166 in φ: measured with 870 discs, 8e-4 at 0.62 and 3e-3 at 0.64; 1.7 % at 0.67. No value above 0.62.
 
-Finite gases (`hard_discs.box_compressibility`): the first order in 1/N and in the walls. Its error is what simulations
-of 3 to 400 discs found (ERRORS; tests/physics/test_theory_errors.py repeats them); where it exceeds a tenth of Z - 1
-there is no value. Two discs are exact.
+Finite gases (`hard_discs.box_compressibility_factor`): the first order in 1/N and in the walls. Its error is that found
+by simulations of 3 to 400 discs (ERRORS; tests/physics/test_theory_errors.py repeats them); where it exceeds a tenth of
+Z - 1 there is no value. Two discs are exact.
 """
 
 import math
@@ -139,7 +139,7 @@ def fluid(packing_fraction: float) -> Theory:
         raise NoTheoryError(
             f"the packing fraction is above {hard_discs.HIGHEST:g}, where the virial series no longer holds"
         )
-    z = float(hard_discs.compressibility(packing_fraction))
+    z = float(hard_discs.compressibility_factor(packing_fraction))
     return Theory(z, _series_error(packing_fraction) * (z - 1), "virial series to B10, resummed")
 
 
@@ -158,7 +158,9 @@ def crystal(packing_fraction: float) -> Theory:
         raise NoTheoryError(f"discs form a crystal from a packing fraction of {SOLID:g} on")
     room = hard_discs.CLOSE_PACKING / packing_fraction - 1
     error = TOO_LOW[0] + TOO_LOW[1] * room
-    return Theory(float(hard_discs.free_volume_compressibility(packing_fraction)), error, "free volume, of a crystal")
+    return Theory(
+        float(hard_discs.free_volume_compressibility_factor(packing_fraction)), error, "free volume, of a crystal"
+    )
 
 
 def box_theory(
@@ -215,7 +217,7 @@ def _equal_discs(
     phi = math.pi * n * r**2 / (box[0] * box[1])
     published = _published(n, phi, box, periodic)
     series = published or fluid(phi)
-    z = float(hard_discs.compressibility(phi, n))
+    z = float(hard_discs.compressibility_factor(phi, n))
 
     def of(axis: int | None, kind: str) -> Theory:
         excess = (z - 1) * float(hard_discs.confinement([r], box, periodic, axis)[0, 0])
@@ -248,8 +250,8 @@ def _mixture(
     n = int(number.sum())
     phi = math.pi * float((number * radius**2).sum()) / (box[0] * box[1])
     exact = fluid(phi).value - 1
-    z = hard_discs.box_compressibility(radius, number, box, periodic)
-    first_order = abs((float(hard_discs.compressibility(phi, n)) - 1) / exact - (1 - 1 / n))
+    z = hard_discs.box_compressibility_factor(radius, number, box, periodic)
+    first_order = abs((float(hard_discs.compressibility_factor(phi, n)) - 1) / exact - (1 - 1 / n))
     kind = "without walls" if all(periodic) else "with walls"
     finite = _finite_error(kind, n, float(radius.max()), phi, box)
     relative = 1.5 * math.hypot(mixture_error(phi) + first_order, finite)  # 1.5: what simulations ask for
@@ -265,7 +267,7 @@ def _mixture(
 
 def mixture_error(packing_fraction: float) -> float:
     """Relative error of Z - 1 of infinite mixtures by Jenkins and Mancini: that of Henderson's for equal discs."""
-    series, z = fluid(packing_fraction), float(hard_discs.henderson_compressibility(packing_fraction))
+    series, z = fluid(packing_fraction), float(hard_discs.henderson_compressibility_factor(packing_fraction))
     return math.hypot(z - series.value, series.error) / (series.value - 1)
 
 

@@ -1,6 +1,6 @@
-"""Measure diffusion, viscosities and heat conductivity, collision rates, free paths and the pair distribution.
+"""Measure diffusion, viscosities and thermal conductivity, collision rates, free paths and the pair distribution.
 
-They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, heat conductivity and the
+They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, thermal conductivity and the
 pressure tensor take a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution
 of free paths. Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over
 Enskog's against the packing fraction.

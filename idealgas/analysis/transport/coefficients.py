@@ -1,4 +1,4 @@
-"""Viscosities, heat conductivity, mutual diffusion and pressure tensor of a periodic gas, from its currents."""
+"""Viscosities, thermal conductivity, mutual diffusion and pressure tensor of a periodic gas, from its currents."""
 
 import math
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import Ensemble, drift
+from idealgas.analysis.core.ensemble import Ensemble, centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import INLINE, Key
 from idealgas.analysis.core.samples import in_blocks
@@ -39,7 +39,7 @@ DIRECTIONS = 3.0
 """Part by which η by its two routes differs for N discs in a square periodic box, times N: 50 discs at φ = 0.2 have
 (5.6 ± 1.1) % less by xy."""
 
-SYMBOLS = {"viscosity": "η", "heat_conductivity": "λ", "bulk_viscosity": "ζ", "mutual_diffusion": "D₁₂"}
+SYMBOLS = {"viscosity": "η", "thermal_conductivity": "λ", "bulk_viscosity": "ζ", "mutual_diffusion": "D₁₂"}
 """Symbols of the coefficients, by their names."""
 
 
@@ -64,11 +64,11 @@ class Coefficient:
 
 @dataclass(frozen=True)
 class Collective:
-    """What the currents of a whole gas tell.
+    """Transport coefficients from the currents of a whole gas.
 
-    plateau: first and last time over which coefficients are averaged. coefficients: by name; no heat conductivity for
-    several species, where energy also comes along with discs that diffuse, and from samples without sums of the heat;
-    mutual diffusion of two species, from events.
+    plateau: first and last time over which coefficients are averaged. coefficients: by name; no thermal conductivity
+    for several species, where energy also comes along with discs that diffuse, and from samples without sums
+    of the heat; mutual diffusion of two species, from events.
     pressure: xx, yy and xy component of the pressure tensor, energy/length².
     """
 
@@ -96,7 +96,7 @@ def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarra
     With snapshots blocks begin and end with them, so that the integrals are exact; without, sums grow evenly from one
     sample to the next. Without sums of the heat its current is not a number, nor is that of a species.
     """
-    observed, still = log.observables, drift(log)
+    observed, still = log.observables, centre_of_mass_velocity(log)
     edges = _sample_edges(log, window, longest)
     flow = np.full((len(edges) - 1, 2, 7), np.nan)
     for part, (momentum, heat) in enumerate(
@@ -167,7 +167,7 @@ def _coefficients(
     found = {"viscosity": _coefficient(shear, lags, factor, "mass/time", gas, enskog.viscosity if enskog else None)}
     if conducts:
         theory = enskog.conductivity if enskog else None
-        found["heat_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", gas, theory)
+        found["thermal_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", gas, theory)
     found["bulk_viscosity"] = _coefficient(
         trace, lags, factor, "mass/time", gas, enskog.bulk_viscosity if enskog else None
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.analysis.core.collisions import ExpectedRates
 from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.ensemble import Ensemble, kept_momentum
+from idealgas.analysis.core.ensemble import Ensemble, conserved_momentum
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.log import Log
@@ -38,7 +38,7 @@ def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: E
     that of the first approximation. Momentum that is conserved takes a part m/M of D.
     """
     found: list[Theory | None] = []
-    whole, kept = log.discs.mass.sum(), kept_momentum(log).mean()
+    whole, kept = log.discs.mass.sum(), conserved_momentum(log).mean()
     error = enskog_error("diffusion", log.discs.packing_fraction)
     for i, mass in enumerate(discs.mass):
         reduced = mass * discs.mass / (mass + discs.mass)
@@ -88,7 +88,7 @@ def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None
     gas = log.discs
     if len(discs.name) > 1 or gas.packing_fraction > hard_discs.HIGHEST or len(gas) <= 2:
         return None
-    density, mass, kept = len(gas) / gas.area, discs.mass[0], 1 - kept_momentum(log).mean() / len(gas)
+    density, mass, kept = len(gas) / gas.area, discs.mass[0], 1 - conserved_momentum(log).mean() / len(gas)
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)
     state = (2 * discs.radius[0], density, equilibrium.temperature, mass, chi)
     viscosity = hard_discs.enskog_viscosity(*state)

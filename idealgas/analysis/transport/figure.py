@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, look, panels
+from idealgas.analysis.core.style import COLOURS, GREY, curve_style, panels
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.combine import DIFFUSION, States
@@ -85,7 +85,7 @@ def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) ->
 
 def _band(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: int, label: str) -> None:
     """Draw curve k of several with its standard error on both sides."""
-    colour, line, _ = look(k)
+    colour, line, _ = curve_style(k)
     ax.plot(lag, value, line, color=colour, label=label)
     ax.fill_between(lag, value - error, value + error, color=colour, alpha=0.2, linewidth=0)
 
@@ -93,7 +93,7 @@ def _band(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: in
 def _draw_pairs(ax: Axes, result: Transport) -> None:
     """Draw the pair distribution of every two species, with its value at contact."""
     for k, found in enumerate(result.pair_distributions):
-        colour, _, marker = look(k)
+        colour, _, marker = curve_style(k)
         middle = (found.edges[1:] + found.edges[:-1]) / 2
         label = f"{found.species} and {found.other}"
         ax.errorbar(middle, found.value, found.error, fmt=marker, ms=2, color=colour, label=label)

@@ -1,4 +1,4 @@
-"""Transport: collision rates, free paths, diffusion, viscosities, heat conductivity and pair distribution.
+"""Transport: collision rates, free paths, diffusion, viscosities, thermal conductivity and pair distribution.
 
 Rates and free paths count every event of the window, and so do the currents of momentum and energy. Velocity
 correlation and displacement use the exact positions and velocities of discs at evenly spaced instants.
@@ -19,7 +19,7 @@ from idealgas.analysis.core.collisions import (
     theory_of,
 )
 from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.ensemble import Ensemble, drift, ensemble
+from idealgas.analysis.core.ensemble import Ensemble, centre_of_mass_velocity, ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
@@ -87,7 +87,7 @@ class Transport(Result):
     window: the time that was used. packing_fraction: φ. number: of discs. free_times: lag up to which discs and
     currents are followed, in mean free times of the slowest species. walled: whether walls reflect diffusing discs.
     collision_rates, contacts, pair_distributions: of each pair of species. free_paths, diffusion: of each species.
-    collective: viscosities, heat conductivity and pressure tensor; None with walls, which change the currents.
+    collective: viscosities, thermal conductivity and pressure tensor; None with walls, which change the currents.
     """
 
     window: Window
@@ -113,11 +113,10 @@ def transport(
     """Measure how discs, momentum and heat spread in a gas between two times of its log, beside Enskog's theory.
 
     Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
-    displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity, heat
-    conductivity, diffusion of two species in each other and pressure tensor in a periodic box; pair distribution
-    functions. Without events the sums of
-    `log.pressure = true` and `log.heat_flow = true` give the collision rates and what the currents of a periodic gas
-    tell.
+    displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity,
+    thermal conductivity, diffusion of two species in each other and pressure tensor in a periodic box; pair
+    distribution functions. Without events the sums of `log.pressure = true` and `log.heat_flow = true` give the
+    collision rates and what follows from the currents of a periodic gas.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. lag: longest time for which discs and currents are followed, in mean free times.
@@ -213,12 +212,12 @@ def _short_currents(whole: Collective | None, free_times: float, lags: float) ->
     if whole and free_times < LEAST_LAG:
         yield (
             f"The window is short: currents are followed for {free_times:.2g} mean free times at most; viscosities and "
-            f"heat conductivity take {LEAST_LAG:g}."
+            f"thermal conductivity take {LEAST_LAG:g}."
         )
     elif whole and lags < LEAST_WINDOW:
         yield (
             f"The window is short: {lags:.3g} times as long as currents are followed ({LEAST_WINDOW:g} needed); "
-            "viscosities and heat conductivity may be too small by more than their errors."
+            "viscosities and thermal conductivity may be too small by more than their errors."
         )
 
 
@@ -274,8 +273,8 @@ def _diffusion(
     chosen = [ids[:: -(-len(ids) // most)] for ids in members]
     places, velocities = sample_trajectories(log, times, np.concatenate(chosen))
     shape = (segments, len(lag), -1, 2)
-    places, velocities = places.reshape(shape), velocities.reshape(shape) - drift(log)
-    places = places - lag[:, None, None] * drift(log)
+    places, velocities = places.reshape(shape), velocities.reshape(shape) - centre_of_mass_velocity(log)
+    places = places - lag[:, None, None] * centre_of_mass_velocity(log)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), strict=True)
     whole, coefficients, temperature = expected

@@ -8,7 +8,7 @@ from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Colle
 from idealgas.analysis.transport.combine import States
 from idealgas.analysis.transport.measure import Transport
 
-WALLS = "No viscosities and heat conductivity: they take periodic sides, as walls change the currents of the whole gas."
+WALLS = "No viscosities and thermal conductivity: they need periodic sides, as walls change the currents of the gas."
 
 
 def transport_tables(result: Transport | States) -> list[Table]:
@@ -30,7 +30,7 @@ def _of_states(result: States) -> list[Table]:
         for state in result.states
         for symbol, one in state.coefficients.items()
     ]
-    heads = ("", "N", "runs", "value", "± s.e.", THEORY_ERROR, "dev./s.e.")
+    heads = ("", "N", "runs", "value", "± s.e.", THEORY_ERROR, "deviation (σ)")
     return [Table("Transport coefficients over Enskog's", heads, rows)]
 
 
@@ -62,7 +62,7 @@ def _of_currents(found: Collective, free_times: float) -> list[Table]:
     mutual = rows.pop("mutual_diffusion", [])
     currents = [row for each in rows.values() for row in each]
     return [
-        estimates("Viscosity η, heat conductivity λ and bulk viscosity ζ, theory Enskog's", currents, (plateau,)),
+        estimates("Viscosity η, thermal conductivity λ and bulk viscosity ζ, theory Enskog's", currents, (plateau,)),
         estimates("Diffusion of two species in each other (Maxwell and Stefan), theory Enskog's", mutual),
         estimates("Pressure tensor (energy/length²)", [(f"P {name}", one) for name, one in found.pressure.items()]),
     ]

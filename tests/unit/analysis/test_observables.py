@@ -10,7 +10,7 @@ import pytest
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.statistics import Estimate, judge
+from idealgas.analysis.core.statistics import Estimate, check_theory
 from idealgas.analysis.core.style import save
 from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
 from idealgas.analysis.heat_capacity.figure import heat_capacity_figure
@@ -142,7 +142,7 @@ def test_pressure_by_hand(log):
     first = np.flatnonzero((partner >= 0) & (disc < partner))
     virial = ((position[first] - position[first + 1]) * push[first]).sum()
     z = 1 + virial / (end - start) / (2 * log.discs.kinetic_energy)
-    assert routes["pairs, virial"].compressibility.value == pytest.approx(z, rel=1e-10)
+    assert routes["pairs, virial"].compressibility_factor.value == pytest.approx(z, rel=1e-10)
     rate = 2 * len(first) / 100 / (end - start)
     assert result.collision_rates[0].rate.value == pytest.approx(rate, rel=1e-10)
     assert result.free_paths[0].time.value == pytest.approx(1 / rate, rel=1e-10)
@@ -154,15 +154,17 @@ def test_check_fails_when_theory_is_off(log):
     assert result.check().agrees is True
 
     def moved(route):
-        z = route.compressibility
-        return replace(route, compressibility=replace(z, theory=z.value + 4.5 * z.standard_error))
+        z = route.compressibility_factor
+        return replace(route, compressibility_factor=replace(z, theory=z.value + 4.5 * z.standard_error))
 
     assert replace(result, routes=tuple(moved(route) for route in result.routes)).check().agrees is False
-    unknown = tuple(replace(r, compressibility=replace(r.compressibility, theory=None)) for r in result.routes)
+    unknown = tuple(
+        replace(r, compressibility_factor=replace(r.compressibility_factor, theory=None)) for r in result.routes
+    )
     assert str(replace(result, routes=unknown, no_theory="why").check()) == "No theory here: why."
-    pairs = replace(result.routes[-1].compressibility, standard_error=math.nan)
+    pairs = replace(result.routes[-1].compressibility_factor, standard_error=math.nan)
     with pytest.raises(UserError, match="nothing to check"):
-        replace(result, routes=(replace(result.routes[-1], compressibility=pairs),)).check()
+        replace(result, routes=(replace(result.routes[-1], compressibility_factor=pairs),)).check()
 
 
 def test_an_error_of_theory_counts_like_one_of_measurement():
@@ -170,10 +172,10 @@ def test_an_error_of_theory_counts_like_one_of_measurement():
     assert found.deviation == pytest.approx(2.0)
     assert found.times(-2.0).deviation == pytest.approx(-2.0)
     assert Estimate.from_dict(found.as_dict()) == found
-    verdict = judge([("a", found), ("b", Estimate(1.0, 0.1, 10.0))])
-    assert verdict.agrees is True
-    assert verdict.judged == ("a",)  # the other has no theory
-    assert str(verdict) == "Measurement and theory agree within 4 standard errors in a."
+    checked = check_theory([("a", found), ("b", Estimate(1.0, 0.1, 10.0))])
+    assert checked.agrees is True
+    assert checked.compared == ("a",)  # the other has no theory
+    assert str(checked) == "Measurement and theory agree within 4 standard errors in a."
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
@@ -238,7 +240,7 @@ def test_every_axis_has_a_name(log, hotter):
         pressure_figure(pressure(log)),
         temperature_figure(temperature(log)),
         heat_capacity_figure(combine_heat_capacity([heat_capacity(log), heat_capacity(hotter)])),
-        *(histogram_figure(histogram(log, quantity)) for quantity in ("speed", "wait")),
+        *(histogram_figure(histogram(log, quantity)) for quantity in ("speed", "waiting-time")),
     ):
         for ax in figure.axes:
             assert ax.get_xlabel()

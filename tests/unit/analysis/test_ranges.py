@@ -9,7 +9,7 @@ from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, only, silent
 from idealgas.analysis import registry
 from idealgas.analysis.heat_capacity.energy_series import energy_series
 from idealgas.analysis.theory.forecast import forecast
-from idealgas.analysis.theory.granular import Grains, cooling_per_collision
+from idealgas.analysis.theory.granular import GranularParameters, cooling_per_collision
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
@@ -147,9 +147,9 @@ def test_a_slit_takes_a_thin_gas(made):
 
 
 def test_waits_are_exponential_for_many_discs(made):
-    few = registry.analyse(made("species.gas.count=10"), "histogram", quantity="wait")
+    few = registry.analyse(made("species.gas.count=10"), "histogram", quantity="waiting-time")
     assert few.distributions[0].tests == ()
-    assert registry.analyse(made(), "histogram", quantity="wait").distributions[0].tests
+    assert registry.analyse(made(), "histogram", quantity="waiting-time").distributions[0].tests
 
 
 def test_faces_without_events_have_the_ends_too(made):
@@ -196,7 +196,7 @@ def test_laws_of_cooling_end_at_strong_losses(made):
 
     known = found(0.9).loss
     assert known.theory_error / known.theory == pytest.approx(np.hypot(0.015, 1 / 78))
-    assert known.theory == pytest.approx(cooling_per_collision(Grains(0.9)) * 40 / 39)
+    assert known.theory == pytest.approx(cooling_per_collision(GranularParameters(0.9)) * 40 / 39)
     assert silent(found(0.9), "no theory of collisions that lose more")
     assert (found(0.6).loss.theory, found(0.6).haff.theory, found(0.6).fourth.theory) == (None, None, None)
     only(found(0.6), "no theory of collisions that lose more than those with e = 0.8")
@@ -211,8 +211,8 @@ def test_a_relaxation_time_takes_a_start_like_that_of_its_error(made):
     only(registry.analyse(made(fast), "relaxation"), "a few discs are faster than most")
     equal = "species=[{name='gas', count=200, radius=0.05, speed=1}]"
     assert silent(registry.analyse(made(equal), "relaxation"), "faster than most")
-    assert silent(registry.analyse(made(equal), "relaxation"), "later courses")
-    only(registry.analyse(made(equal), "relaxation", start=0.2), "later courses scatter more")
+    assert silent(registry.analyse(made(equal), "relaxation"), "later curves")
+    only(registry.analyse(made(equal), "relaxation", start=0.2), "later curves scatter more")
 
 
 def test_a_law_of_a_piston_takes_a_fluid(made):
@@ -284,4 +284,4 @@ def test_directions_are_alike_in_a_square_box(made):
     oblong = PERIODIC.replace("[8, 8]", "[16, 4]")
     found = registry.analyse(made(oblong, long), "transport").collective.coefficients
     assert found["viscosity"].difference.theory is None
-    assert found["heat_conductivity"].difference.theory is None
+    assert found["thermal_conductivity"].difference.theory is None

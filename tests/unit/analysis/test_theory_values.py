@@ -70,7 +70,7 @@ def test_two_discs_that_do_not_fit():
 def test_few_collisions_of_two_discs_are_those_of_the_dilute_gas():
     """Both roads to Z of two small discs meet: exact, and first order in density and walls."""
     exact = box_theory([0.005], [2], (1.0, 1.0))
-    first = hard_discs.box_compressibility([0.005], [2], (1.0, 1.0))
+    first = hard_discs.box_compressibility_factor([0.005], [2], (1.0, 1.0))
     assert exact.pairs.value - 1 == pytest.approx(first - 1, rel=1e-3)
     assert exact.contacts == pytest.approx(hard_discs.box_contacts([0.005], [2], (1.0, 1.0)), rel=1e-3)
     assert exact.pairs.error == 0

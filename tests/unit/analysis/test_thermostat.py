@@ -67,7 +67,7 @@ def test_the_energy_that_thermostat_collisions_give_is_on_the_account(make):
             before[disc] = velocity
     assert found.given["the heat bath"][-1] == pytest.approx(given, rel=1e-10)
     assert found.law.temperature[0] == 2
-    assert any("given by the heat bath" in table.heads for table in evolution_tables(found))
+    assert any("energy from the heat bath" in table.heads for table in evolution_tables(found))
     assert evolution_figure(found).axes
 
 

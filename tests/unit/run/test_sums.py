@@ -154,9 +154,9 @@ def compared(tmp_path, *overrides):
     assert other.window.start == start
     assert [route.name for route in other.routes] == [route.name for route in one.routes]
     for found, expected in zip(other.routes, one.routes, strict=True):
-        assert found.compressibility.value == pytest.approx(expected.compressibility.value, rel=1e-12)
-        assert found.compressibility.theory == expected.compressibility.theory
-        error = found.compressibility.standard_error / expected.compressibility.standard_error
+        assert found.compressibility_factor.value == pytest.approx(expected.compressibility_factor.value, rel=1e-12)
+        assert found.compressibility_factor.theory == expected.compressibility_factor.theory
+        error = found.compressibility_factor.standard_error / expected.compressibility_factor.standard_error
         assert 0.5 < error < 2
     for found, expected in zip(other.collision_rates, one.collision_rates, strict=True):
         assert found.rate.value == pytest.approx(expected.rate.value, rel=1e-12)
@@ -224,7 +224,7 @@ def test_sums_that_were_not_asked_for(tmp_path):
         assert not [name for name in log.checkpoints[0].arrays if "flow" in name or "face" in name]
         with pytest.raises(UserError, match=r"no events .* and no sums \(log.pressure = true\)"):
             pressure(log)
-        assert status(log).compressibility is None
+        assert status(log).compressibility_factor is None
 
 
 def test_pressure_of_few_and_of_enough_samples(tmp_path):
@@ -236,8 +236,8 @@ def test_pressure_of_few_and_of_enough_samples(tmp_path):
         found = pressure(log)
         assert found.window.detected
         assert found.check().agrees
-        z = status(log).compressibility
-        assert abs(z.value - found.routes[-1].compressibility.value) < 5 * z.standard_error
+        z = status(log).compressibility_factor
+        assert abs(z.value - found.routes[-1].compressibility_factor.value) < 5 * z.standard_error
         time = log.observables["energy"][0]
         few = rf"only 16 samples between t = 0 and {time[15]:g}, one for each epoch or snapshot \(allowed >= 17\)"
         with pytest.raises(UserError, match=few):

@@ -61,12 +61,12 @@ def test_the_table_is_tidy(task, tmp_path):
     assert list(rows[0])[:5] == ["point", "replicate", "seed", "phi", "species.x"]
     by_name = {(row["analysis"], row["quantity"]): row for row in rows}
     assert len(by_name) == len(rows)
-    pairs = by_name["pressure", "routes/pairs, virial/compressibility"]
+    pairs = by_name["pressure", "routes/pairs, virial/compressibility_factor"]
     ((label, result, _),) = stored_results(tmp_path, "pressure")
     assert label == "phi = 0.1, species.x = [1, 2]"
     sample = restore_pressure(result, label)
-    assert float(pairs["value"]) == sample.compressibility.value
-    assert float(pairs["theory"]) == sample.compressibility.theory
+    assert float(pairs["value"]) == sample.compressibility_factor.value
+    assert float(pairs["theory"]) == sample.compressibility_factor.theory
     assert pairs["species.x"] == "[1, 2]"
     assert by_name["temperature", "species/gas/both"]["standard_error"]
     if len(tables) == 2:

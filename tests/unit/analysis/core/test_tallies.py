@@ -8,7 +8,7 @@ import pytest
 
 from idealgas.analysis.core.flights import DensityBins, Moments, VelocityHistogram
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.intervals import FreeFlights, Waits
+from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.stream import stream
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -234,7 +234,7 @@ def test_free_flights(log, edges, path):
 
 
 def test_waits(log, edges):
-    tally = Waits(np.array([0.05]), 10, stride=4, most_samples=50)
+    tally = WaitingTimes(np.array([0.05]), 10, stride=4, most_samples=50)
     stream(log, edges, [tally])
     times = [time for time, disc, partner, *_ in rows_of(log, edges) if partner < 0 or disc < partner]
     waits = np.diff(times)
@@ -256,7 +256,8 @@ def test_rows_cut_into_chunks_make_no_difference(log, edges, monkeypatch):
             yield from chunks(columns, row, min(row + 7, stop))
 
     whole, parts = (
-        [Moments(), Impacts(), FreeFlights(True, np.ones(2), 5, 2, 100), Waits(np.ones(1), 5, 2, 100)] for _ in range(2)
+        [Moments(), Impacts(), FreeFlights(True, np.ones(2), 5, 2, 100), WaitingTimes(np.ones(1), 5, 2, 100)]
+        for _ in range(2)
     )
     stream(log, edges, whole)
     monkeypatch.setattr(log, "chunks", short)
@@ -273,7 +274,7 @@ def test_progress_counts_rows(log):
     stream(
         log,
         np.linspace(0, log.end_time, 5),
-        [Waits(np.ones(1), 5, 2, 9)],
+        [WaitingTimes(np.ones(1), 5, 2, 9)],
         lambda done, total: seen.append((done, total)),
     )
     assert seen[-1] == (len(log), len(log))

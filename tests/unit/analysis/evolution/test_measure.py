@@ -73,7 +73,7 @@ def test_adiabat(make):
     found = evolution(make("piston={ velocity = -0.2 }", "species.radius=0.001"))
     assert found.law.temperature[-1] == pytest.approx(1.5 * 12 / 8, rel=1e-3)
     assert found.piston[[0, -1]] == pytest.approx([12, 8])
-    assert found.given["right"][-1] == pytest.approx(found.parts["motion"][-1] - 60)
+    assert found.given["piston"][-1] == pytest.approx(found.parts["motion"][-1] - 60)
 
 
 def test_a_piston_with_a_mass_keeps_its_balance_and_has_a_place(make):
@@ -111,12 +111,12 @@ def test_pressure_in_bins_of_time(make):
     """The bins together are the mean over the log, and the picture has one panel for P(t) and one for P(A)."""
     log = make("piston={ velocity = -0.1 }", "species.radius=0.001")
     found = evolution(log)
-    course, force = found.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
-    assert course.pressure["right wall"].mean() * 8 == pytest.approx(force, rel=1e-9)
-    assert course.area[[0, -1]] == pytest.approx(
-        96 - 0.8 * 20 * np.array([0.5, len(course.area) - 0.5]) / len(course.area)
+    series, force = found.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
+    assert series.pressure["right wall"].mean() * 8 == pytest.approx(force, rel=1e-9)
+    assert series.area[[0, -1]] == pytest.approx(
+        96 - 0.8 * 20 * np.array([0.5, len(series.area) - 0.5]) / len(series.area)
     )
-    assert set(course.pressure) == {"left wall", "right wall", "bottom wall", "top wall"}
+    assert set(series.pressure) == {"left wall", "right wall", "bottom wall", "top wall"}
     titles = [table.title for table in evolution_tables(found)]
     assert titles[1] == "Pressure on walls, means over bins of time"
     axes = [ax.get_ylabel() for ax in evolution_figure(found).axes]
@@ -126,13 +126,13 @@ def test_pressure_in_bins_of_time(make):
 
 
 def test_pressure_of_a_uniform_gas_is_that_of_all_sides(make):
-    course = evolution(make()).pressure
-    assert course.shown == ("all sides",)
-    assert course.lines is None
-    assert (course.area == 96).all()
-    sides = np.mean([course.pressure[f"{side} wall"] for side in ("left", "right")], axis=0) * 16
-    ends = np.mean([course.pressure[f"{side} wall"] for side in ("bottom", "top")], axis=0) * 24
-    assert course.pressure["all sides"] == pytest.approx((sides + ends) / 40)
+    series = evolution(make()).pressure
+    assert series.shown == ("all sides",)
+    assert series.lines is None
+    assert (series.area == 96).all()
+    sides = np.mean([series.pressure[f"{side} wall"] for side in ("left", "right")], axis=0) * 16
+    ends = np.mean([series.pressure[f"{side} wall"] for side in ("bottom", "top")], axis=0) * 24
+    assert series.pressure["all sides"] == pytest.approx((sides + ends) / 40)
 
 
 def test_without_hits_there_is_no_pressure(make):

@@ -43,9 +43,9 @@ def test_without_a_stationary_state_the_window_is_the_whole_log(make):
     cooling = make("restitution.normal=0.9")
     assert histogram(cooling).window.as_dict() == {"start": 0.0, "end": 30.0, "equilibration_detected": False}
     assert histogram(cooling, start=20.0).window.start == 20.0
-    assert histogram(cooling, "wait").no_law
+    assert histogram(cooling, "waiting-time").no_law
     conduction = make("box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }")
-    found = histogram(conduction, "wait")  # it is stationary, if not in equilibrium
+    found = histogram(conduction, "waiting-time")  # it is stationary, if not in equilibrium
     assert found.window.detected
     assert found.no_law is None
 

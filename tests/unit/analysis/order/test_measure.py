@@ -105,7 +105,7 @@ def test_instants_of_a_log_without_events_are_its_checkpoints(make):
     assert found.frames >= FEWEST_FRAMES
     assert set(found.time) <= set(log.checkpoints.times)
     state = log.state_at(found.time[3])
-    assert found.course[3] == np.abs(bond_order(state.position, log.box, log.periodic).value.mean())
+    assert found.series[3] == np.abs(bond_order(state.position, log.box, log.periodic).value.mean())
     with pytest.raises(UserError, match="only 0 checkpoints"):
         order(log, start=float(log.checkpoints.times[-2]) + 1e-6, end=float(log.checkpoints.times[-1]) - 1e-6)
 

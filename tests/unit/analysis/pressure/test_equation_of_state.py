@@ -15,7 +15,7 @@ def samples(phis, error, number=1000, runs=4, seed=0):
     """Runs whose Z is theory's at their N with noise of a known size."""
     random = np.random.default_rng(seed)
     for phi in phis:
-        z = float(hard_discs.compressibility(phi, number))
+        z = float(hard_discs.compressibility_factor(phi, number))
         for value in random.normal(z, error * z, runs):
             yield Sample(phi, number, Estimate(float(value), error * z, 500.0, z))
 
@@ -44,7 +44,7 @@ def test_a_wrong_pressure_is_found():
         Sample(
             s.packing_fraction,
             s.number,
-            Estimate(1.01 * s.compressibility.value, 1e-3, 500.0, s.compressibility.theory),
+            Estimate(1.01 * s.compressibility_factor.value, 1e-3, 500.0, s.compressibility_factor.theory),
         )
         for s in samples([0.1, 0.2], 1e-4)
     ]
@@ -68,9 +68,9 @@ def test_every_phase_has_the_theory_that_is_known():
     assert dense.infinite.theory == pytest.approx(1 / (1 - math.sqrt(0.8 * math.sqrt(12) / math.pi)))
     assert 0.4 < dense.infinite.theory_error < 0.6
     assert (dense.virial, dense.henderson) == (None, None)
-    verdict = found.check()
-    assert verdict.agrees is True
-    assert len(verdict.judged) == 4
+    checked = found.check()
+    assert checked.agrees is True
+    assert len(checked.compared) == 4
     assert equation_of_state([unknown]).check().agrees is None
     (row,) = (row for row in pressure_tables(found)[0].shown if row[0] == "0.71")
     assert row[5:] == ["", "", "", "", ""]
@@ -107,7 +107,7 @@ def test_resummed_series_beside_pade_approximants():
         q = Polynomial([1.0, *np.linalg.solve(matrix, [-series[above + k] for k in range(1, below + 1)])])
         p = Polynomial((Polynomial(series) * q).coef[: above + 1])
         phi = np.linspace(0.01, 0.55, 55)
-        assert hard_discs.compressibility(phi) == pytest.approx(p(phi) / q(phi), rel=1e-4)
+        assert hard_discs.compressibility_factor(phi) == pytest.approx(p(phi) / q(phi), rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -115,4 +115,4 @@ def test_resummed_series_beside_pade_approximants():
 )
 def test_resummed_series_beside_molecular_dynamics(expansion, z):
     """Area over that of close packing: Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985); theirs are good to 1e-4."""
-    assert hard_discs.compressibility(math.pi / math.sqrt(12) / expansion) == pytest.approx(z, rel=2e-4)
+    assert hard_discs.compressibility_factor(math.pi / math.sqrt(12) / expansion) == pytest.approx(z, rel=2e-4)

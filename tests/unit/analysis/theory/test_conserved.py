@@ -59,7 +59,7 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
     In equilibrium the 6 degrees of freedom that are no flow share it.
     """
     scene, gas = made(TWO, PERIODIC, FLOW)
-    assert conserved.common_motion(scene, gas) == pytest.approx([3, 0])
+    assert conserved.centre_of_mass_velocity(scene, gas) == pytest.approx([3, 0])
     assert gas.temperature == pytest.approx(4.505)
     found = forecast(scene, gas)
     assert found.species[0].temperature == pytest.approx(0.005, rel=1e-9)
@@ -70,7 +70,7 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
 
 def test_a_flow_that_walls_stop_becomes_heat():
     scene, gas = made(STREAM)
-    assert conserved.common_motion(scene, gas).tolist() == [0, 0]
+    assert conserved.centre_of_mass_velocity(scene, gas).tolist() == [0, 0]
     found = forecast(scene, gas)
     assert found.species[0].temperature == pytest.approx(0.005, rel=1e-9)
     assert found.temperature == pytest.approx(4.505, rel=1e-9)

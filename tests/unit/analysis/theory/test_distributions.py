@@ -18,7 +18,7 @@ LAWS = {
     "free time": (distributions.FreeTimeLaw(T, M, (M,), (0.8,)), 0, 80),
     "free path": (distributions.FreePathLaw(T, M, (M,), (0.8,)), 0, 80),
     "free path, mixture": (distributions.FreePathLaw(T, M, (M, 9.0), (0.8, 2.0)), 0, 40),
-    "wait": (distributions.WaitLaw(3.0), 0, 20),
+    "waiting-time": (distributions.WaitingTimeLaw(3.0), 0, 20),
 }
 
 

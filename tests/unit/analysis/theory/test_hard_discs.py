@@ -18,40 +18,46 @@ def test_virial_series_has_the_published_coefficients():
 @pytest.mark.parametrize("phi", [0.01, 0.1, 0.2])
 def test_resummed_series_is_the_series(phi):
     # they differ from the eleventh virial coefficient on, which is below 12 φ¹⁰
-    assert hard_discs.compressibility(phi) == pytest.approx(hard_discs.virial_series(phi), abs=24 * phi**10 + 1e-15)
+    assert hard_discs.compressibility_factor(phi) == pytest.approx(
+        hard_discs.virial_series(phi), abs=24 * phi**10 + 1e-15
+    )
 
 
 def test_henderson_is_close_below_a_half():
     phi = np.linspace(0.01, 0.5, 50)
-    assert np.abs(hard_discs.henderson_compressibility(phi) / hard_discs.compressibility(phi) - 1).max() < 0.005
-    assert hard_discs.henderson_compressibility(phi) == pytest.approx(
+    assert (
+        np.abs(hard_discs.henderson_compressibility_factor(phi) / hard_discs.compressibility_factor(phi) - 1).max()
+        < 0.005
+    )
+    assert hard_discs.henderson_compressibility_factor(phi) == pytest.approx(
         1 + 2 * phi * hard_discs.contact_value(phi), rel=1e-14
     )
 
 
 def test_closed_system_has_fewer_pairs():
     low = 1e-4
-    excess = hard_discs.compressibility(low, 50) - 1
-    assert excess / (hard_discs.compressibility(low) - 1) == pytest.approx(1 - 1 / 50, abs=1e-4)
+    excess = hard_discs.compressibility_factor(low, 50) - 1
+    assert excess / (hard_discs.compressibility_factor(low) - 1) == pytest.approx(1 - 1 / 50, abs=1e-4)
     # Z_N - Z = (φ/2N) d ln κ/dφ with 1/κ = d(φZ)/dφ, by finite differences
     phi, h = 0.3, 1e-4
 
     def inverse_compressibility(phi):
-        return ((phi + h) * hard_discs.compressibility(phi + h) - (phi - h) * hard_discs.compressibility(phi - h)) / (
-            2 * h
-        )
+        return (
+            (phi + h) * hard_discs.compressibility_factor(phi + h)
+            - (phi - h) * hard_discs.compressibility_factor(phi - h)
+        ) / (2 * h)
 
     slope = -(math.log(inverse_compressibility(phi + h)) - math.log(inverse_compressibility(phi - h))) / (2 * h)
-    assert hard_discs.compressibility(phi, 40) - hard_discs.compressibility(phi) == pytest.approx(
+    assert hard_discs.compressibility_factor(phi, 40) - hard_discs.compressibility_factor(phi) == pytest.approx(
         phi / 80 * slope, rel=1e-4
     )
 
 
 def test_mixture_of_equals_is_one_species():
-    one = hard_discs.mixture_compressibility([0.5], [300], 1000.0)
-    two = hard_discs.mixture_compressibility([0.5, 0.5], [100, 200], 1000.0)
+    one = hard_discs.mixture_compressibility_factor([0.5], [300], 1000.0)
+    two = hard_discs.mixture_compressibility_factor([0.5, 0.5], [100, 200], 1000.0)
     assert two == pytest.approx(one, rel=1e-14)
-    assert one == pytest.approx(hard_discs.henderson_compressibility(300 * math.pi * 0.25 / 1000), rel=1e-14)
+    assert one == pytest.approx(hard_discs.henderson_compressibility_factor(300 * math.pi * 0.25 / 1000), rel=1e-14)
     rates = hard_discs.mixture_collision_rate([0.5, 0.5], [2.0, 2.0], [100, 200], 1000.0, 1.5)
     alone = hard_discs.collision_rate(1.0, 0.3, 1.5, 2.0, 300 * math.pi * 0.25 / 1000)
     assert rates.sum(axis=1) == pytest.approx([alone, alone], rel=1e-14)
@@ -122,18 +128,18 @@ def test_second_virial_coefficient_of_a_small_box():
     a, b, sigma = box[0] - 2 * radius, box[1] - 2 * radius, 2 * radius
     area = a * b
     excess = (math.pi * sigma**2 / area - 2 * sigma**3 * (a + b) / area**2 + sigma**4 / area**2) / 2
-    assert hard_discs.box_compressibility([radius], [2], box) - 1 == pytest.approx(excess, rel=1e-4)
+    assert hard_discs.box_compressibility_factor([radius], [2], box) - 1 == pytest.approx(excess, rel=1e-4)
 
 
 def test_box_of_equals_given_as_two_species():
-    one = hard_discs.box_compressibility([0.5], [200], (40.0, 50.0))
-    two = hard_discs.box_compressibility([0.5, 0.5], [80, 120], (40.0, 50.0))
+    one = hard_discs.box_compressibility_factor([0.5], [200], (40.0, 50.0))
+    two = hard_discs.box_compressibility_factor([0.5, 0.5], [80, 120], (40.0, 50.0))
     assert two - 1 == pytest.approx(one - 1, rel=2e-3)  # Henderson's χ against the virial series, and 1/N
 
 
 def test_no_theory_beyond_its_range():
     for width, known in ((12.6, True), (12.5, False), (11.0, False)):
-        assert math.isfinite(hard_discs.box_compressibility([0.5], [99], (10.0, width))) == known
+        assert math.isfinite(hard_discs.box_compressibility_factor([0.5], [99], (10.0, width))) == known
 
 
 @pytest.mark.parametrize("phi", [0.0001, 0.1, 0.5])

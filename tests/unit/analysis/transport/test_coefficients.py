@@ -154,7 +154,7 @@ def test_coefficients_of_a_log(log):
     whole = found.collective
     single = len(log.discs.species_names) == 1
     last = ["bulk_viscosity", *["mutual_diffusion"] * (not single)]
-    assert list(whole.coefficients) == ["viscosity", *["heat_conductivity"] * single, *last]
+    assert list(whole.coefficients) == ["viscosity", *["thermal_conductivity"] * single, *last]
     assert whole.plateau[1] == pytest.approx(2 * whole.plateau[0])
     for name, one in whole.coefficients.items():
         routes = [route.value for route in one.routes.values()]

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.evolution.course import GROUP, pressure_course
-from idealgas.analysis.evolution.course import _scatter as scatter
+from idealgas.analysis.evolution.pressure_series import GROUP, pressure_series
+from idealgas.analysis.evolution.pressure_series import _scatter as scatter
 
 BINS = 64
 GAS = """
@@ -18,7 +18,7 @@ thermostat = { temperature = 1.0, rate = 0.3 }
 
 
 def scatters(change, spread=1.0):
-    """Mean and standard error over 200 series of bins whose errors are 1, with a change in the course."""
+    """Mean and standard error over 200 series of bins whose errors are 1, with a change in the series."""
     found = [
         scatter(spread * draw.normal(size=BINS) + change, np.ones(BINS))
         for draw in map(np.random.default_rng, range(200))
@@ -53,7 +53,7 @@ def test_bins_without_hits_leave_the_others_their_scatter():
 def test_errors_of_calm_times_are_the_same_without_the_change_before(make):
     """A bath cools the gas to a thirtieth within 5 of 100: where that counted, errors were 3 to 6 times as large."""
     log = make()
-    whole, late = pressure_course(log, 0.0, 100.0), pressure_course(log, 50.0, 100.0)
+    whole, late = pressure_series(log, 0.0, 100.0), pressure_series(log, 50.0, 100.0)
     for wall in ("left wall", "all sides"):
         of_whole = np.sqrt((whole.error[wall][whole.edges[1:] > 50.0] ** 2).mean() * np.diff(whole.edges)[0])
         of_late = np.sqrt((late.error[wall] ** 2).mean() * np.diff(late.edges)[0])

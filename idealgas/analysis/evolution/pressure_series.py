@@ -36,7 +36,7 @@ ALL_SIDES = "all sides"
 
 
 @dataclass(frozen=True)
-class PressureCourse:
+class PressureSeries:
     """Mechanical pressure on walls in B bins of time.
 
     edges: (B + 1,), times between the bins. area: (B,), mean area that the gas has, length². pressure, error: (B,),
@@ -64,7 +64,7 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def pressure_course(log: Log, first: float, last: float) -> PressureCourse | None:
+def pressure_series(log: Log, first: float, last: float) -> PressureSeries | None:
     """Mechanical pressure on the walls of a log between two times; None without events or without hits of walls."""
     if not log.has_events or not log.has_positions:
         return None
@@ -84,7 +84,7 @@ def pressure_course(log: Log, first: float, last: float) -> PressureCourse | Non
         moving = gauge.moving.wall if gauge.moving else None
         shown = [face.name for face in sides if moving in (None, face.wall)]
     found = {name: _in_bins(*series, bins) for name, series in given.items()}
-    return PressureCourse(
+    return PressureSeries(
         blocks[:: BLOCKS // bins],
         gauge.area(blocks).reshape(bins, -1).mean(axis=1),
         {name: values for name, (values, _) in found.items()},
