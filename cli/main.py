@@ -25,7 +25,7 @@ from ._terminal import echo, exit_on_closed_pipe
 GROUPS = {
     "Run": ("new", "examples", "schema", "check", "run", "resume", "recover", "warm-up"),
     "Look": ("info", "follow", "animate"),
-    "Analyse": registry.commands(),
+    "Analyse": tuple(sorted(registry.commands(), key=registry.position_of)),
     "Share": ("report", "export"),
     "Study": ("sweep", "accuracy", "bench"),
 }

@@ -3,7 +3,8 @@
 Names and first lines of help are read without importing any analysis.
 """
 
-import tokenize
+import ast
+import re
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
@@ -30,15 +31,20 @@ def commands() -> tuple[str, ...]:
     return tuple(name.replace("_", "-") for name in names())
 
 
+def _source(name: str) -> str:
+    path = FOLDER / f"{name.replace('-', '_')}.py"
+    return (path if path.exists() else path.with_suffix("") / "__init__.py").read_text(encoding="utf-8")
+
+
 def help_of(name: str) -> str:
     """Help text of the command of an analysis: the docstring of its module, read without importing it."""
-    from ast import literal_eval
-    from inspect import cleandoc
+    return ast.get_docstring(ast.parse(_source(name))) or ""
 
-    path = FOLDER / f"{name}.py"
-    with tokenize.open(path if path.exists() else FOLDER / name / "__init__.py") as file:
-        text = next(token.string for token in tokenize.generate_tokens(file.readline) if token.type == tokenize.STRING)
-    return cleandoc(literal_eval(text))
+
+def position_of(name: str) -> int:
+    """Position of an analysis in the report and in lists of commands, read without importing it."""
+    found = re.search(r"^    position = (\d+)$", _source(name), re.MULTILINE)
+    return int(found[1]) if found else 1000
 
 
 def analyses() -> "tuple[type[Analysis], ...]":

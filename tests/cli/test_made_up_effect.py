@@ -1,6 +1,6 @@
 """A new effect is two files and one line of the list: scenes, runs, checks, schema, energy and benchmark have it.
 
-The package is copied, and the copy gets the effect; everything else in it is unchanged. Its code runs interpreted.
+The package is copied, and the copy gets the effect; everything else in it is unchanged. Most tests run it interpreted.
 """
 
 import json
@@ -100,7 +100,6 @@ def same(path):
 summary = simulate(load_scene("scene.toml"), "run.h5")
 whole = events("run.h5")
 simulate(load_scene("scene.toml", ["run.method=brute_force"]), "oracle.h5")
-simulate(load_scene("scene.toml", ["run.threads=2"]), "threads.h5")
 simulate(load_scene("scene.toml", ["run.events=50"]), "resumed.h5")
 resume("resumed.h5", ["run.events=120"])
 with open_log("run.h5") as log:
@@ -114,9 +113,26 @@ try:
     load_scene("scene.toml", ["tilt.strength=9"])
 except SceneError as error:
     found["error"] = str(error)
-found |= {name: same(f"{name}.h5") for name in ("oracle", "threads", "resumed")}
+found |= {name: same(f"{name}.h5") for name in ("oracle", "resumed")}
 found |= {"drift": summary.energy_drift, "bench": list(SCENES), "sample": list(effect_scene("tilt", 1).effects)}
 print(json.dumps(found))
+"""
+TWO_THREADS = """
+import json
+import numpy as np
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import load_scene
+
+LARGE = ["box.size=[200, 200]", "species.count=12000", "tilt.strength=0.01", "run.events=600000"]
+
+def events(path):
+    with open_log(path) as log:
+        return {name: np.concatenate([getattr(part, name) for part in log.chunks()]) for name in log.columns}
+
+shared = [simulate(load_scene("scene.toml", [*LARGE, f"run.threads={n}"]), f"{n}.h5").shared_slices for n in (1, 2)]
+alone, together = events("1.h5"), events("2.h5")
+print(json.dumps([shared, all(np.array_equal(column, together[name]) for name, column in alone.items())]))
 """
 
 
@@ -135,13 +151,13 @@ def run(tmp_path_factory):
     names.write_text(names.read_text().replace(last, last + '    "tilt",\n'))
     (folder / "scene.toml").write_text(SCENE)
 
-    def run(program, *arguments):
+    def run(program, *arguments, **environment):
         done = subprocess.run(
             [sys.executable, "-c", program, *arguments],
             capture_output=True,
             text=True,
             cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(copy), "NUMBA_DISABLE_JIT": "1"},
+            env=os.environ | {"PYTHONPATH": str(copy), "NUMBA_DISABLE_JIT": "1"} | environment,
             stdin=subprocess.DEVNULL,
         )
         assert done.returncode == 0, done.stderr
@@ -155,7 +171,7 @@ def test_it_runs_like_any_other(run):
     assert found["acceleration"] == pytest.approx([0.5 * 0.5403023058681398, 0.5 * 0.8414709848078965], rel=1e-15)
     assert found["effects"] == found["sample"] == ["tilt"]
     assert found["rows"] >= 120
-    assert [found[name] for name in ("oracle", "threads", "resumed")] == [True] * 3
+    assert [found[name] for name in ("oracle", "resumed")] == [True] * 2
     assert "potential_energy" in found["parts"]
     assert abs(found["drift"]) < 1e-12
     assert "tilt" in found["bench"]
@@ -166,3 +182,10 @@ def test_commands_show_it(run):
     command = "from idealgas_cli.main import main; main()"
     assert json.loads(run(command, "check", "scene.toml", "--json"))["effects"] == ["tilt"]
     assert json.loads(run(command, "schema"))["$defs"]["Tilt"]["required"] == ["strength"]
+
+
+@pytest.mark.long
+def test_two_threads_share_its_work(run, tmp_path):
+    (alone, together), same = json.loads(run(TWO_THREADS, NUMBA_DISABLE_JIT="0", NUMBA_CACHE_DIR=str(tmp_path)))
+    assert alone == 0 < together
+    assert same
