@@ -7,7 +7,7 @@ predictions.
 import numpy as np
 
 from idealgas.effects.bundle import Effects
-from idealgas.engine.audit import deepest_overlap_of_all
+from idealgas.engine.diagnostics import deepest_overlap_of_all
 from idealgas.engine.event_writer import (
     batch_capacity,
     write_pair,

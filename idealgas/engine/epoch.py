@@ -11,7 +11,7 @@ from idealgas.state import Gas
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
 FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs
-LONGEST_WAY = 6144  # of the fastest disc, in diameters: it limits a contact's error to 2**-54 of it for each disc
+MAX_DISPLACEMENT = 6144  # of the fastest disc, in diameters: it limits a contact's error to 2**-54 of it for each disc
 MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
 FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc
 UNDECIDED = 1e-6  # so close to a power of two, the sum of the speeds is taken exactly; NumPy's is far closer to that
@@ -60,7 +60,7 @@ def epoch_length(
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
     fastest = float(speeds.max()) + extra_speed
     other_events = narrow_encounters(gas, periodic) + thermostat_collisions
-    way = 2.0 * LONGEST_WAY * float(gas.radius.min())
+    displacement = 2.0 * MAX_DISPLACEMENT * float(gas.radius.min())
     round_the_box = MOST_CROSSINGS * min(
         (length for length, on in zip(gas.box, periodic, strict=True) if on), default=math.inf
     )
@@ -72,7 +72,7 @@ def epoch_length(
             return math.inf
         shortest = min(FEWEST_PER_DISC * n / rate, round_the_box / fastest)
         longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
-        return math.log2(min(max(way / fastest, shortest), longest))
+        return math.log2(min(max(displacement / fastest, shortest), longest))
 
     power = exponent(float(speeds.sum()))
     if math.isinf(power):

@@ -42,7 +42,7 @@ def write_image(column, row, own, periodic):
 
 
 @inline
-def write_row(batch, row, time, own, partner, kind, disc, effects):
+def write_event(batch, row, time, own, partner, kind, disc, effects):
     """Write one disc's row of an event: its state after the event."""
     u = np.uintp(row)
     batch.time[u] = time
@@ -85,8 +85,8 @@ def write_pair(batch, row, time, record, ids, i, j, effects):
         a, b = (i, j) if ids[np.uintp(i)] < ids[np.uintp(j)] else (j, i)
         a_id = np.int64(ids[np.uintp(a)])
         b_id = np.int64(ids[np.uintp(b)])
-        write_row(batch, row, time, a_id, b_id, DISC, record[np.uintp(a)], effects)
-        write_row(batch, row + 1, time, b_id, a_id, DISC, record[np.uintp(b)], effects)
+        write_event(batch, row, time, a_id, b_id, DISC, record[np.uintp(a)], effects)
+        write_event(batch, row + 1, time, b_id, a_id, DISC, record[np.uintp(b)], effects)
         return 2
     return 0
 
@@ -103,7 +103,7 @@ def write_trial(batch, row, trial):
 def write_side_hit(batch, row, time, own, side, disc, effects):
     """Write the row of a disc that hit a side of the box."""
     if batch is not None:
-        write_row(batch, row, time, np.int64(own), -1 - side, WALL, disc, effects)
+        write_event(batch, row, time, np.int64(own), -1 - side, WALL, disc, effects)
         return 1
     return 0
 
@@ -113,7 +113,7 @@ def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
     """Write the row of a disc that hit a wall segment."""
     if batch is not None:
         kind = WALL_END if at_end else WALL
-        write_row(batch, row, time, np.int64(own), -1 - FIRST_SEGMENT - segment, kind, disc, effects)
+        write_event(batch, row, time, np.int64(own), -1 - FIRST_SEGMENT - segment, kind, disc, effects)
         return 1
     return 0
 
@@ -122,7 +122,7 @@ def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
 def write_piston_hit(batch, row, time, own, piston, disc, effects):
     """Write the row of a disc that hit the piston."""
     if batch is not None and piston is not None:
-        write_row(batch, row, time, np.int64(own), -1 - piston[0].side, PISTON, disc, effects)
+        write_event(batch, row, time, np.int64(own), -1 - piston[0].side, PISTON, disc, effects)
         return 1
     return 0
 
@@ -131,6 +131,6 @@ def write_piston_hit(batch, row, time, own, piston, disc, effects):
 def write_thermostat_collision(batch, row, time, own, disc, effects):
     """Write the row of a thermostat collision."""
     if batch is not None:
-        write_row(batch, row, time, np.int64(own), BATH, THERMOSTAT, disc, effects)
+        write_event(batch, row, time, np.int64(own), BATH, THERMOSTAT, disc, effects)
         return 1
     return 0

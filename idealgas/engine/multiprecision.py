@@ -1,4 +1,4 @@
-"""The brute-force method in numbers of any length, for smooth elastic discs in a reflecting box.
+"""The brute-force method in multiprecision arithmetic, for smooth elastic discs in a reflecting box.
 
 The laws are those of every method, compiled for each number type of `physics.arithmetic`; simultaneous events are
 ordered as in `brute_force`. All pairs are searched for the next event; as a contact depends on two records only, it is
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from idealgas.effects.bundle import Effects
-from idealgas.engine.audit import deepest_overlap_of_all
+from idealgas.engine.diagnostics import deepest_overlap_of_all
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
 from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
 from idealgas.events import EventBatch
@@ -265,7 +265,7 @@ def turn_back(c, time):
 
 
 class PreciseBruteForce:
-    """The brute-force method in numbers of any length.
+    """The brute-force method in multiprecision arithmetic.
 
     Attributes:
         columns: the discs with all their digits.

@@ -67,7 +67,7 @@ class Threads(NamedTuple):
 ONE_THREAD = Threads()
 
 
-class EventCascadeError(Exception):
+class InelasticCollapseError(Exception):
     """A disc has collisions without end at one instant."""
 
 
@@ -126,14 +126,14 @@ def reload(disc, own, position, velocity):
 def check_clock(time, now, events_at_this_time, n):
     """Number of events in a row at one instant, after an event at local time `time` that follows one at `now`.
 
-    EventCascadeError if they are too many to end, ValueError if time runs backwards. n: number of discs.
+    InelasticCollapseError if they are too many to end, ValueError if time runs backwards. n: number of discs.
     """
     if time < now:
         raise ValueError("time ran backwards")
     if time > now:
         return 0
     if events_at_this_time > MOST_AT_ONCE * n:
-        raise EventCascadeError("the clock stands still: a disc collides without end at one instant")
+        raise InelasticCollapseError("the clock stands still: a disc collides without end at one instant")
     return events_at_this_time + 1
 
 

@@ -8,9 +8,18 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
-from idealgas.engine.audit import Audit, audit
+from idealgas.engine.diagnostics import Diagnostics, check_invariants
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond, thermostat_collision_rate
-from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, EventCascadeError, Limits, Threads, synchronise
+from idealgas.engine.records import (
+    COUNTERS,
+    LATEST,
+    UNLIMITED,
+    Discs,
+    InelasticCollapseError,
+    Limits,
+    Threads,
+    synchronise,
+)
 from idealgas.errors import UserError
 from idealgas.events import Column, EventBatch
 from idealgas.physics import stress
@@ -172,7 +181,7 @@ class Simulation:
         )
         try:
             rows, arrived = self.method.advance(limits, self.time, batch, self._counters)
-        except (EventCascadeError, SumRangeError) as error:
+        except (InelasticCollapseError, SumRangeError) as error:
             raise self._dated(error) from error
         self.epoch_over, self.paused = arrived and end <= until_pause, arrived and until_pause <= end
         self._local_now = limits.until if arrived else self._counted()["time"]
@@ -267,12 +276,12 @@ class Simulation:
         self.epoch += 1
         self._begin()
 
-    def audit(self) -> Audit:
+    def check_invariants(self) -> Diagnostics:
         """Conserved quantities and overlaps at the start of the epoch; to be called before `advance`."""
-        return audit(self.gas, self.method.deepest_overlap())
+        return check_invariants(self.gas, self.method.deepest_overlap())
 
-    def audit_of(self, gas: Gas) -> Audit:
+    def check_invariants_of(self, gas: Gas) -> Diagnostics:
         """Conserved quantities and overlaps of a gas that `state` returned."""
         method = copy.copy(self.method)
         method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
-        return audit(gas, method.deepest_overlap())
+        return check_invariants(gas, method.deepest_overlap())

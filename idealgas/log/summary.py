@@ -26,7 +26,7 @@ class Summary:
             and a heat bath, relative to the largest of these: rounding errors only.
         deepest_overlap: deepest overlap of two discs at epoch starts and the end, relative to the sum of their radii;
             with time steps that of all collisions.
-        farthest_outside: farthest reach of a disc out of the box at these times, in diameters.
+        max_wall_penetration: largest distance by which a disc reached out of the box at these times, in diameters.
         seconds: wall time of the last run without start-up and compilation, s.
         compile_seconds: wall time of compilation, s.
         threads: number of threads at the end of the last run.
@@ -47,7 +47,7 @@ class Summary:
     energy_change: float
     energy_drift: float
     deepest_overlap: float
-    farthest_outside: float
+    max_wall_penetration: float
     seconds: float
     compile_seconds: float
     threads: int

@@ -1,6 +1,6 @@
 """Number types of several lengths: a law written with operators runs on floats and on pairs with twice the digits.
 
-`Pair` is a number type in compiled code too, with the arithmetic of `double_double`. A law for numbers of any length
+`Pair` is a number type in compiled code too, with the arithmetic of `double_double`. A law for all these types
 writes `number(0.0, x)` where 0.0 would turn a float32 into a float64, and `root(x)` for √x. A column of numbers is an
 array (n,) of floats, or (n, 2) of pairs.
 """

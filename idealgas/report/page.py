@@ -39,7 +39,7 @@ SUMMARY = {
     "energy_change": "energy change of the discs (energy)",
     "energy_drift": "energy drift (share of the energy)",
     "deepest_overlap": "deepest overlap (sums of two radii)",
-    "farthest_outside": "farthest outside (diameters)",
+    "max_wall_penetration": "largest penetration of a wall (diameters)",
     "seconds": "wall time (s)",
     "compile_seconds": "making or loading machine code, before that (s)",
 }

@@ -17,7 +17,7 @@ from idealgas.state import Gas
 TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
 """What every run counts from time 0 on."""
 
-AUDITED = (
+DIAGNOSTICS = (
     Column("kinetic_energy", "f8", unit="energy"),
     Column("momentum", "f8", (2,), "mass length/time"),
     Column("overlap", "f8"),
@@ -41,7 +41,7 @@ def layout_of(
         event_columns=row_columns(effects, without_positions) if scene.log.events else (),
         checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
         checkpoint_values=(*totals(effects), *extra_state, *whole_state(effects)),
-        observables=(*AUDITED, *totals(effects), *extra_state, *observed(gas, effects)),
+        observables=(*DIAGNOSTICS, *totals(effects), *extra_state, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,
@@ -86,7 +86,7 @@ def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
-    """What a sample adds to the audit: the energy of the discs in all, its parts, and the effects as a whole."""
+    """What a sample adds to the diagnostics: the energy of the discs in all, its parts, and the effects as a whole."""
     energy = energy_of(gas, effects, local_time)
     sample: Values = {Column("energy", "f8", (), "energy"): energy.gas}
     parts = {effect.energy.part: effect.energy.observed for effect, _ in bundle.present(effects) if effect.energy}

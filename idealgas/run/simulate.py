@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.effects.bundle import Effects
-from idealgas.engine.audit import Audit
+from idealgas.engine.diagnostics import Diagnostics
 from idealgas.engine.event_driven.method import expected_threads
 from idealgas.engine.methods import make_method
 from idealgas.engine.records import LATEST, ONE_THREAD, UNLIMITED, Threads
@@ -204,7 +204,7 @@ class LoggedRun:
         if self._extra_state != simulation.method.extra_state:
             self._extra_state = dict(simulation.method.extra_state)
             gas, effects = simulation.state()
-            self._observe(simulation.last_event_time, gas, effects, simulation.audit_of(gas))
+            self._observe(simulation.last_event_time, gas, effects, simulation.check_invariants_of(gas))
 
     @property
     def _next_snapshot(self) -> float:
@@ -217,19 +217,19 @@ class LoggedRun:
         gas, effects = simulation.state()
         state = by_name(snapshot_state(gas, effects, simulation.method.without_positions))
         if time > simulation.time and not simulation.epoch_over:
-            self._observe(time, gas, effects, simulation.audit_of(gas))
+            self._observe(time, gas, effects, simulation.check_invariants_of(gas))
         self._log.snapshot(time, self._snapshots, state)
         self._snapshots += 1
 
     def _begin_epoch(self) -> None:
-        """Audit the start of an epoch, and keep the state from which all else can be rebuilt, if anything happened.
+        """Check the invariants at the start of an epoch and, if anything happened, write a checkpoint.
 
         UserError, after the log is closed, if the end of the run does not come.
         """
         simulation, stall = self._simulation, self._stall
         reason = stall.stall_reason()
         if stall.sample_due or reason:
-            self._observe(simulation.time, simulation.gas, simulation.effects, simulation.audit())
+            self._observe(simulation.time, simulation.gas, simulation.effects, simulation.check_invariants())
         if stall.checkpoint_due(self._scene.log.checkpoint_every) or reason:
             self._checkpoint()
         if reason:
@@ -246,20 +246,20 @@ class LoggedRun:
         whole = by_name(whole_state(simulation.effects)) | by_name(simulation.method.extra_state)
         self._log.checkpoint(simulation.time, simulation.epoch, state, simulation.totals._asdict() | whole)
 
-    def _observe(self, time: float, gas: Gas, effects: Effects, audit: Audit) -> None:
-        self._overlap = max(self._overlap, audit.overlap)
-        self._outside = max(self._outside, audit.outside)
+    def _observe(self, time: float, gas: Gas, effects: Effects, diagnostics: Diagnostics) -> None:
+        self._overlap = max(self._overlap, diagnostics.overlap)
+        self._outside = max(self._outside, diagnostics.outside)
         simulation = self._simulation
         sample = by_name(observed(gas, effects, time - simulation.time)) | by_name(self._extra_state)
-        self._log.observe(time, simulation.epoch, audit._asdict() | simulation.counters._asdict() | sample)
+        self._log.observe(time, simulation.epoch, diagnostics._asdict() | simulation.counters._asdict() | sample)
 
     def _finish(self, seconds: float) -> Summary:
-        """Audit the state at the end; the run may be continued from its last checkpoint as if it had not ended."""
+        """Check the invariants at the end; the run may be continued from its last checkpoint as if it had not ended."""
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.reached
         gas, effects = simulation.state()
-        self._observe(end_time, gas, effects, simulation.audit_of(gas))
+        self._observe(end_time, gas, effects, simulation.check_invariants_of(gas))
         start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
         totals, threads = simulation.counters, simulation.method.threads
@@ -272,7 +272,7 @@ class LoggedRun:
             energy_change=end.gas - start.gas,
             energy_drift=drift,
             deepest_overlap=self._overlap,
-            farthest_outside=self._outside,
+            max_wall_penetration=self._outside,
             seconds=seconds,
             compile_seconds=compile_seconds() - self._compiled_before,
             threads=threads.number,

@@ -54,7 +54,7 @@ def run(phi, collisions=COLLISIONS, number=N):
     gas = gas_at(phi, number)
     simulation = Simulation(gas, EventDriven())
     sigma, energy = 2 * gas.radius[0], gas.kinetic_energy
-    contact, drift, overlap = 0.0, 0.0, simulation.audit().overlap
+    contact, drift, overlap = 0.0, 0.0, simulation.check_invariants().overlap
     times, speeds = [], []
     for rows in batches(simulation, Stop(disc_collisions=collisions), FRAME):
         first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
@@ -62,7 +62,7 @@ def run(phi, collisions=COLLISIONS, number=N):
         contact = max(contact, np.abs(distance / sigma - 1).max(initial=0.0))
         state = simulation.state()[0]
         drift = max(drift, abs(state.kinetic_energy / energy - 1))
-        overlap = max(overlap, simulation.audit_of(state).overlap)
+        overlap = max(overlap, simulation.check_invariants_of(state).overlap)
         times.append(rows.time[first])
         speeds.append(np.hypot(*state.velocity.T))
     end = simulation.last_event_time
@@ -133,7 +133,7 @@ def test_a_hundred_million_collisions():
     max_errors, overlap = 0.0, 0.0
     for _ in simulation.slices(stop):
         max_errors = max(max_errors, abs(simulation.gas.kinetic_energy / gas.kinetic_energy - 1))
-        overlap = max(overlap, simulation.audit_of(simulation.state()[0]).overlap)
+        overlap = max(overlap, simulation.check_invariants_of(simulation.state()[0]).overlap)
     print(f"energy drift {max_errors:.1e}, deepest overlap {overlap:.1e} in {simulation.epoch} epochs")
     assert max_errors <= 1e-12
     assert overlap <= 1e-12

@@ -22,7 +22,7 @@ from hypothesis import HealthCheck, example, given, settings
 
 from idealgas.effects.bundle import Effects, inner_energy
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.epoch import LONGEST_WAY
+from idealgas.engine.epoch import MAX_DISPLACEMENT
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.events import EventBatch
@@ -42,7 +42,7 @@ from idealgas.scene import Scene
 from idealgas.sides import FIRST_SEGMENT
 from idealgas.state import Gas
 
-PATIENCE = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
+TIMEOUT = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation
 MOST_EPOCHS = 5_000  # no scene has many, but for those in which a disc goes a long way and meets nothing
 
 
@@ -54,7 +54,7 @@ def watchdog(text: str) -> Iterator[None]:
 
     def watch() -> None:
         while not done.wait(1.0):
-            if time.process_time() - started > PATIENCE:
+            if time.process_time() - started > TIMEOUT:
                 (Path(tempfile.gettempdir()) / "idealgas-hangs.toml").write_text(text)
                 os.abort()
 
@@ -100,14 +100,14 @@ def run_scene(text: str, max_errors: MaxErrors) -> None:
     simulation = Simulation(gas, EventDriven(), effects)
     invariants = InvariantChecker(scene, gas, effects, max_errors)
     seen: list[EventBatch] = []
-    longest, way = LONGEST_WAY * gas.radius.min(), 0.0  # an epoch's, at least, unless there is much to do
+    longest, path = MAX_DISPLACEMENT * gas.radius.min(), 0.0  # an epoch's, at least, unless there is much to do
     for rows in batches(simulation, stop, 4, events=1):
         if len(rows.time):
             seen.append(rows)
             invariants.see(rows, simulation)
         if simulation.epoch_over:
-            way += np.hypot(*simulation.state()[0].velocity.T).max() * min(simulation.length, stop.time)
-        assert simulation.epoch < MOST_EPOCHS + way / longest, "the clock hardly runs"
+            path += np.hypot(*simulation.state()[0].velocity.T).max() * min(simulation.length, stop.time)
+        assert simulation.epoch < MOST_EPOCHS + path / longest, "the clock hardly runs"
     by_time = simulation.counters.events < stop.events
     assert simulation.counters.events == len(seen) <= stop.events
     assert simulation.last_event_time <= stop.time

@@ -157,7 +157,7 @@ def test_a_crystal(collisions):
         first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
         distance = np.hypot(*(rows.position[first] - rows.position[first + 1]).T)
         contact = max(contact, np.abs(distance / (2 * gas.radius[0]) - 1).max())
-        deepest = max(deepest, simulation.audit_of(simulation.state()[0]).overlap)
+        deepest = max(deepest, simulation.check_invariants_of(simulation.state()[0]).overlap)
     case = f"crystal, {collisions:.0e} collisions"
     within(f"{case}: contact distance, in diameters", contact, 1e-12)
     within(f"{case}: overlap, in diameters", deepest, 1e-12)

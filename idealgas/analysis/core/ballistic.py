@@ -24,14 +24,14 @@ def velocity_quantity(quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.nd
     return 0.5 * mass * (vx * vx + vy * vy)
 
 
-def value_in_fall(
+def value_during_flight(
     quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray
 ) -> np.ndarray:
     """Value of a quantity at a time after the start of a fall."""
     return velocity_quantity(quantity, mass, velocity_after(vx, gravity[0], time), velocity_after(vy, gravity[1], time))
 
 
-def changes_in_fall(quantity: int, gravity: Gravity) -> bool:
+def changes_during_flight(quantity: int, gravity: Gravity) -> bool:
     """Whether a quantity changes in a fall: a component of the velocity does not across the acceleration."""
     if quantity in (ALONG_X, ALONG_Y):
         return gravity[quantity - ALONG_X] != 0.0

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from idealgas.analysis.core.ballistic import (
-    changes_in_fall,
+    changes_during_flight,
     integral_over_fall,
     length_of_fall,
     time_at_value,
     turning_time,
-    value_in_fall,
+    value_during_flight,
     velocity_quantity,
 )
 from idealgas.analysis.core.stream import add_to
@@ -131,7 +131,7 @@ class VelocityHistogram:
         species, mass = self._species.take(flights.disc), self._mass.take(flights.disc)
         place = flights.block * len(self.low) + species
         value = velocity_quantity(self.quantity, mass, vx, vy)
-        if changes_in_fall(self.quantity, self.gravity):
+        if changes_during_flight(self.quantity, self.gravity):
             add_to(self.sums, place, integral_over_fall(self.quantity, mass, vx, vy, self.gravity, time))
             for first in range(0, len(time), AT_ONCE):
                 some = slice(first, first + AT_ONCE)
@@ -162,7 +162,7 @@ class VelocityHistogram:
         turn = np.clip(turning_time(self.quantity, vx, vy, self.gravity), 0.0, duration)
         for rises, start, end in ((False, np.zeros_like(turn), turn), (True, turn, duration)):
             first, last = (
-                self._bin_of(value_in_fall(self.quantity, mass, vx, vy, self.gravity, time), species)
+                self._bin_of(value_during_flight(self.quantity, mass, vx, vy, self.gravity, time), species)
                 for time in (start, end)
             )
             steps = np.abs(last - first)

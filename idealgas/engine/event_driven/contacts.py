@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.engine.audit import overlap_of
+from idealgas.engine.diagnostics import overlap_of
 from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import (
     NO_CONTACT,

@@ -9,7 +9,7 @@ import pytest
 from idealgas.engine.epoch import (
     EVENTS_PER_DISC,
     FEWEST_PER_DISC,
-    LONGEST_WAY,
+    MAX_DISPLACEMENT,
     MOST_CROSSINGS,
     encounters_per_length,
     epoch_length,
@@ -74,11 +74,11 @@ def test_infinite_at_rest(n):
 
 
 @pytest.mark.parametrize("side", [50.0, 300.0])
-def test_the_fastest_disc_stays_within_the_longest_way(side):
+def test_the_fastest_disc_stays_within_the_largest_displacement(side):
     """Unless the gas is so thin that an epoch would have hardly any events."""
     thin = gas(side=side)
     fastest = np.sqrt((thin.velocity**2).sum(1)).max()
-    assert length_for(thin) * fastest <= LONGEST_WAY * 2 * 0.5
+    assert length_for(thin) * fastest <= MAX_DISPLACEMENT * 2 * 0.5
 
 
 def test_some_events_in_the_thinnest_gas():

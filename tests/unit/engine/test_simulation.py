@@ -1,4 +1,4 @@
-"""Epochs, stops and audits of a simulation, on gases whose motion is known."""
+"""Epochs, stops and diagnostics of a simulation, on gases whose motion is known."""
 
 import math
 
@@ -129,18 +129,18 @@ def test_the_end_of_an_epoch_changes_only_records(method):
     assert simulation.time == 3 * simulation.length
     x = 1 + abs((4 + stop.time + 8) % 16 - 8)
     assert simulation.state()[0].position[0, 0] == pytest.approx(x, abs=1e-9)
-    audit = simulation.audit_of(simulation.state()[0])
-    assert audit.kinetic_energy == pytest.approx(0.625, rel=1e-15)
-    assert audit.overlap == 0
-    assert audit.outside < 1e-15
+    diagnostics = simulation.check_invariants_of(simulation.state()[0])
+    assert diagnostics.kinetic_energy == pytest.approx(0.625, rel=1e-15)
+    assert diagnostics.overlap == 0
+    assert diagnostics.outside < 1e-15
 
 
-def test_audit_finds_overlaps_and_escapes():
+def test_diagnostics_find_overlaps_and_escapes():
     discs = [(5, 5, 1, 0, 1), (6.5, 5, 0, 0, 1), (0.9, 2, 0, 0, 1)]
     for method in (EventDriven, BruteForce):
-        audit = Simulation(gas_of((10, 10), *discs), method()).audit()
-        assert audit.overlap == pytest.approx(0.25)
-        assert audit.outside == pytest.approx(0.05)
+        diagnostics = Simulation(gas_of((10, 10), *discs), method()).check_invariants()
+        assert diagnostics.overlap == pytest.approx(0.25)
+        assert diagnostics.outside == pytest.approx(0.05)
 
 
 @methods
@@ -153,6 +153,6 @@ def test_a_gas_keeps_its_energy_and_never_overlaps(method):
     stop = Stop(events=600)
     overlap = 0.0
     for _ in simulation.slices(stop, events=100):
-        overlap = max(overlap, simulation.audit_of(simulation.state()[0]).overlap)
+        overlap = max(overlap, simulation.check_invariants_of(simulation.state()[0]).overlap)
     assert math.isclose(simulation.state()[0].kinetic_energy, energy, rel_tol=1e-13)
     assert overlap < 1e-13

@@ -95,7 +95,7 @@ def test_neither_batches_nor_slices_change_anything(rows, events):
     parts = Simulation(some_gas(), TimeDriven(0.05))
     assert same_rows(record(whole, stop), record(parts, stop, rows, events))
     assert whole.state()[0].position.tolist() == parts.state()[0].position.tolist()
-    assert whole.audit_of(whole.gas).overlap == parts.audit_of(parts.gas).overlap > 0
+    assert whole.check_invariants_of(whole.gas).overlap == parts.check_invariants_of(parts.gas).overlap > 0
 
 
 @pytest.mark.parametrize("dt", [2.3331434616323543, 0.1, 1 / 3])

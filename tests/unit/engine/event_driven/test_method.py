@@ -34,12 +34,12 @@ def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_ord
 
 
 @several
-def test_an_audit_on_the_way_changes_nothing(effects):
+def test_diagnostics_on_the_way_changes_nothing(effects):
     gas = make_gas(3)
     looked_at = Simulation(gas, EventDriven(), make_effects(effects, gas))
     rows = []
     for batch in batches(looked_at, STOP, events=1000):
-        looked_at.audit_of(looked_at.state()[0])
+        looked_at.check_invariants_of(looked_at.state()[0])
         rows.append(batch)
     quiet = Simulation(gas, EventDriven(), make_effects(effects, gas))
     assert same_rows(joined(rows), record(quiet, STOP, events=1000))

@@ -12,7 +12,7 @@ from idealgas.state import Gas
 U = np.uintp
 
 
-class Audit(NamedTuple):
+class Diagnostics(NamedTuple):
     """Conserved quantities and overlaps of a gas at one time.
 
     Attributes:
@@ -46,10 +46,10 @@ def deepest_overlap_of_all(record, periodic):
     return deepest
 
 
-def audit(gas: Gas, overlap: float) -> Audit:
+def check_invariants(gas: Gas, overlap: float) -> Diagnostics:
     """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
     radius = gas.radius
     reach = [np.maximum(radius - x, x + radius - side) for x, side in zip(gas.position.T, gas.box, strict=True)]
     outside = float(max((np.array(reach) / (2 * radius)).max(), 0.0))
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)
-    return Audit(gas.kinetic_energy, momentum, overlap, outside)
+    return Diagnostics(gas.kinetic_energy, momentum, overlap, outside)
