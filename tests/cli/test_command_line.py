@@ -92,14 +92,6 @@ def test_a_window_beyond_the_end_has_all_digits(log):
     assert done.stderr == f"{log}: no window from t = {beyond!r} to {end!r}: the log covers t = 0 to {end!r}\n"
 
 
-def test_resume_to_an_earlier_end(log):
-    for option, text in (("--collisions-per-disc", "100 collisions per disc; 30"), ("--until", "units of time; 30")):
-        done = called("resume", log, option, "30")
-        assert (done.returncode, done.stdout) == (2, "")
-        assert done.stderr.startswith(f"{log}: already at ")
-        assert done.stderr.endswith(f"{text} lies before that\n")
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -152,14 +144,6 @@ def test_every_analysis_has_json_csv_and_a_picture():
         assert {"--json", "--csv", "--plot", "--quiet"} <= options
 
 
-def test_help_lists_the_commands():
-    for flag in ("-h", "--help"):
-        result = CliRunner().invoke(main, [flag])
-        assert result.exit_code == 0
-        assert "check" in result.output
-        assert "_options" not in result.output
-
-
 def test_help_imports_nothing_heavy():
     heavy = ("numpy", "numba", "scipy", "h5py", "matplotlib", "pydantic", "rich")
     program = (
@@ -206,6 +190,7 @@ def test_help_shows_every_group_with_an_example_and_no_summary_cut_off():
     for name in main.list_commands(click.Context(main)):
         assert first_sentence(main.get_command(None, name)).replace("- ", "-") in lines.replace("- ", "-")
     assert not re.search(r"\w\.\.\.", said)
+    assert "_options" not in said
     assert called("-h").stdout == called("help").stdout == said
 
 

@@ -69,6 +69,8 @@ def test_resume_to_a_later_end(copy):
     ("arguments", "message"),
     [
         (("--events", 100), "already at 6,000 events; 100 lies before that"),
+        (("--collisions-per-disc", 0.1), " collisions per disc; 0.1 lies before that"),
+        (("--until", 0.001), " units of time; 0.001 lies before that"),
         (("--until", -1), "run.until: out of range"),
     ],
 )

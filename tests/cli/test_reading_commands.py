@@ -6,7 +6,7 @@ import h5py
 import pytest
 from helpers.support import ROOT, called, idealgas
 
-COMMANDS = ("info", "histogram", "temperature", "pressure", "heat-capacity")
+COMMANDS = ("info", "histogram", "temperature", "pressure", "heat-capacity", "profile", "evolution")
 
 commands = pytest.mark.parametrize("command", COMMANDS)
 
@@ -60,39 +60,18 @@ BAD = ("missing", "folder", "empty", "text", "noise", "other", "start", "half")
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_is_no_log_is_one_line(name, folder):
+def test_a_file_that_is_not_a_log_is_the_same_line_for_all_commands(name, folder):
+    """Where a folder may be one of a sweep, it is named as one without results."""
     before = listing(folder)
-    result = called("info", f"{name}.h5", folder=folder)
-    assert (result.returncode, result.stdout) == (2, "")
-    assert result.stderr.startswith(f"{name}.h5: ")
-    assert result.stderr.count("\n") == 1
+    lines = {}
+    for command in COMMANDS:
+        result = called(command, f"{name}.h5", folder=folder)
+        assert (result.returncode, result.stdout, result.stderr.count("\n")) == (2, "", 1)
+        lines[command] = result.stderr
+    if name == "folder":
+        assert {lines.pop(command) for command in ("pressure", "heat-capacity")} == {
+            "folder.h5: holds no results of a sweep\n"
+        }
+    (line,) = set(lines.values())
+    assert line.startswith(f"{name}.h5: ")
     assert listing(folder) == before
-
-
-@pytest.mark.parametrize(
-    ("command", "name"),
-    [
-        (command, name)
-        for command in COMMANDS[1:]
-        for name in BAD
-        if not (name == "folder" and command in ("pressure", "heat-capacity"))
-    ],
-)
-def test_all_commands_say_the_same(command, name, folder):
-    first, result = (called(each, f"{name}.h5", folder=folder) for each in ("info", command))
-    assert (result.returncode, result.stdout) == (2, "")
-    assert result.stderr == first.stderr
-    assert result.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize("command", ["pressure", "heat-capacity"])
-def test_a_folder_that_is_no_sweep_is_one_line(command, folder):
-    result = called(command, "folder.h5", folder=folder)
-    assert (result.returncode, result.stdout) == (2, "")
-    assert result.stderr == "folder.h5: holds no results of a sweep\n"
-
-
-def test_a_picture_that_cannot_be_written(folder):
-    result = called("pressure", "run.h5", "--plot", "missing/picture.png", folder=folder)
-    assert result.returncode == 2
-    assert result.stderr == "missing/picture.png: no folder missing\n"
