@@ -11,7 +11,12 @@ from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 
 several = pytest.mark.parametrize(
-    "effects", [set(), {"gates"}, {"periodic", "piston"}], ids=["plain", "gates", "periodic and piston"]
+    "effects",
+    [
+        pytest.param(set(), id="plain"),
+        pytest.param({"gates"}, id="gates", marks=pytest.mark.slow),
+        pytest.param({"periodic", "piston"}, id="periodic and piston", marks=pytest.mark.slow),
+    ],
 )
 STOP = Stop(events=20_000)  # several epochs
 
