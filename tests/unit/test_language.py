@@ -31,6 +31,7 @@ PATTERNS = {
     r"writer died|writer is dead": "was not closed",
     r"hand(?:s|ed)? over": "migrate, pass",
     r"somebody|nobody|whoever": "name the program, the disc or the user",
+    r"kick(?:s|ed|ing)?": "thermostat collision",
     r"rival|dances?": "the term, not a simile",
     r"Maxwell and Boltzmann": "Maxwell-Boltzmann",
     r"(?:events|rows|hits|collisions|kicks|bounces|digits|file|row|column|entry|line|core) an? "

@@ -3,7 +3,7 @@
 Two events commute unless one writes rows that the other reads or writes; those that do not commute must happen in the
 order of their times. A thread whose clock was set back may have advanced too far. Every event that could have happened
 in another order is detected before anything is written: the thread then raises a flag, all threads roll back the slice,
-and one thread repeats it. The complete argument: engine/README.md.
+and one thread repeats it. The rows that an event reads and writes are in engine/README.md.
 """
 
 import numpy as np
