@@ -13,7 +13,7 @@ from idealgas.analysis.profile.measure import profile as profile
 from idealgas.analysis.registry import analyse as analyse
 from idealgas.analysis.relaxation.measure import relaxation as relaxation
 from idealgas.analysis.sound.measure import sound as sound
-from idealgas.analysis.temperature.measure import temperature as temperature
+from idealgas.analysis.temperature import temperature as temperature
 from idealgas.analysis.transport.measure import transport as transport
 from idealgas.errors import OutputError as OutputError
 from idealgas.errors import UserError as UserError

@@ -15,7 +15,7 @@ from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.relaxation.measure import relaxation
 from idealgas.analysis.sound.measure import sound
-from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.temperature import temperature
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.measure import MOST_SEGMENTS as SEGMENTS
 from idealgas.analysis.transport.measure import transport

@@ -11,7 +11,7 @@ from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
 from idealgas.analysis.heat_capacity.measure import heat_capacity
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.temperature import temperature
 from idealgas.analysis.theory import hard_discs
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate

@@ -14,7 +14,7 @@ from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.info import info
 from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.measure import relaxation
-from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.temperature import temperature
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.resume import resume

@@ -18,7 +18,7 @@ from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.sound.measure import sound
-from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.temperature import temperature
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.measure import transport
 

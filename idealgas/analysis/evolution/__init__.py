@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.evolution.measure import Evolution, evolution
-from idealgas.analysis.evolution.tables import evolution_tables
-from idealgas.analysis.evolution.words import evolution_summary
+from idealgas.analysis.evolution.tables import evolution_summary, evolution_tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,12 +4,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from idealgas.analysis.core.tables import Number, Table
+from idealgas.analysis.core.tables import Number, Table, format_estimate
 from idealgas.analysis.evolution.measure import Evolution, source_label
 from idealgas.analysis.evolution.pressure_series import PressureSeries
 
 ROWS = 9
 """Number of instants that are shown; the picture and CSV have all."""
+
+CHANGED = 1.2
+"""Ratio of two temperatures above which the summary reports a change."""
 
 
 def evolution_tables(result: Evolution) -> list[Table]:
@@ -44,3 +47,17 @@ def _pressure(series: PressureSeries) -> Table:
 def _in_time(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], notes: Sequence[str] = ()) -> Table:
     values = zip(*(column.tolist() for column in (time, *columns.values())), strict=True)
     return Table(title, ("t", *columns), [tuple(map(Number, row)) for row in values], notes, most=ROWS)
+
+
+def evolution_summary(result: Evolution) -> list[str]:
+    """Sentences on a piston at rest or its way, on discs beyond a gate, and on a temperature that changed."""
+    said = []
+    first, last = result.temperature[[0, -1]]
+    if max(first, last) > CHANGED * min(first, last):
+        said.append(f"The temperature went from {first:.4g} to {last:.4g}.")
+    if result.rest:
+        said.append(f"The piston rests at {format_estimate(result.rest)}.")
+    elif result.track:
+        said.append("The piston went from {:.4g} to {:.4g}.".format(*result.track[1][[0, -1]]))
+    said += [f"At the end {share[-1]:.1%} of {name} are beyond the gate." for name, share in result.beyond.items()]
+    return said

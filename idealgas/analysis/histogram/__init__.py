@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.core.analysis import Analysis, Option, Section
 from idealgas.analysis.histogram.measure import QUANTITIES, Histogram, histogram
-from idealgas.analysis.histogram.tables import histogram_tables
-from idealgas.analysis.histogram.text import histogram_text
+from idealgas.analysis.histogram.tables import histogram_tables, histogram_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,8 +12,7 @@ from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
 from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample
 from idealgas.analysis.pressure.measure import Pressure, pressure
-from idealgas.analysis.pressure.tables import pressure_tables
-from idealgas.analysis.pressure.words import pressure_summary
+from idealgas.analysis.pressure.tables import pressure_summary, pressure_tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,8 +1,8 @@
 """Tables of the pressure and of the equation of state."""
 
-from idealgas.analysis.core.tables import Cell, Number, Table, collision_tables, describe, estimates
+from idealgas.analysis.core.tables import Cell, Number, Table, collision_tables, describe, estimates, format_estimate
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
-from idealgas.analysis.pressure.measure import Pressure
+from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
 
 
@@ -92,3 +92,13 @@ def _of_states(result: EquationOfState) -> list[Table]:
         return [states, estimates("Virial coefficients, fitted", [], notes)]
     fitted = [("B2 in units of the disc's area", result.b2), ("B3/B2²", result.b3)]
     return [states, estimates("Virial coefficients, fitted", fitted)]
+
+
+def pressure_summary(result: Pressure) -> list[str]:
+    """Sentence on Z, or on the pressure of every wall that stands beside an outer pressure, else of the first wall."""
+    if result.mechanical is None:
+        (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)
+        return [f"Z = PA/NT is {format_estimate(z)} (1 for an ideal gas)."]
+    walls = result.mechanical.walls
+    shown = [wall for wall in walls if wall.pressure.theory is not None] or walls[:1]
+    return [f"The pressure on the {wall.name} is {format_estimate(wall.pressure)}." for wall in shown]

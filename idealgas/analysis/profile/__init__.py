@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.core.analysis import Analysis, Option, Section
 from idealgas.analysis.profile.measure import BINS, Profile, profile
-from idealgas.analysis.profile.tables import profile_tables
-from idealgas.analysis.profile.words import profile_summary
+from idealgas.analysis.profile.tables import profile_summary, profile_tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

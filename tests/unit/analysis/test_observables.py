@@ -20,8 +20,7 @@ from idealgas.analysis.histogram.measure import QUANTITIES, histogram
 from idealgas.analysis.info import info
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.temperature.figure import temperature_figure
-from idealgas.analysis.temperature.measure import temperature
+from idealgas.analysis.temperature import temperature, temperature_figure
 from idealgas.analysis.transport.measure import transport
 from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.errors import OutputError, UserError

@@ -1,11 +1,12 @@
-"""Temperature of every degree of freedom of each species, compared with equipartition."""
+"""Measure the temperature of every degree of freedom and species; by equipartition all are E/N."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.ensemble import known_ensemble, nonequilibrium_reason, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
@@ -13,9 +14,16 @@ from idealgas.analysis.core.fields import OMITTED, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.theory.conserved import is_ergodic
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LEAST_RANGE = 0.05
+"""Smallest relative range of the temperature axis, so that rounding of a conserved quantity is not visible."""
 
 
 @dataclass(frozen=True)
@@ -107,3 +115,59 @@ def temperature(
         for s, (name, number) in enumerate(zip(discs.name, discs.number, strict=True))
     ]
     return Temperature(window, expected, (*entries, entry("all discs", len(log.discs), expected, sums.sum(axis=1))))
+
+
+def temperature_tables(result: Temperature) -> list[Table]:
+    """Table of the temperature of every degree of freedom of each species."""
+    rows = [
+        (f"{entry.species}: {direction}", estimate)
+        for entry in result.species
+        for direction, estimate in (("m vx²", entry.x), ("m vy²", entry.y), ("m v²/2", entry.both))
+    ]
+    return [estimates("Temperatures (energy, k_B = 1), theory E/N", rows, (describe(result.window),))]
+
+
+def temperature_summary(result: Temperature) -> list[str]:
+    """Sentence on the temperature of all discs."""
+    return [f"The temperature is {format_estimate(result.species[-1].both)}."]
+
+
+def temperature_figure(result: Temperature) -> "Figure":
+    """Picture of the temperature against time: of every species, or along x and y; before the window it is shaded."""
+    from idealgas.analysis.core.style import BLACK, GREY, curve_style, panels
+
+    figure, (ax,) = panels(1)
+    edges = result.window.edges
+    if len(result.apart) == 1:
+        x, y = result.apart[0].directions.T
+        curves = {"m vx²": x, "m vy²": y}
+    else:
+        curves = {f"{entry.species} (N = {entry.number})": entry.history for entry in result.apart}
+    for k, (name, values) in enumerate(curves.items()):
+        colour, line, _ = curve_style(k)
+        ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
+    if result.expected is not None:
+        ax.axhline(result.expected, color=BLACK, linestyle="--", label="theory: E/N")
+    if result.window.first:
+        ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
+    ax.time_axis()
+    ax.set_ylabel("temperature (energy, k_B = 1)")
+    ax.ticklabel_format(useOffset=False)
+    low, high = ax.get_ylim()
+    middle, reach = (low + high) / 2, max(high - low, LEAST_RANGE * (low + high)) / 2
+    ax.set_ylim(middle - reach, middle + reach)
+    ax.legend()
+    return figure
+
+
+class TemperatureAnalysis(Analysis):
+    """Declaration of the analysis; its docstring for users is that of `temperature`."""
+
+    position = 10
+    results = (Temperature,)
+    sections = (Section("Temperature", "Kinetic temperature of each species against time"),)
+
+    measure = staticmethod(temperature)
+    tables = staticmethod(temperature_tables)
+    summary = staticmethod(temperature_summary)
+    figure = staticmethod(temperature_figure)
