@@ -11,7 +11,7 @@ from idealgas.state import Gas
 
 
 def make_effects(scene: Scene, gas: Gas) -> Effects:
-    """The effects of a scene at time 0; None for those that it does not have. gas: its discs at time 0."""
+    """Effects of a scene at time 0, None for absent ones; gas: its discs at time 0."""
     scene = scene.resolved()
     start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene))
     effects = Effects(**{effect.field: effect.make(scene.tables_of(effect), start) for effect in EFFECTS})

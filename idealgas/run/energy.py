@@ -1,4 +1,4 @@
-"""The energy of a gas and of what acts on it, and what of it is conserved."""
+"""Energy account of a run: the parts of the energy, and their balance, which is conserved."""
 
 from typing import NamedTuple
 
@@ -10,11 +10,16 @@ from idealgas.state import Gas
 
 
 class Energy(NamedTuple):
-    """The energy of a gas by its parts.
+    """Parts of the energy, mass length²/time².
 
-    kinetic, rotational, potential: of the discs. piston: of motion and position of a piston with a mass. given: energy
-    that walls and a heat bath gave to the discs, less what was lost at them; what a piston with a mass gave is not
-    counted, as its own energy is. lost: what collisions between discs, and with a piston with a mass, have lost.
+    Attributes:
+        kinetic: of the discs.
+        rotational: of the discs.
+        potential: of the discs.
+        piston: kinetic and potential energy of a piston with a mass.
+        given: energy that walls and a heat bath gave to the discs, less the losses at walls; without a piston with a
+            mass, whose energy is counted itself.
+        lost: energy lost in collisions between discs, and with a piston with a mass.
     """
 
     kinetic: float
@@ -26,22 +31,22 @@ class Energy(NamedTuple):
 
     @property
     def gas(self) -> float:
-        """Of the discs alone."""
+        """Energy of the discs."""
         return self.kinetic + self.rotational + self.potential
 
     @property
     def balance(self) -> float:
-        """What stays the same: discs and piston with what was lost, less what came from outside."""
+        """Conserved energy: discs and piston plus losses, less the energy given from outside."""
         return self.gas + self.piston + self.lost - self.given
 
     @property
     def scale(self) -> float:
-        """Size of the largest part, with which a drift compares."""
+        """Largest part by absolute value, the scale of an energy drift."""
         return max(map(abs, self))
 
 
 def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
-    """Energy of a gas; local_time: of the gas, from the start of the epoch."""
+    """Energy account of a gas; local_time: of the gas, from the start of the epoch, time."""
     by_wall = np.zeros(0) if effects.wall_energy is None else values(effects.wall_energy)
     losses = np.zeros(0) if effects.dissipated is None else values(effects.dissipated)
     from_bath = np.zeros(0) if effects.bath_energy is None else values(effects.bath_energy)

@@ -1,4 +1,4 @@
-"""What a run puts into its log: columns, together with where their values come from."""
+"""Contents of the log of a run: columns and their values."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -15,7 +15,7 @@ from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
 TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
-"""What every run counts from time 0 on."""
+"""Numbers that every run counts from time 0 on."""
 
 DIAGNOSTICS = (
     Column("kinetic_energy", "f8", unit="energy"),
@@ -28,9 +28,14 @@ DIAGNOSTICS = (
 def layout_of(
     scene: Scene, gas: Gas, effects: Effects, without_positions: bool, extra_state: Iterable[Column] = ()
 ) -> LogLayout:
-    """Of the log of a scene; gas, effects: at time 0.
+    """Layout of the log of a scene.
 
-    without_positions: the method does not know where discs are. extra_state: what it keeps beside the discs.
+    Args:
+        scene: the scene.
+        gas: its discs at time 0.
+        effects: its effects at time 0.
+        without_positions: whether the method has no positions of discs.
+        extra_state: values of the method that checkpoints store in addition to the discs.
     """
     x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
     return LogLayout(
@@ -49,44 +54,43 @@ def layout_of(
 
 
 def totals(effects: Effects) -> tuple[Column, ...]:
-    """What a run with these effects counts from time 0 on."""
+    """Columns of the numbers that a run with these effects counts from time 0 on."""
     return *TOTALS, *bundle.counted(effects)
 
 
 def row_columns(effects: Effects, without_positions: bool = False) -> tuple[Column, ...]:
-    """Of an event's row: what discs have with these effects."""
+    """Columns of an event row with these effects."""
     has = {column.when for column in bundle.disc_state(effects)}
     return event_columns(*has, TRIALS if without_positions else POSITION.when)
 
 
 def disc_state(gas: Gas, effects: Effects, without_positions: bool) -> Arrays:
-    """What a checkpoint keeps of each disc; times count from the checkpoint."""
+    """Arrays per disc that a checkpoint stores; times count from the checkpoint."""
     motion = {VELOCITY: gas.velocity} if without_positions else {POSITION: gas.position, VELOCITY: gas.velocity}
     return motion | bundle.disc_state(effects)
 
 
 def snapshot_state(gas: Gas, effects: Effects, without_positions: bool) -> Arrays:
-    """What a snapshot keeps of each disc: what events tell of it too."""
+    """Arrays per disc that a snapshot stores: those that are columns of events."""
     state = disc_state(gas, effects, without_positions)
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
 
 
 def whole_state(effects: Effects) -> Values:
-    """What a checkpoint keeps of the effects as a whole, and of the sums, at the start of an epoch."""
+    """Values of the effects as a whole and exact sums that a checkpoint stores, at the start of an epoch."""
     return bundle.whole_state(effects) | kept_sums(effects)
 
 
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
-    """The gas at a checkpoint; the effects get the state that they had. gas: any of the same discs."""
+    """Return the gas at a checkpoint and set the effects to their state there; gas: the same discs at any time."""
     bundle.restore_effects(effects, checkpoint.arrays, checkpoint.values)
     arrays = checkpoint.arrays
     restore_sums(effects, arrays)
-    gas = replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
-    return gas
+    return replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
-    """What a sample adds to the diagnostics: the energy of the discs in all, its parts, and the effects as a whole."""
+    """Values that a sample adds to the diagnostics: energy of the discs and its parts, effects as a whole, and sums."""
     energy = energy_of(gas, effects, local_time)
     sample: Values = {Column("energy", "f8", (), "energy"): energy.gas}
     parts = {effect.energy.part: effect.energy.observed for effect, _ in bundle.present(effects) if effect.energy}

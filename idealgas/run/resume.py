@@ -1,4 +1,4 @@
-"""Resuming a run from the last checkpoint of its log, which becomes what one run without a break would have written."""
+"""Resuming a run from the last checkpoint of its log; the events are bit for bit those of an uninterrupted run."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -20,10 +20,10 @@ from idealgas.scene import Scene, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
 
-TRIAL_ROWS = 4096  # of a log that is to be resumed, which the program has to come to again
+REPLAYED_ROWS = 4096  # after the checkpoint, which the program must reproduce before it resumes
 
 STOP_RULES = ("until", "events", "collisions_per_disc", "trials")
-"""Keys of [run] that say where a run ends: all that may change when it is resumed."""
+"""Keys of [run] that end a run: the only keys that may change when it is resumed."""
 
 
 def resume(
@@ -34,29 +34,34 @@ def resume(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Go on with a run that was interrupted or killed, or that is to end later, from the last checkpoint of its log.
+    """Continue a run that was interrupted or killed, or that is to end later, from the last checkpoint of its log.
 
-    The events in the log become bit for bit those of a run without a break. A log that is at its end already stays as
-    it is, and its summary is returned.
+    The events in the log become bit for bit those of an uninterrupted run. A complete log is left unchanged, and its
+    summary is returned.
 
-    path: of the log, which is written on. overrides: new ends of the run, such as "run.until=100" or
-    "run.events=1000000" (any of STOP_RULES; the others stay as they are unless set to nothing, as in "run.until=").
-    command, on_progress, interrupted: as in `simulate`.
+    Args:
+        path: path of the log, to which events are appended.
+        overrides: new ends of the run, such as "run.until=100" or "run.events=1000000" (any of STOP_RULES; the others
+            remain unless removed, as in "run.until=").
+        command: as in `simulate`.
+        on_progress: as in `simulate`.
+        interrupted: as in `simulate`.
 
-    Raises SceneError for an override that is wrong; LogError or OutputError if another process is writing the log, if
-    this program or a change of the scene would go on otherwise than the run began, if the log goes beyond the end asked
-    for, or if it cannot be written.
+    Raises:
+        SceneError: for an invalid override.
+        LogError or OutputError: if another process writes the log, if this program or the changed scene does not
+            reproduce its events, if the log is already past the new end, or if it cannot be written.
     """
     compiled_before = compile_seconds()
     with open_log(path) as log:
         if log.live:
             raise LogError(f"{log.path}: another process has this file open")
-        scene = _scene_to_go_on_with(log, overrides)
+        scene = _scene_to_resume(log, overrides)
         if log.complete and dump_document(scene) == dump_document(log.scene):
             return Summary.of(log.summary)
         last = log.checkpoints[-1] if len(log.checkpoints) else None
         _check_end(log, last, scene)
-        _check_laws(log, last, _simulation_at(log, last, scene))
+        _check_reproduces(log, last, _simulation_at(log, last, scene))
         simulation = _simulation_at(log, last, scene)
         past = _history_of(log, last, scene)
     with LogWriter.resume(
@@ -69,7 +74,7 @@ def resume(
         return LoggedRun(scene, simulation, writer, past, compiled_before).run(on_progress, interrupted)
 
 
-def _scene_to_go_on_with(log: Log, overrides: Sequence[str]) -> Scene:
+def _scene_to_resume(log: Log, overrides: Sequence[str]) -> Scene:
     if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
@@ -105,7 +110,7 @@ def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:
 
 
 def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Simulation:
-    """The simulation of a scene as it was at a checkpoint, or at its start."""
+    """Simulation of a scene at a checkpoint, or at its start."""
     start = log.discs
     effects = make_effects(scene, start)
     v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
@@ -119,7 +124,7 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
 
 
 def _restored(log: Log, effects: Effects, checkpoint: Checkpoint) -> Gas:
-    """The gas at a checkpoint; the effects get the state that they had."""
+    """Return the gas at a checkpoint and set the effects to their state there."""
     try:
         return restore(log.discs, effects, checkpoint)
     except SumRangeError as error:
@@ -127,7 +132,7 @@ def _restored(log: Log, effects: Effects, checkpoint: Checkpoint) -> Gas:
 
 
 def _check_columns(log: Log, layout: LogLayout) -> None:
-    """DamageError where the log keeps something that a run of its scene does not keep, or not like this."""
+    """Raise DamageError if a column of the log is not one of a run of its scene, or has another type or shape."""
     discs = len(log.discs)
     arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.checkpoint_arrays]
     kept = [*CHECKPOINT_COLUMNS, *arrays, *layout.checkpoint_values]
@@ -138,15 +143,15 @@ def _check_columns(log: Log, layout: LogLayout) -> None:
                 raise DamageError(log.path, f"{table}/{column.name}: not of a run of this scene")
 
 
-def _check_laws(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
-    """Raise LogError unless the discs go on from the last checkpoint as they did."""
+def _check_reproduces(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
+    """Raise LogError unless this program reproduces the first events after the last checkpoint."""
     first = 0 if last is None else last.row
-    batch = empty_batch(TRIAL_ROWS + 2, row_columns(simulation.effects, simulation.method.without_positions))
-    an_event = 2 if simulation.method.without_positions else 1  # its rows, at least: what is not stored may be an error
-    events = min(TRIAL_ROWS, (len(log) - first) // an_event)
+    batch = empty_batch(REPLAYED_ROWS + 2, row_columns(simulation.effects, simulation.method.without_positions))
+    an_event = 2 if simulation.method.without_positions else 1  # at least: the next event may be an error
+    events = min(REPLAYED_ROWS, (len(log) - first) // an_event)
     rows = min(simulation.advance(Stop(), batch, events), len(log) - first)
     for stored in log.chunks(None, first, first + rows):
-        again, batch = batch.rows(0, len(stored.time)), batch.rows(len(stored.time), TRIAL_ROWS + 2)
+        again, batch = batch.rows(0, len(stored.time)), batch.rows(len(stored.time), REPLAYED_ROWS + 2)
         for name in log.columns:
             differs = (getattr(again, name) != getattr(stored, name)).reshape(len(stored.time), -1).any(axis=1)
             if differs.any():

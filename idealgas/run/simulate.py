@@ -1,4 +1,4 @@
-"""Running a scene: places the discs, lets them move by the scene's method, and writes every event into a log."""
+"""Running a scene: places the discs, simulates them with its method, and writes every event to a log."""
 
 import math
 import os
@@ -29,14 +29,18 @@ from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
 
-SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between looks at the clock and at a request to stop
+SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between reports of progress and checks for interruption
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is. share: of the way to its end, 0 to 1. time: of the last event. events: number of them so far.
+    """Progress of a run.
 
-    notice: one line for the user, each given once; mostly empty.
+    Attributes:
+        share: fraction done, 0 to 1.
+        time: time of the last event.
+        events: number of events so far.
+        notice: one line for the user, given once; usually empty.
     """
 
     share: float
@@ -46,7 +50,7 @@ class Progress:
 
 
 def stop_of(scene: Scene, n: int) -> Stop:
-    """Where the scene of n discs ends."""
+    """Stop rules of a scene with n discs."""
     run = scene.run
     stop = Stop()
     if run.until is not None:
@@ -61,10 +65,7 @@ def stop_of(scene: Scene, n: int) -> Stop:
 
 
 def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
-    """The method a scene calls for; start: its discs at time 0.
-
-    v_ref: what that of the scene has been raised to, length/time.
-    """
+    """Method of a scene; start: its discs at time 0; v_ref: raised reference speed of a resumed run, length/time."""
     run = scene.run
     return make_method(
         run.method,
@@ -79,12 +80,12 @@ def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
 
 
 def _threads(run: Run) -> int | None:
-    """Number of threads that a scene asks for; None for as many as are worth it."""
+    """Number of threads of a scene; None for as many as are worthwhile."""
     return None if run.threads == "auto" else run.threads
 
 
 def threads_of(scene: Scene, gas: Gas) -> Threads:
-    """How the work of a run will be shared; gas: the discs at time 0."""
+    """Threads that will share the work of a run; gas: the discs at time 0."""
     if scene.run.method != "event_driven":
         return ONE_THREAD
     return expected_threads(gas, _threads(scene.run), scene.properties.local)
@@ -101,17 +102,22 @@ def simulate(
 ) -> Summary:
     """Run a scene to the end that its table [run] asks for, and write its log.
 
-    scene: from `load_scene` or `parse_scene`. path: of the log to write, an HDF5 file that `open_log` reads. force:
-    replace an existing log. command: text to keep in the log as the command of the run. on_progress: called several
-    times a second with the `Progress` of the run. interrupted: asked as often; once it says True, the run ends after
-    its last event and the summary says that it is not completed. After that, as after Ctrl-C (KeyboardInterrupt), the
-    log can be read and resumed.
+    The first run with a set of effects compiles its machine code, which takes some seconds and is cached on disk.
 
-    The first run with a set of effects compiles its machine code, which takes some seconds and is kept on disk.
+    Args:
+        scene: from `load_scene` or `parse_scene`.
+        path: path of the log to write, an HDF5 file that `open_log` reads.
+        force: whether to overwrite an existing log.
+        command: command of the run, stored in the log.
+        on_progress: called several times per second with the `Progress` of the run.
+        interrupted: called as often; once it returns True, the run ends after its last event, and the summary has
+            `completed` False. The log can then be read and resumed, as after Ctrl-C (KeyboardInterrupt).
 
-    Raises SceneError if the discs find no place, OutputError if the log exists (without `force`), cannot be written or
-    is removed during the run; UserError, with a log that can be read and resumed, if a disc collides without end at one
-    instant, or if the events that are to end the run do not come (see `idealgas.run.stall`).
+    Raises:
+        SceneError: if the discs cannot be placed.
+        OutputError: if the log exists (without `force`), cannot be written, or is removed during the run.
+        UserError: in an inelastic collapse, or if the events that would end the run do not occur (see
+            `idealgas.run.stall`); the log can be read and resumed.
     """
     compiled_before = compile_seconds()
     gas = make_gas(scene)
@@ -135,7 +141,7 @@ def simulate(
 
 
 class RunHistory(NamedTuple):
-    """What a run has behind it: energy at time 0, largest overlap and reach outside, snapshots, whether it began."""
+    """Past of a run: energy at time 0, largest overlap and distance outside, number of snapshots, whether it began."""
 
     start_energy: Energy
     overlap: float = 0.0
@@ -160,7 +166,7 @@ class LoggedRun:
         self._extra_state = dict(simulation.method.extra_state)
 
     def run(self, on_progress: Callable[[Progress], None], interrupted: Callable[[], bool]) -> Summary:
-        """Go on to the stop, or until `interrupted` says True, and close the log; UserError if no event comes."""
+        """Simulate to the stop, or until `interrupted` returns True, and close the log; UserError if it stalls."""
         simulation, stop = self._simulation, self._stop
         if not self._begun:
             if self._scene.log.snapshot_every:
@@ -174,7 +180,7 @@ class LoggedRun:
             before = time.perf_counter()
             alone = simulation.method.threads.serial_events if self._log.behind else 0  # the log needs a core
             self._slice(alone or slice_events)
-            if simulation.paused and self._scene.log.snapshot_every:  # not where time has no more numbers
+            if simulation.paused and self._scene.log.snapshot_every:  # not at the largest representable time
                 self._snapshot()
             if simulation.epoch_over and not simulation.finished(stop):
                 self._stall.end_epoch()
@@ -193,7 +199,7 @@ class LoggedRun:
         return summary
 
     def _slice(self, events: int) -> None:
-        """Advance by at most so many events and hand all their rows to the log."""
+        """Advance by at most `events` events and write their rows to the log."""
         simulation = self._simulation
         if self._scene.log.events:
             self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
@@ -212,7 +218,7 @@ class LoggedRun:
         return self._snapshots * every if every else LATEST
 
     def _snapshot(self) -> None:
-        """Store a copy of the discs as they are now, and a sample, unless the epoch that begins here gives one."""
+        """Store a snapshot of the discs, and a sample unless an epoch begins here, which has one."""
         simulation, time = self._simulation, self._next_snapshot
         gas, effects = simulation.state()
         state = by_name(snapshot_state(gas, effects, simulation.method.without_positions))
@@ -222,9 +228,10 @@ class LoggedRun:
         self._snapshots += 1
 
     def _begin_epoch(self) -> None:
-        """Check the invariants at the start of an epoch and, if anything happened, write a checkpoint.
+        """Check the invariants at the start of an epoch, and store a checkpoint if events have occurred.
 
-        UserError, after the log is closed, if the end of the run does not come.
+        Raises:
+            UserError: if the run stalls; the log is closed before.
         """
         simulation, stall = self._simulation, self._stall
         reason = stall.stall_reason()
@@ -254,7 +261,7 @@ class LoggedRun:
         self._log.observe(time, simulation.epoch, diagnostics._asdict() | simulation.counters._asdict() | sample)
 
     def _finish(self, seconds: float) -> Summary:
-        """Check the invariants at the end; the run may be continued from its last checkpoint as if it had not ended."""
+        """Check the invariants of the final state and return the summary of the run."""
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.reached

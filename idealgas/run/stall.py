@@ -1,4 +1,4 @@
-"""What a run looks at as it goes: epochs in which nothing happens, and discs that keep it busy."""
+"""Detection of runs that make no progress: epochs without events, and few discs with most of the events."""
 
 import math
 
@@ -11,33 +11,32 @@ from idealgas.physics.collision_rates import disc_collisions_per_length
 from idealgas.state import Gas
 
 EMPTY_EPOCHS = 10_000
-"""A run that has no end in time ends after so many epochs in a row without an event, if that cannot be chance."""
+"""Number of consecutive epochs without an event after which a run without `until` stops, unless it may be chance."""
 
 EXPECTED = 10_000
-"""It cannot be chance where so many collisions of two discs were to be expected, by kinetic theory.
+"""Number of pair collisions, expected by kinetic theory, above which their absence is not chance.
 
-The same number, and not one collision among all events, ends a run that only such collisions can end.
+A run that only pair collisions can end also stops when so many were expected and none occurred.
 """
 
 HOPELESS = 1e-9
-"""Expected collisions per epoch below which no collision can be waited for: no disc moves past
-another."""
+"""Expected collisions per epoch below which waiting is pointless: no disc moves past another."""
 
 QUIET_SAMPLES = 64
-"""So many epochs in a row without an event have a sample; those after them have none."""
+"""Number of consecutive epochs without an event that are sampled; later ones are not."""
 
 OVERDUE = 8
-"""So many times the most events that an epoch is made for, and the run looks whose they are."""
+"""Ratio of events to those for which an epoch is planned above which the busiest discs are looked for."""
 
 
 class StallDetector:
     """Detects runs that no event will end: no events, or no pair collisions where only those can end the run.
 
-    A resumed run starts to count again.
+    A resumed run counts from zero.
     """
 
     def __init__(self, simulation: Simulation, stop: Stop, begun: bool) -> None:
-        """Begin at the start of an epoch of a run to a stop; begun: whether a checkpoint of it is there already."""
+        """Start at the beginning of an epoch; begun: whether the log already has a checkpoint of it."""
         self._simulation = simulation
         self._events_at_checkpoint = simulation.totals.events if begun else -1
         never = Stop()
@@ -49,7 +48,7 @@ class StallDetector:
         self._overdue: float = OVERDUE
 
     def end_epoch(self) -> None:
-        """Take note of the epoch that is over, before the next one begins."""
+        """Count the epoch that is over, before the next one begins."""
         simulation = self._simulation
         before, now = simulation.totals, simulation.counters
         empty, apart = now.events == before.events, now.disc_collisions == before.disc_collisions
@@ -58,11 +57,11 @@ class StallDetector:
             expected = _expected_collisions(simulation.gas, simulation.length)
         self._empty, self._expected = (self._empty + 1, self._expected + expected) if empty else (0, 0.0)
         self._missed = self._missed + expected if apart and self._needs_pairs else 0.0
-        if math.isfinite(next_change(simulation.effects, simulation.time)):  # all may be otherwise then
+        if math.isfinite(next_change(simulation.effects, simulation.time)):  # a gate may change everything
             self._empty, self._expected, self._missed = min(self._empty, QUIET_SAMPLES), 0.0, 0.0
 
     def checkpoint_due(self, every: int) -> bool:
-        """Whether the start of this epoch is to be kept: every so many epochs, if anything has happened since."""
+        """Whether to store the start of this epoch: each `every` epochs, if events occurred since the last one."""
         simulation = self._simulation
         due = simulation.epoch % every == 0 and simulation.totals.events > self._events_at_checkpoint
         if due:
@@ -71,7 +70,7 @@ class StallDetector:
 
     @property
     def sample_due(self) -> bool:
-        """Whether the start of this epoch is to have a sample."""
+        """Whether to sample the start of this epoch."""
         return self._empty < QUIET_SAMPLES
 
     def stall_reason(self) -> str:
@@ -86,7 +85,7 @@ class StallDetector:
         return ""
 
     def busy(self) -> str:
-        """One line, once, if few discs make most of the events of an epoch that has far too many; else empty."""
+        """Notice, once per run, that few discs have most events of an epoch with far too many; else empty."""
         simulation, n = self._simulation, len(self._simulation.gas)
         events = simulation.counters.events - simulation.totals.events
         if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, FEWEST_EVENTS):
@@ -102,7 +101,7 @@ class StallDetector:
 
 
 def _expected_collisions(gas: Gas, duration: float) -> float:
-    """Collisions of two discs to be expected in a time, by kinetic theory; a common motion brings none."""
+    """Pair collisions expected in a time by kinetic theory, from velocities relative to the mean velocity."""
     n, speed = len(gas), float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
     return (
         n

@@ -1,4 +1,4 @@
-"""Exact sums of a run: which there are, their units, what checkpoints keep of them and what samples tell."""
+"""Exact sums of a run: their units, the exact values in checkpoints, and the rounded values in samples."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -18,16 +18,21 @@ from idealgas.state import Gas
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")
 LEAST_SHARE = 2.0**-40
-"""Smallest energy taken as typical, over the largest that effects bring: that stays far below 2^100 units."""
+"""Smallest typical energy over the largest that effects may add, so that sums stay far below 2^100 units."""
 
 
 def with_sums(
     effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool, inner_energy: float
 ) -> Effects:
-    """The effects with all sums that a run needs, at time 0. gas: its discs at time 0.
+    """The effects with all sums of a run, at time 0.
 
-    gives_energy, loses_energy: whether walls give energy to discs or take some, and whether collisions lose any. What a
-    heat bath gives has a sum of its own. inner_energy: of the discs beside their motion, which may become motion.
+    Args:
+        effects: without sums.
+        scene: the scene of the run.
+        gas: its discs at time 0.
+        gives_energy: whether walls give energy to discs, or take some.
+        loses_energy: whether collisions lose energy.
+        inner_energy: energy of the discs in addition to the kinetic one that collisions may turn into it.
     """
     speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
     largest = max(0.5 * float(gas.mass.mean()) * speed**2, energy_beyond(gas, effects), inner_energy)
@@ -41,7 +46,7 @@ def with_sums(
 
 
 def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
-    """Sums of the momentum flow. speed: typical one of the discs, length/time."""
+    """Sums of the momentum flux; speed: typical speed of the discs, length/time."""
     momentum = float(gas.mass.mean()) * speed
     encounters = encounters_per_length(gas, scene.properties.periodic)
     flight = len(gas) / encounters if encounters > 0 else max(gas.box)
@@ -69,7 +74,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
 
 
 def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> float:
-    """A typical speed of the discs, length/time: at the start or, if that is more, once effects have moved them."""
+    """Typical speed of the discs, length/time: at the start, or the larger one that effects may drive."""
     mass = float(gas.mass.mean())
     hottest = max(scene.properties.temperatures, default=0.0)
     start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
@@ -78,7 +83,7 @@ def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> flo
 
 
 def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
-    """The sums that there are: the columns of their samples, and the arrays."""
+    """Columns of the samples and arrays of all sums of these effects."""
     if (given := effects.wall_energy) is not None:
         yield Column("wall_energy", "f8", given.shape, ENERGY), given
     if (lost := effects.dissipated) is not None:
@@ -102,7 +107,7 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
 
 
 def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
-    """The numbers of collisions that there are."""
+    """Columns and arrays of all numbers of collisions."""
     if (flow := effects.flow) is not None:
         yield Column("face_hits", "i8", flow.hits.shape), flow.hits
         if flow.pairs is not None:
@@ -110,31 +115,31 @@ def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
 
 
 def _kept(column: Column, sums: np.ndarray) -> Column:
-    """The column of checkpoints: three whole numbers for each sum, see `stored`."""
+    """Column of checkpoints: three integers per sum, see `stored`."""
     return Column(f"{column.name}_sum", "i8", (len(sums), 3), column.unit)
 
 
 def kept_sums(effects: Effects) -> Values:
-    """What a checkpoint keeps: every bit."""
+    """Exact sums and numbers of collisions, for checkpoints."""
     exact = {_kept(column, sums): stored(sums) for column, sums in _sums(effects)}
     return exact | {column: counts.copy() for column, counts in _counts(effects)}
 
 
 def observed_sums(effects: Effects) -> Values:
-    """What a sample tells: the sums rounded to floats."""
+    """Sums rounded to floats and numbers of collisions, for samples."""
     rounded = {column: _shaped(values(sums), column) for column, sums in _sums(effects)}
     return rounded | {column: counts.copy() for column, counts in _counts(effects)}
 
 
 def _shaped(found: np.ndarray, column: Column) -> np.ndarray:
-    """Values as an entry of a column. A collision flow without a sum of its own for yx has that of xy there."""
+    """Values in the shape of a column; yx of a collision flow without a sum of its own is xy."""
     if column.shape and len(found) < column.shape[0]:
         found = np.append(found, found[TENSOR.index("xy")])
     return found.reshape(column.shape)
 
 
 def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> None:
-    """Give the sums the values of a checkpoint, by name."""
+    """Set the sums to the values of a checkpoint, by name."""
     for column, sums in _sums(effects):
         restore(sums, entries[_kept(column, sums).name])
     for column, counts in _counts(effects):

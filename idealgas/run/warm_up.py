@@ -1,4 +1,4 @@
-"""Compiling beforehand: the machine code that a scene takes, kept on disk for later runs."""
+"""Compiling the machine code of a scene in advance; it is cached on disk for later runs."""
 
 import tempfile
 from pathlib import Path
@@ -8,9 +8,9 @@ from idealgas.scene import Scene
 
 
 def warm_up(scene: Scene) -> float:
-    """Compile what a run of a scene takes, and return the seconds that this took; next to none if it was there.
+    """Compile the machine code of a scene and return the seconds it took; almost none if it was cached.
 
-    The scene runs up to its first event, and its log is thrown away. Raises what `simulate` raises.
+    The scene runs up to its first event, and its log is deleted. Raises the same errors as `simulate`.
     """
     first = {"events": 1, "collisions_per_disc": None, "trials": None}
     short = scene.model_copy(update={"run": scene.run.model_copy(update=first)})
