@@ -6,9 +6,8 @@ DIR is the folder of a sweep with the analysis "effusion"; runs that differ only
 from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.core.analysis import Analysis, Section
-from idealgas.analysis.effusion.combine import Effusions, combine_effusion, restore_effusion
+from idealgas.analysis.effusion.combine import Effusions, combine_effusion, effusion_tables, restore_effusion
 from idealgas.analysis.effusion.measure import Effusion, effusion
-from idealgas.analysis.effusion.tables import effusion_tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

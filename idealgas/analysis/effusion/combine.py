@@ -1,4 +1,4 @@
-"""Flow of gases through a slit: runs of the same gas combined."""
+"""Flow of gases through a slit: runs of the same gas combined, and their table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from idealgas.analysis.core.fields import INLINE, OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
+from idealgas.analysis.core.tables import Table, estimates
 from idealgas.analysis.effusion.measure import Effusion
 from idealgas.errors import UserError
 
@@ -40,3 +41,8 @@ def combine_effusion(results: Sequence[Effusion]) -> Effusions:
 def restore_effusion(found: dict[str, Any], label: str) -> Effusion:
     """Result of one point of a sweep, named by `label`, the values of its axes."""
     return Effusion.from_dict(found, label)
+
+
+def effusion_tables(found: Effusions) -> list[Table]:
+    """Table of the flux over density of each gas, length/time."""
+    return [estimates("Flux over density (length/time), theory ⟨v⟩/π", found.together.items())]
