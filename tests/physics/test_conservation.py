@@ -1,5 +1,7 @@
 """What each shipped scene conserves, at every sample of a run of twenty thousand events."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -18,8 +20,14 @@ def test_energy_and_momentum(shipped_scene, tmp_path):
     What inelastic collisions take is counted and only grows. Momentum to 1e-12 along axes on which no wall takes any.
     """
     scene = load_scene(shipped_scene, ["run.events=20000"])
-    simulate(scene, tmp_path / "run.h5")
+    summary = simulate(scene, tmp_path / "run.h5")
+    assert summary.completed
+    assert abs(summary.energy_drift) < 1e-12
+    assert summary.deepest_overlap < 1e-12
+    assert (summary.energy_change < 0) or not scene.restitution
     with open_log(tmp_path / "run.h5") as log:
+        assert log.complete
+        assert json.loads(json.dumps(log.summary)) == log.summary
         found = evolution(log)
         assert np.abs(found.balance).max() < 1e-12
         assert bool(found.dissipated) == bool(scene.restitution)
