@@ -7,8 +7,7 @@ of the fluctuations of a gas of so many discs. Several logs are drawn in one pic
 from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.core.analysis import Analysis, Option, Section
-from idealgas.analysis.relaxation.combine import Relaxations, combine_relaxation
-from idealgas.analysis.relaxation.measure import Relaxation, relaxation
+from idealgas.analysis.relaxation.measure import Relaxation, Relaxations, combine_relaxation, relaxation
 from idealgas.analysis.relaxation.tables import relaxation_tables
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from idealgas.analysis.core.style import BLACK, Panel, curve_style, panels
-from idealgas.analysis.relaxation.combine import Relaxations
+from idealgas.analysis.relaxation.measure import Relaxations
 
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 """Ticks of the axis of distances, which has both small and large values."""

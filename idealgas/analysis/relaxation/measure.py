@@ -6,7 +6,7 @@ conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value, which is the 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -271,3 +271,15 @@ def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
     step = (high - low) / 39
     found = optimize.minimize_scalar(misfit, bounds=(start - step, start + step), method="bounded")
     return math.exp(found.x)
+
+
+@dataclass(frozen=True)
+class Relaxations(Result):
+    """Relaxation of the gas of each log."""
+
+    logs: tuple[Relaxation, ...]
+
+
+def combine_relaxation(results: Sequence[Relaxation]) -> Relaxations:
+    """Combine the relaxation of several logs, in their order."""
+    return Relaxations(tuple(results))

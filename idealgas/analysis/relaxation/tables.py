@@ -7,8 +7,7 @@ import numpy as np
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Cell, Number, Table, estimates
 from idealgas.analysis.relaxation.acceptance import Acceptance
-from idealgas.analysis.relaxation.combine import Relaxations
-from idealgas.analysis.relaxation.measure import LINEAR, SETTLED, Relaxation
+from idealgas.analysis.relaxation.measure import LINEAR, SETTLED, Relaxation, Relaxations
 from idealgas.analysis.relaxation.speeds import SpeedDistributions
 
 HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "indistinguishable")

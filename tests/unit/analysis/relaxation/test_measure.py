@@ -11,10 +11,10 @@ from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation import measure as module
 from idealgas.analysis.relaxation.acceptance import acceptance
-from idealgas.analysis.relaxation.combine import combine_relaxation
 from idealgas.analysis.relaxation.figure import relaxation_figure
 from idealgas.analysis.relaxation.measure import (
     colliding_span,
+    combine_relaxation,
     critical_distance,
     relative_entropy,
     relaxation,
