@@ -32,7 +32,7 @@ _HOMES = {
     "idealgas.analysis.core.statistics": ("Estimate",),
     "idealgas.analysis.registry": ("analyse",),
     "idealgas.errors": ("OutputError", "UserError"),
-    "idealgas.events": ("EventBatch", "Kind"),
+    "idealgas.columns": ("EventBatch", "Kind"),
     "idealgas.log": ("Log", "LogError", "LogState", "open_log"),
     "idealgas.run.resume": ("resume",),
     "idealgas.log.summary": ("Summary",),

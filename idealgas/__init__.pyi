@@ -15,10 +15,10 @@ from idealgas.analysis.relaxation.measure import relaxation as relaxation
 from idealgas.analysis.sound.measure import sound as sound
 from idealgas.analysis.temperature import temperature as temperature
 from idealgas.analysis.transport.measure import transport as transport
+from idealgas.columns import EventBatch as EventBatch
+from idealgas.columns import Kind as Kind
 from idealgas.errors import OutputError as OutputError
 from idealgas.errors import UserError as UserError
-from idealgas.events import EventBatch as EventBatch
-from idealgas.events import Kind as Kind
 from idealgas.log import Log as Log
 from idealgas.log import LogError as LogError
 from idealgas.log import LogState as LogState

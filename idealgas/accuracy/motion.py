@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from idealgas.accuracy.cases import Case, Start
+from idealgas.columns import EventBatch, Kind, empty_batch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.multiprecision import PreciseBruteForce, make_columns, turn_back
 from idealgas.engine.simulation import NO_STOP, Simulation
-from idealgas.events import EventBatch, Kind, empty_batch
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from idealgas.columns import empty_batch
 from idealgas.engine.multiprecision import Columns, PreciseBruteForce, column_of
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import empty_batch
 from idealgas.state import Gas
 
 DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-double": 106 * math.log10(2)}

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from idealgas.columns import Arrays, Column, Values
 from idealgas.effects import EFFECTS
 from idealgas.effects.effect import EffectSpec
-from idealgas.events import Arrays, Column, Values
 from idealgas.physics import stress
 from idealgas.physics.exact_sum import add_sums, clear
 from idealgas.state import Gas

@@ -7,8 +7,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from idealgas.columns import Arrays, Column, Values
 from idealgas.effects.properties import ActiveEffect
-from idealgas.events import Arrays, Column, Values
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue
 from idealgas.toml.table import Table

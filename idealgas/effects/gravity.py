@@ -5,11 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 from pydantic import Field
 
+from idealgas.columns import SIDES, Column, sides_across
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
-from idealgas.events import Column
 from idealgas.physics import gravity as law
-from idealgas.sides import SIDES, sides_across
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Table, Vector

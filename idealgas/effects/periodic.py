@@ -4,11 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from idealgas.columns import IMAGE, SIDES, sides_across
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
-from idealgas.events import IMAGE
 from idealgas.physics import periodic as law
-from idealgas.sides import SIDES, sides_across
 from idealgas.toml.issues import Issue, Key
 
 NAME = "periodic sides"

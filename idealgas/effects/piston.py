@@ -6,12 +6,11 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
+from idealgas.columns import OUTWARD, SIDES, Column, Values, axis_of
 from idealgas.effects.effect import SAMPLE_DISCS, EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
-from idealgas.events import Column, Values
 from idealgas.jit import aligned
 from idealgas.physics import piston as law
-from idealgas.sides import OUTWARD, SIDES, axis_of
 from idealgas.state import Gas
 from idealgas.toml.table import NotNegative, Number, Positive, Rectangle, Table
 

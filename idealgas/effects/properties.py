@@ -7,7 +7,7 @@ from functools import reduce
 from itertools import zip_longest
 from typing import Any
 
-from idealgas.sides import SIDES
+from idealgas.columns import SIDES
 from idealgas.toml.issues import Key
 
 

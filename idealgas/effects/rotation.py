@@ -5,9 +5,9 @@ import math
 import numpy as np
 from pydantic import Field
 
+from idealgas.columns import ANGULAR_VELOCITY, Arrays, Column
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
-from idealgas.events import ANGULAR_VELOCITY, Arrays, Column
 from idealgas.physics import rotation as law
 from idealgas.state import Gas, rng
 from idealgas.toml.table import Real, Table

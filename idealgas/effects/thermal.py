@@ -3,11 +3,10 @@
 import numpy as np
 from pydantic import Field
 
+from idealgas.columns import SIDES, Column
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
-from idealgas.events import Column
 from idealgas.physics import thermal as law
-from idealgas.sides import SIDES
 from idealgas.toml.issues import Key
 from idealgas.toml.table import Positive, Table
 

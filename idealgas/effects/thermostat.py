@@ -3,9 +3,9 @@
 import numpy as np
 from pydantic import Field
 
+from idealgas.columns import Column
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
-from idealgas.events import Column
 from idealgas.physics import thermostat as law
 from idealgas.toml.table import Positive, Table
 

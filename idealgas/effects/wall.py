@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 from pydantic import Field
 
+from idealgas.columns import SIDES
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
-from idealgas.sides import SIDES
 from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Positive, Table, Vector, Word
 

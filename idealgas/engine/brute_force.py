@@ -6,6 +6,7 @@ predictions.
 
 import numpy as np
 
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.diagnostics import deepest_overlap_of_all
 from idealgas.engine.event_writer import (
@@ -25,7 +26,6 @@ from idealgas.engine.resolve import (
     resolve_stop,
     resolve_thermostat_collision,
 )
-from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay, side_contact

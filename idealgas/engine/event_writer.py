@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from idealgas.events import BATH, Kind
+from idealgas.columns import BATH, FIRST_SEGMENT, Kind
 from idealgas.jit import inline, prefetch_next_line
-from idealgas.sides import FIRST_SEGMENT
 
 DISC, WALL, WALL_END, PISTON, THERMOSTAT = (int(kind) for kind in Kind)
 NO_END = 1 << 62  # rows, where no log is kept

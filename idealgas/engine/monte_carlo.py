@@ -18,12 +18,12 @@ from functools import partial
 
 import numpy as np
 
+from idealgas.columns import Column, EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_trial
 from idealgas.engine.records import ONE_THREAD, Limits, make_discs
 from idealgas.engine.resolve import energy_of_pair, record_pair_loss
 from idealgas.errors import UserError
-from idealgas.events import Column, EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.collision_rates import mean_trial_time
 from idealgas.physics.disc_disc import collide, random_contact

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.diagnostics import deepest_overlap_of_all
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
 from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
-from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.arithmetic import load, number, rounded, store
 from idealgas.physics.disc_disc import contact_time, velocities_after

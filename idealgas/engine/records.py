@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.events import Column
+from idealgas.columns import Column
 from idealgas.jit import aligned, inline, njit
 from idealgas.physics.motion import NEVER, advance
 from idealgas.physics.periodic import wrap

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from idealgas.columns import FIRST_SEGMENT
 from idealgas.jit import inline
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.disc_wall import collide_with_wall, inward_normal
@@ -14,7 +15,6 @@ from idealgas.physics.stress import flights_to, record_collision_stress, record_
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import andersen_collision
 from idealgas.physics.wall import segment_normal
-from idealgas.sides import FIRST_SEGMENT
 
 U = np.uintp
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from idealgas.columns import Column, EventBatch
 from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond, thermostat_collision_rate
@@ -21,7 +22,6 @@ from idealgas.engine.records import (
     synchronise,
 )
 from idealgas.errors import UserError
-from idealgas.events import Column, EventBatch
 from idealgas.physics import stress
 from idealgas.physics.exact_sum import SumRangeError
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
 from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
-from idealgas.events import EventBatch
 from idealgas.jit import inline, njit
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import is_periodic, nearest_images, periodic_axes, separation, wrap

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
-from idealgas.sides import OUTWARD, SIDES, axis_of, is_upper
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:

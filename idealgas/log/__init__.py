@@ -1,6 +1,6 @@
 """The event log: one crash-safe HDF5 file, and the exact state of the gas at any time from it."""
 
-from idealgas.events import Column
+from idealgas.columns import Column
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flights import Flights
 from idealgas.log.reader import Log, open_log

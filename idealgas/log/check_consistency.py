@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from idealgas.events import IMAGES, POSITIONS, SPINS, TRIALS, event_columns
+from idealgas.columns import IMAGES, POSITIONS, SPINS, TRIALS, event_columns
 from idealgas.initial.build import disc_constants, number_of_discs
 from idealgas.log.schema import Wall
 from idealgas.scene import Scene

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from idealgas.events import EVENT_COLUMNS
-from idealgas.sides import face_names
+from idealgas.columns import EVENT_COLUMNS, face_names
 
 VECTORS: dict[str, Sequence[str]] = {
     **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},

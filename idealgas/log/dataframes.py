@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind, columns_named, empty_batch
+from idealgas.columns import EventBatch, Kind, columns_named, empty_batch
 from idealgas.log.components import VECTORS, components
 from idealgas.log.errors import LogError
 from idealgas.log.flights import FLIGHT_COLUMNS, NO_EVENT, Flights

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Protocol, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from idealgas.events import BLOCK, Column
+from idealgas.columns import BLOCK, Column
 from idealgas.log.errors import LogError
 from idealgas.log.join import Arrays, Join, whole_pairs
 from idealgas.log.replay import LogState

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.events import Column
+from idealgas.columns import Column
 from idealgas.log.errors import LogError
 from idealgas.log.log_file import LogFile
 from idealgas.log.rules import check_boundary, check_images, check_species, check_walls

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.events import BLOCK
+from idealgas.columns import BLOCK
 from idealgas.jit import njit
 from idealgas.log.replay import LogState
 

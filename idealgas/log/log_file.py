@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import h5py
 import numpy as np
 
-from idealgas.events import Column
+from idealgas.columns import Column
 from idealgas.files import HEAD, describe_file_type, is_locked, open_regular
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from idealgas.events import BATH, Column, Kind, columns_named
+from idealgas.columns import BATH, Column, Kind, columns_named
 from idealgas.jit import njit
 
 RULED = columns_named(("time", "disc", "partner", "kind"))

@@ -40,8 +40,8 @@ from typing import TYPE_CHECKING, Any, Literal, Self, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from idealgas.columns import EventBatch
 from idealgas.errors import plain
-from idealgas.events import EventBatch
 from idealgas.files import is_locked
 from idealgas.log.dataframes import (
     KIND_NAMES,

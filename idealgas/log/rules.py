@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from idealgas.events import BATH, EVENT_COLUMNS, IMAGE, TRIALS, VELOCITY, Column, Kind
+from idealgas.columns import BATH, EVENT_COLUMNS, IMAGE, SIDES, TRIALS, VELOCITY, Column, Kind, side_ends
 from idealgas.log.components import components
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.schema import (
@@ -27,7 +27,6 @@ from idealgas.log.schema import (
     SUMMARY_COLUMNS,
     Wall,
 )
-from idealgas.sides import SIDES, side_ends
 
 NEEDED: dict[str, Sequence[Column]] = {
     "runs": RUN_COLUMNS,

@@ -17,10 +17,9 @@ import h5py
 import numpy as np
 
 from idealgas._version import __version__
-from idealgas.events import BLOCK, PLAIN_COLUMNS, POSITION, VELOCITY, Column, Kind
+from idealgas.columns import BLOCK, PLAIN_COLUMNS, POSITION, SIDES, VELOCITY, Column, Kind, side_ends
 from idealgas.log.hdf5.commit import Commit
 from idealgas.log.hdf5.objects import Objects, set_attributes
-from idealgas.sides import SIDES, side_ends
 from idealgas.state import Gas
 
 FORMAT = "idealgas log"

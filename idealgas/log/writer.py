@@ -14,8 +14,8 @@ from typing import Any, NamedTuple, Self
 import h5py
 import numpy as np
 
+from idealgas.columns import BLOCK, EventBatch, columns_named, empty_batch
 from idealgas.errors import OutputError
-from idealgas.events import BLOCK, EventBatch, columns_named, empty_batch
 from idealgas.files import LOG, beside, check_output, give_name, lock, storage_error
 from idealgas.log import schema
 from idealgas.log.hdf5.commit import Commit

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.events import Kind
+from idealgas.columns import Kind
 from idealgas.log import Log
 
 

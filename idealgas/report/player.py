@@ -16,8 +16,8 @@ from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
+from idealgas.columns import Kind
 from idealgas.errors import UserError
-from idealgas.events import Kind
 from idealgas.log import Log
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST, PALEST

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from idealgas.columns import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Arrays, Column, Values, event_columns
 from idealgas.effects import bundle
 from idealgas.effects.bundle import Effects
-from idealgas.events import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Arrays, Column, Values, event_columns
 from idealgas.log import Checkpoint, LogLayout, Wall
 from idealgas.run.energy import Energy, energy_of
 from idealgas.run.sums import kept_sums, observed_sums, restore_sums

@@ -3,10 +3,10 @@
 import os
 from collections.abc import Callable, Sequence
 
+from idealgas.columns import empty_batch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
-from idealgas.events import empty_batch
 from idealgas.jit import compile_seconds
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
 from idealgas.log.schema import CHECKPOINT_COLUMNS

@@ -5,14 +5,13 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects.bundle import Effects
 from idealgas.engine.epoch import encounters_per_length, energy_beyond, speed_beyond
-from idealgas.events import Column, Values
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls, walls_inside
-from idealgas.sides import FIRST_SEGMENT
 from idealgas.state import Gas
 
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"

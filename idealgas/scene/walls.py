@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from idealgas.sides import FIRST_SEGMENT, SIDES, Point, side_ends
+from idealgas.columns import FIRST_SEGMENT, SIDES, Point, side_ends
 
 if TYPE_CHECKING:
     from idealgas.scene.scene import Scene

@@ -7,6 +7,7 @@ import numpy as np
 
 from helpers.support import record
 from idealgas.bench.effects import effect_scene
+from idealgas.columns import FIRST_SEGMENT
 from idealgas.effects import EFFECTS
 from idealgas.effects.bundle import Effects
 from idealgas.effects.effect import EffectSpec, Start
@@ -24,7 +25,6 @@ from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat, draw_first_collisions
 from idealgas.run.layout import by_name
 from idealgas.run.sums import kept_sums
-from idealgas.sides import FIRST_SEGMENT
 from idealgas.state import Gas
 
 BOX = (12.0, 9.0)

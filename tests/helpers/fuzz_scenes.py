@@ -14,9 +14,9 @@ from hypothesis import reject
 from hypothesis import strategies as st
 
 from helpers.random_walls import HEIGHT, WIDTH, distances, some_walls
+from idealgas.columns import SIDES
 from idealgas.initial.build import make_gas
 from idealgas.scene import Scene, SceneError, parse_scene
-from idealgas.sides import SIDES
 from idealgas.state import Gas
 from idealgas.toml.dump import toml_value
 

@@ -16,13 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from helpers.random_walls import crossings, distances
+from idealgas.columns import BATH, SIDES, EventBatch, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation
-from idealgas.events import BATH, EventBatch, Kind
 from idealgas.physics.piston import piston_motion
 from idealgas.run.energy import energy_of
 from idealgas.scene import Scene
-from idealgas.sides import SIDES
 from idealgas.state import Gas
 
 U = 2.0**-53

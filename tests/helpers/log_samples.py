@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import idealgas.log.writer as log_writer
-from idealgas.events import BLOCK, EventBatch, Kind
+from idealgas.columns import BLOCK, EventBatch, Kind
 from idealgas.log import Column, Log, LogError, LogLayout, LogWriter, box_walls, open_log
 from idealgas.log.schema import THERMOSTAT_COLLISIONS
 from idealgas.state import Gas

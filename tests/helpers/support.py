@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
 
+from idealgas.columns import BLOCK, EventBatch, empty_batch
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import BLOCK, EventBatch, empty_batch
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 

@@ -6,15 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.core.impacts import Impacts
+from idealgas.columns import IMAGES, OUTWARD, POSITIONS, SIDES, empty_batch, event_columns
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import IMAGES, POSITIONS, empty_batch, event_columns
 from idealgas.initial.placement import insert_on_lattice, insert_randomly, make_grid
 from idealgas.log import Flights, LogState
 from idealgas.log.join import Join
 from idealgas.physics.periodic import Periodic
-from idealgas.sides import OUTWARD, SIDES
 from idealgas.state import Gas
 
 

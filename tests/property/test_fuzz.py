@@ -20,12 +20,12 @@ from helpers.invariants import InvariantChecker, MaxErrors
 from helpers.support import ROOT, batches, joined, record, same_rows
 from hypothesis import HealthCheck, example, given, settings
 
+from idealgas.columns import FIRST_SEGMENT, EventBatch
 from idealgas.effects.bundle import Effects, inner_energy
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.epoch import MAX_DISPLACEMENT
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import EventBatch
 from idealgas.jit import aligned
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.periodic import Periodic
@@ -39,7 +39,6 @@ from idealgas.run.effects import make_effects
 from idealgas.run.simulate import stop_of
 from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
-from idealgas.sides import FIRST_SEGMENT
 from idealgas.state import Gas
 
 TIMEOUT = 300.0  # seconds of the processor for a scene: some milliseconds and, at first, compilation

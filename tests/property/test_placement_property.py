@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from idealgas.columns import SIDES
 from idealgas.initial.build import make_gas
 from idealgas.scene import SceneError, parse_scene
-from idealgas.sides import SIDES
 from idealgas.toml.dump import toml_value
 from idealgas.toml.table import SMALLEST
 

@@ -26,7 +26,7 @@ import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
 
-from idealgas.events import Kind
+from idealgas.columns import Kind
 
 FOLDER = Path(__file__).parents[1] / "cases" / "golden"
 DIGESTS = FOLDER / "digests.json"

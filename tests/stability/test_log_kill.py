@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from helpers.log_samples import check, rows_in, start_writer, write_rows
 
-from idealgas.events import BLOCK
+from idealgas.columns import BLOCK
 from idealgas.log import LogWriter, open_log, recover
 
 pytestmark = pytest.mark.slow

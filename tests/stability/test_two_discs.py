@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from helpers.support import gas_of, record, within
 
+from idealgas.columns import Kind, empty_batch
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import Kind, empty_batch
 
 U = 2.0**-53
 FEW = 4.0

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from helpers.support import batches, gas_of, record, within
 
+from idealgas.columns import Kind
 from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.events import Kind
 from idealgas.physics.gravity import Gravity
 
 U = 2.0**-53

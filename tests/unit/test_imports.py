@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from helpers.support import ROOT
 
-FREE = {"_version", "errors", "events", "files", "sides", ""}
+FREE = {"_version", "errors", "columns", "files", ""}
 """Version, errors of the user and plain text, files to write, columns of events and numbers of walls are for all."""
 
 ALLOWED = {
@@ -29,9 +29,8 @@ ALLOWED = {
     "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "_version": set(),
     "errors": set(),
-    "events": set(),
+    "columns": set(),
     "files": set(),
-    "sides": set(),
     "": {"scene", "log", "run", "analysis"},  # the Python interface, imported when it is asked for
     "__main__": set(),
 }

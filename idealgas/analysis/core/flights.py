@@ -14,7 +14,7 @@ from idealgas.analysis.core.ballistic import (
     velocity_quantity,
 )
 from idealgas.analysis.core.stream import add_to
-from idealgas.events import Kind
+from idealgas.columns import Kind
 from idealgas.log import Flights
 from idealgas.log.flights import NO_EVENT
 from idealgas.state import Gas

@@ -6,9 +6,8 @@ What an event gives is the change of a disc's momentum there; what gravity gave 
 import numpy as np
 
 from idealgas.analysis.core.stream import add_to
-from idealgas.events import Kind
+from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Kind
 from idealgas.log import Flights, Log
-from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES
 from idealgas.state import Gas
 
 

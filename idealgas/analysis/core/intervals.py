@@ -5,7 +5,7 @@ import numpy as np
 from idealgas.analysis.core.ballistic import length_of_flight
 from idealgas.analysis.core.flights import bin_of
 from idealgas.analysis.core.stream import add_to, began_in
-from idealgas.events import Kind
+from idealgas.columns import Kind
 from idealgas.jit import njit
 from idealgas.log import Flights
 from idealgas.state import Gas

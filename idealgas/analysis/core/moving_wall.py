@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.columns import SIDES, Kind
 from idealgas.errors import UserError
-from idealgas.events import Kind
 from idealgas.log import Flights, Log
-from idealgas.sides import SIDES
 from idealgas.state import Gas
 
 

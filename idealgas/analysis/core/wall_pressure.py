@@ -13,9 +13,9 @@ from idealgas.analysis.core.impacts import WallImpulses
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.samples import SampledWalls
 from idealgas.analysis.core.stream import Tally
+from idealgas.columns import FIRST_SEGMENT, SIDES, axis_of
 from idealgas.log import Log
 from idealgas.scene.walls import number_walls
-from idealgas.sides import FIRST_SEGMENT, SIDES, axis_of
 
 
 @dataclass(frozen=True)

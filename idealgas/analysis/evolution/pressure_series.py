@@ -13,8 +13,8 @@ from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.wall_pressure import WallGauge
 from idealgas.analysis.evolution.theory import StateLines, room, state_lines
+from idealgas.columns import FIRST_SEGMENT
 from idealgas.log import Log
-from idealgas.sides import FIRST_SEGMENT
 
 BLOCKS = 2048
 """Number of blocks of time that are counted; a bin is a number of them, whose spread gives its error bar."""

@@ -8,7 +8,7 @@ from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
-from idealgas.sides import SIDES, axis_of
+from idealgas.columns import SIDES, axis_of
 from idealgas.state import Gas
 
 

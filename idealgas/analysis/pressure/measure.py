@@ -36,10 +36,10 @@ from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_sample
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import SOLID, BoxTheory, NoTheoryError, Theory, crystal, fluid, mixture_error
+from idealgas.columns import OUTWARD, SIDES, axis_of
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
-from idealgas.sides import OUTWARD, SIDES, axis_of
 from idealgas.state import Gas
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"

@@ -9,8 +9,8 @@ from idealgas.analysis.core.composition import Composition, composition
 from idealgas.analysis.core.ensemble import column_temperature, known_ensemble
 from idealgas.analysis.profile.conduction import conduct
 from idealgas.analysis.theory.values import Theory
+from idealgas.columns import sides_across
 from idealgas.log import Log
-from idealgas.sides import sides_across
 
 UNIFORM = "uniform"
 """Name of the law of a gas that is the same everywhere."""

@@ -9,7 +9,7 @@ import numpy as np
 from idealgas.analysis.theory import conserved, hard_discs, time_steps
 from idealgas.analysis.theory.barometric import DENSEST, barometric_temperature, column_rates
 from idealgas.analysis.theory.values import box_theory
-from idealgas.events import IMAGES, SPINS, event_columns
+from idealgas.columns import IMAGES, SPINS, event_columns
 from idealgas.physics.collision_rates import mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
 from idealgas.scene import RestingDisc, Scene

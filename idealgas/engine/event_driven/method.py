@@ -6,6 +6,7 @@ batches.
 
 import numpy as np
 
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cells
 from idealgas.engine.event_driven.contacts import deepest_overlap
@@ -15,7 +16,6 @@ from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
 from idealgas.engine.parallel.decomposition import DomainDecomposition, Workers
 from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, choose_threads
 from idealgas.engine.records import NO_EXTRA_STATE, Discs, Limits, Threads, make_discs
-from idealgas.events import EventBatch
 from idealgas.state import Gas
 
 MAX_UNSORTED = 4096

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from idealgas.columns import FIRST_SEGMENT, HEAT_BATH
 from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import inline
 from idealgas.physics.motion import NEVER
-from idealgas.sides import FIRST_SEGMENT, HEAT_BATH
 
 PREDICTION = np.dtype(
     [

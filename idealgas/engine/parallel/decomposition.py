@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects, add_sums_of, clear_sums, with_own_sums
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.prefetch import make_pipeline
@@ -22,7 +23,6 @@ from idealgas.engine.parallel.merge import PendingRows, TiedRowsError, time_orde
 from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, make_subdomains, reset, slab_edges
 from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Subdomain
 from idealgas.engine.records import COUNTERS, UNLIMITED, Discs, Limits
-from idealgas.events import EventBatch
 from idealgas.jit import aligned
 from idealgas.physics import stress
 from idealgas.physics.periodic import periodic_axes

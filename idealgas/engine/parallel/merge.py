@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from idealgas.events import EventBatch, Kind
+from idealgas.columns import EventBatch, Kind
 from idealgas.jit import inline, njit
 
 U = np.uintp

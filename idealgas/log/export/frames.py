@@ -13,8 +13,8 @@ import h5py
 import numpy as np
 
 from idealgas._version import __version__
+from idealgas.columns import IMAGE, POSITION, VELOCITY
 from idealgas.errors import plain
-from idealgas.events import IMAGE, POSITION, VELOCITY
 from idealgas.log.reader import Log
 
 

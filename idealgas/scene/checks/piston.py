@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
+from idealgas.columns import SIDES, opposite
 from idealgas.effects.periodic import PERIODIC
-from idealgas.sides import SIDES, opposite
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:

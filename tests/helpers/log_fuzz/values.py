@@ -4,7 +4,7 @@ import numpy as np
 from numpy.random import Generator
 
 from helpers.log_fuzz.editor import Change, Editor, Effect, broken, some
-from idealgas.events import EVENT_COLUMNS, Kind
+from idealgas.columns import EVENT_COLUMNS, Kind
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 
 NOT_FINITE = (np.nan, np.inf, -np.inf)

@@ -12,8 +12,8 @@ from idealgas.analysis.evolution.tables import evolution_tables
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.transport.measure import transport
+from idealgas.columns import BATH, Kind
 from idealgas.errors import NotApplicableError
-from idealgas.events import BATH, Kind
 
 GAS = """
 scene.seed = 3

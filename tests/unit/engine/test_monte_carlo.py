@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from helpers.support import gas_of, record
 
+from idealgas.columns import EventBatch, Kind
 from idealgas.engine.monte_carlo import MonteCarlo
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.errors import UserError
-from idealgas.events import EventBatch, Kind
 
 BOX = (10.0, 10.0)
 

@@ -7,10 +7,10 @@ import pytest
 from helpers.log_compare import differences
 from helpers.support import gas_of, record, same_rows
 
+from idealgas.columns import Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.engine.time_driven import TimeDriven, first_step_after, make_nearby
-from idealgas.events import Kind
 from idealgas.log import open_log
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic

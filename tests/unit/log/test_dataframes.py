@@ -7,7 +7,7 @@ import pytest
 from helpers.log_compare import scene_of
 from helpers.log_samples import write_log
 
-from idealgas.events import Kind
+from idealgas.columns import Kind
 from idealgas.log import LogError, open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene

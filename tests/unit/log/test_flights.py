@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import idealgas.log.flights as module
-from idealgas.events import Kind
+from idealgas.columns import Kind
 from idealgas.log import Flights, LogError, open_log
 from idealgas.log.flights import NO_EVENT, NOBODY
 from idealgas.run.simulate import simulate

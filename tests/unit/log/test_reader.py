@@ -9,7 +9,7 @@ from helpers.log_compare import scene_of
 from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
 
 import idealgas.log.reader as log_reader
-from idealgas.events import BLOCK, Kind
+from idealgas.columns import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
 from idealgas.log.hdf5 import chunks
 from idealgas.run.simulate import simulate

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from helpers.log_samples import STEP, check, rows, start_writer, write_log, write_rows
 
+from idealgas.columns import BLOCK, EventBatch
 from idealgas.errors import OutputError
-from idealgas.events import BLOCK, EventBatch
 from idealgas.log import DamageError, LogError, LogWriter, open_log, recover
 
 

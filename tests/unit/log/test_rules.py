@@ -10,7 +10,7 @@ from helpers.crafted import craft, put, read_path, refused, swap
 from helpers.log_compare import scene_of
 from helpers.log_samples import BATH_VALUES, write_log
 
-from idealgas.events import BATH, Kind
+from idealgas.columns import BATH, Kind
 from idealgas.log import LogError, open_log
 from idealgas.run.simulate import simulate
 

@@ -15,8 +15,7 @@ import pytest
 from helpers.log_samples import DISCS, STEP, check, gas, new_writer, rows, write_checkpoint, write_log, write_rows
 
 import idealgas.log.writer as log_writer
-from idealgas.errors import OutputError
-from idealgas.events import (
+from idealgas.columns import (
     ANGULAR_VELOCITY,
     BLOCK,
     IMAGE,
@@ -29,6 +28,7 @@ from idealgas.events import (
     Kind,
     event_columns,
 )
+from idealgas.errors import OutputError
 from idealgas.log import LogLayout, LogWriter, box_walls, open_log
 from idealgas.log.hdf5.table_writer import TableWriter
 

@@ -6,11 +6,11 @@ from itertools import combinations
 
 import pytest
 
+from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
 from idealgas.effects import EFFECT_NAMES
 from idealgas.effects.properties import Properties
 from idealgas.physics.disc_wall import inward_normal
 from idealgas.scene import parse_scene
-from idealgas.sides import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
 
 PLAIN = """
 box.size = [20, 10]

@@ -12,8 +12,8 @@ from idealgas.analysis.core.impacts import WallImpulses
 from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.wall_pressure import WallGauge
+from idealgas.columns import Kind
 from idealgas.errors import UserError
-from idealgas.events import Kind
 from idealgas.log import open_log
 from idealgas.movie.piston_track import piston_track
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from idealgas.columns import Kind, empty_batch
 from idealgas.engine.parallel.merge import PendingRows, TiedRowsError, time_order
-from idealgas.events import Kind, empty_batch
 
 pytestmark = pytest.mark.interpreted
 

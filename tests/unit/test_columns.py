@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.events import (
+from idealgas.columns import (
     EVENT_COLUMNS,
     IMAGES,
     PLAIN_COLUMNS,

@@ -1,6 +1,8 @@
-"""Events: the columns of the event log, and the batches in which rows go from an engine to a log.
+"""What one event row is: columns, batches, kinds of events, and the numbers of walls.
 
-A column is declared once, here. Batches, the tables of a log, checkpoints, snapshots and exports are made from that.
+A column is declared once, here; batches, tables of a log, checkpoints, snapshots and exports are made from it.
+
+Walls 0 to 3 are the sides of the box, wall segments follow. Events name wall k as partner -1 - k.
 """
 
 from collections.abc import Collection, Sequence
@@ -9,7 +11,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas.sides import HEAT_BATH
+SIDES = ("left", "right", "bottom", "top")
+"""Names of walls 0 to 3."""
+
+FIRST_SEGMENT = len(SIDES)
+"""Number of the first wall segment; the others follow in the order of the scene."""
+
+HEAT_BATH = 1 << 30
+"""Number of a heat bath, larger than that of any wall; events name it as partner BATH."""
+
+BATH = -1 - HEAT_BATH
+"""Partner of a disc in an event of kind THERMOSTAT."""
+
+OUTWARD = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
+"""Unit normals (x, y) of the sides, pointing out of the box."""
+
+Point = tuple[float, float]
+"""Coordinates (x, y), length."""
 
 BLOCK = 65_536
 """Number of rows of a full batch, and of a chunk in the file."""
@@ -26,10 +44,6 @@ class Kind(IntEnum):
     """The heat bath of a thermostat."""
 
 
-BATH = -1 - HEAT_BATH
-"""Partner of a disc in a row of kind THERMOSTAT."""
-
-
 class Column(NamedTuple):
     """One column of a table.
 
@@ -38,7 +52,7 @@ class Column(NamedTuple):
         dtype: NumPy type of its numbers.
         shape: shape of one row's entry.
         unit: unit of its numbers; empty if they have none.
-        when: property of the discs (one of the words below) without which events lack this column; empty for none.
+        when: property of the discs (see `POSITIONS`) that events need to have this column; empty for all events.
         parts: names of the components of an entry, for tables in which every column is one number.
     """
 
@@ -126,3 +140,39 @@ def empty_batch(rows: int = BLOCK, columns: Sequence[Column] = PLAIN_COLUMNS) ->
     """Batch of `rows` rows with these columns, for an engine to fill; None for all other columns."""
     made = {column.name: np.empty((rows, *column.shape), column.dtype) for column in columns}
     return EventBatch(*(made.get(name) for name in EventBatch._fields))  # type: ignore[arg-type]
+
+
+def face_names(walls: Sequence[str]) -> list[str]:
+    """Names of all wall faces, from the names of the walls: the sides, then both faces of every segment.
+
+    The face on the left, seen from the segment's start towards its end, comes first.
+    """
+    segments = walls[FIRST_SEGMENT:]
+    return [*walls[:FIRST_SEGMENT], *(f"{name} {face}" for name in segments for face in ("left", "right"))]
+
+
+def axis_of(side: int) -> int:
+    """Axis normal to a side: 0 (x) for left and right, 1 (y) for bottom and top."""
+    return side // 2
+
+
+def is_upper(side: int) -> bool:
+    """Whether a side is at the larger coordinate along its axis: right and top."""
+    return side % 2 == 1
+
+
+def sides_across(axis: int) -> tuple[int, int]:
+    """Numbers of the two sides normal to an axis, the one at the smaller coordinate first."""
+    return 2 * axis, 2 * axis + 1
+
+
+def opposite(side: int) -> int:
+    """Number of the opposite side."""
+    return side ^ 1
+
+
+def side_ends(box: tuple[float, float]) -> list[tuple[Point, Point]]:
+    """Both end points of each side of a box (width, height), length."""
+    width, height = box
+    left, right = ((0.0, 0.0), (0.0, height)), ((width, 0.0), (width, height))
+    return [left, right, ((0.0, 0.0), (width, 0.0)), ((0.0, height), (width, height))]
