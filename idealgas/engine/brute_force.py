@@ -7,8 +7,6 @@ predictions.
 import numpy as np
 
 from idealgas.columns import EventBatch
-from idealgas.effects.bundle import Effects
-from idealgas.engine.diagnostics import deepest_overlap_of_all
 from idealgas.engine.event_writer import (
     batch_capacity,
     write_pair,
@@ -17,7 +15,8 @@ from idealgas.engine.event_writer import (
     write_side_hit,
     write_thermostat_collision,
 )
-from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.method import Limits, Method
+from idealgas.engine.records import add_to_counters, check_clock
 from idealgas.engine.resolve import (
     resolve_pair,
     resolve_piston,
@@ -33,7 +32,6 @@ from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact
-from idealgas.state import Gas
 
 U = np.uintp
 PAIR, SIDE, SEGMENT, PISTON, STOP, THERMOSTAT, BOUNDARY_CROSSING = range(7)
@@ -222,19 +220,8 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
     return rows, reached
 
 
-class BruteForce:
+class BruteForce(Method):
     """The brute-force method: its records and effects between the start and the end of an epoch."""
-
-    without_positions = False
-    single_epoch = False
-    pending = False
-    threads = ONE_THREAD
-    extra_state = NO_EXTRA_STATE
-
-    def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch."""
-        self.discs = make_discs(gas, np.arange(len(gas)))
-        self._effects = effects
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
@@ -242,7 +229,3 @@ class BruteForce:
         """Process events, see `advance_events`."""
         record, ids, box = self.discs
         return advance_events(record, ids, box, self._effects, limits, epoch_start, batch, counters)
-
-    def deepest_overlap(self) -> float:
-        """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
-        return deepest_overlap_of_all(self.discs.record, self._effects.periodic)

@@ -21,7 +21,7 @@ import numpy as np
 from idealgas.columns import Column, EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_trial
-from idealgas.engine.records import ONE_THREAD, Limits, make_discs
+from idealgas.engine.method import Limits, Method
 from idealgas.engine.resolve import energy_of_pair, record_pair_loss
 from idealgas.errors import UserError
 from idealgas.jit import inline, njit
@@ -142,13 +142,10 @@ def advance_trials(
     return rows, reached, excess, square
 
 
-class MonteCarlo:
+class MonteCarlo(Method):
     """The Monte Carlo method: its records and effects between the start and the end of an epoch."""
 
-    without_positions = True
-    single_epoch = False
-    pending = False
-    threads = ONE_THREAD
+    has_positions = False
 
     def __init__(self, seed: int, v_ref: float, one_sided: bool = False, rises: bool = False) -> None:
         """Set the seed and v_ref, the relative speed at which a pair of the largest discs is accepted for certain.
@@ -157,7 +154,12 @@ class MonteCarlo:
         where it is too small, instead of ending the run.
         """
         self._seed, self._v_ref, self._one_sided = seed, v_ref, one_sided
-        self.extra_state: dict[Column, float] = {V_REF: v_ref} if rises else {}
+        self._extra_state: dict[Column, float] = {V_REF: v_ref} if rises else {}
+
+    @property
+    def extra_state(self) -> dict[Column, float]:
+        """The reference speed, if it may be raised."""
+        return self._extra_state
 
     @property
     def v_ref(self) -> float:
@@ -166,8 +168,7 @@ class MonteCarlo:
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch."""
-        self.discs = make_discs(gas, np.arange(len(gas)))
-        self._effects = effects
+        super().start(gas, effects)
         self._reach = float(np.sort(gas.radius)[-2:].sum())
         self._trial_time = partial(mean_trial_time, len(gas), gas.area, gas.packing_fraction, self._reach)
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
-from idealgas.engine.diagnostics import deepest_overlap_of_all
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
-from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, check_clock, make_discs
+from idealgas.engine.method import Limits, Method
+from idealgas.engine.records import add_to_counters, check_clock
 from idealgas.jit import inline, njit
 from idealgas.physics.arithmetic import load, number, rounded, store
 from idealgas.physics.disc_disc import contact_time, velocities_after
@@ -264,18 +264,14 @@ def turn_back(c, time):
         store(c.t, i, number(0.0, end))
 
 
-class PreciseBruteForce:
+class PreciseBruteForce(Method):
     """The brute-force method in multiprecision arithmetic.
 
     Attributes:
         columns: the discs with all their digits.
     """
 
-    without_positions = False
     single_epoch = True
-    pending = False
-    threads = ONE_THREAD
-    extra_state = NO_EXTRA_STATE
 
     def __init__(self, precision: str, start: Columns | None = None) -> None:
         """Set the precision: "float32", "float64" or "double-double".
@@ -286,11 +282,10 @@ class PreciseBruteForce:
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin the run's only epoch."""
-        self.discs = make_discs(gas, np.arange(len(gas)))
+        super().start(gas, effects)
         start = self._start or make_columns(gas, self._precision)
         self.columns = Columns(*(column.copy() for column in start))
         self._upcoming = Next(np.empty_like(start.t), np.empty(len(gas), np.int32))
-        self._effects = effects
         find_all(self.columns, self._upcoming)
 
     def advance(
@@ -301,7 +296,3 @@ class PreciseBruteForce:
         return advance_precisely(
             self.columns, self._upcoming, record, ids, self._effects, limits, epoch_start, batch, counters
         )
-
-    def deepest_overlap(self) -> float:
-        """Deepest overlap at the start, divided by the sum of the radii; to be called before `advance`."""
-        return deepest_overlap_of_all(self.discs.record, None)

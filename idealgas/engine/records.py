@@ -1,12 +1,9 @@
 """Arrays of the engines: one 64-byte record for each disc, in an order that is not the order of ids."""
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.columns import Column
 from idealgas.jit import aligned, inline, njit
 from idealgas.physics.motion import NEVER, advance
 from idealgas.physics.periodic import wrap
@@ -39,52 +36,8 @@ COUNTERS = np.dtype(
 )  # fmt: skip
 
 
-NO_EXTRA_STATE: Mapping[Column, float] = MappingProxyType({})
-"""What a method keeps whose epochs all follow from the discs and the effects."""
-
-
-class Threads(NamedTuple):
-    """How a method shares its work among threads, without an effect on the result.
-
-    Attributes:
-        number: number of threads.
-        reason: why there are this many.
-        slices: number of slices of time that several threads shared.
-        aborted: number of these that one thread had to repeat.
-        min_events: smallest number of events per call of `advance` for which the work can be shared.
-        serial_events: largest number of events per call for which one thread works alone, so that another core is
-            free; 0 if a core is free anyway, or none can be.
-    """
-
-    number: int = 1
-    reason: str = "the method has one"
-    slices: int = 0
-    aborted: int = 0
-    min_events: int = 1
-    serial_events: int = 0
-
-
-ONE_THREAD = Threads()
-
-
 class InelasticCollapseError(Exception):
     """A disc has collisions without end at one instant."""
-
-
-class Limits(NamedTuple):
-    """When a call of an engine's kernel ends: at a time, or after a number of events.
-
-    Attributes:
-        until: local time, time.
-        events: largest number of events in this call.
-        collisions: largest number of collisions of two discs in this call.
-        trials: largest number of Monte Carlo trials in this call.
-    """
-
-    until: float
-    events: int
-    collisions: int
-    trials: int
 
 
 class Discs(NamedTuple):

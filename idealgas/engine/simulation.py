@@ -1,24 +1,22 @@
 """The simulation of a gas through the epochs of its run."""
 
 import copy
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from idealgas.columns import Column, EventBatch
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
 from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond, thermostat_collision_rate
+from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import (
     COUNTERS,
     LATEST,
     UNLIMITED,
-    Discs,
     InelasticCollapseError,
-    Limits,
-    Threads,
     synchronise,
 )
 from idealgas.errors import UserError
@@ -30,58 +28,6 @@ from idealgas.state import Gas
 
 TRAJECTORY = 1
 """Version of the trajectory, to be raised by hand whenever a change of the program changes the log of a scene."""
-
-
-class Method(Protocol):
-    """What a simulation needs of a method.
-
-    Attributes:
-        discs: records of the discs in the present epoch.
-        without_positions: whether its discs have no positions; those of the gas then stay as they are.
-        single_epoch: whether the run must be one epoch, because its digits would be lost between epochs.
-        pending: whether rows of events that have happened are still to be handed on by `advance`.
-        threads: how its work is shared.
-        extra_state: state of the method itself that later epochs depend on, by its columns in the log; `advance`
-            returns after each change.
-    """
-
-    discs: Discs
-    without_positions: bool
-    single_epoch: bool
-
-    @property
-    def pending(self) -> bool:
-        """See above."""
-        ...
-
-    @property
-    def threads(self) -> Threads:
-        """See above."""
-        ...
-
-    @property
-    def extra_state(self) -> Mapping[Column, float]:
-        """See above."""
-        ...
-
-    def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch with a gas at local time 0."""
-
-    def advance(
-        self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
-    ) -> tuple[int, bool]:
-        """Process events up to the limits, or until the batch is full.
-
-        Returns the number of rows written, and whether everything up to the limit of time has happened.
-        """
-        ...
-
-    def deepest_overlap(self) -> float:
-        """Deepest overlap of two discs at the start of the epoch, divided by the sum of their radii.
-
-        To be called before `advance`.
-        """
-        ...
 
 
 class Stop(NamedTuple):
@@ -263,7 +209,7 @@ class Simulation:
             synchronise(record, ids, local_time, self.effects.gravity, periodic, flow, position, velocity)
         except SumRangeError as error:
             raise self._dated(error) from error
-        if self.method.without_positions:
+        if not self.method.has_positions:
             position = self.gas.position
         return replace(self.gas, position=position, velocity=velocity)
 

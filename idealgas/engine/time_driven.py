@@ -14,7 +14,8 @@ import numpy as np
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
-from idealgas.engine.records import NO_EXTRA_STATE, ONE_THREAD, Limits, add_to_counters, make_discs
+from idealgas.engine.method import Limits, Method
+from idealgas.engine.records import add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
 from idealgas.jit import inline, njit
 from idealgas.physics.motion import advance
@@ -271,14 +272,8 @@ def first_step_after(time: float, dt: float) -> int:
     return number
 
 
-class TimeDriven:
+class TimeDriven(Method):
     """The time-driven method: its records and effects in an epoch; steps end at multiples of dt (time)."""
-
-    without_positions = False
-    single_epoch = False
-    pending = False
-    threads = ONE_THREAD
-    extra_state = NO_EXTRA_STATE
 
     def __init__(self, dt: float) -> None:
         """Set the length of a step, dt (time)."""
@@ -288,11 +283,10 @@ class TimeDriven:
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch; its start may divide a step in two, as discs fly on unchanged."""
+        super().start(gas, effects)
         self._near = make_nearby(gas, periodic_axes(effects.periodic))
-        self.discs = make_discs(gas, np.arange(len(gas)))
         list_pairs(*self.discs, self._near, effects.periodic)
         self.discs = make_discs(gas, self._near.order.copy())
-        self._effects = effects
         self._step = np.zeros(1, STEP).view(np.recarray)
         self._step[0].spent = math.inf
         self._overlap, self._deepest = float(self._deepest[0]), np.zeros(1)

@@ -29,10 +29,10 @@ class Summary:
         max_wall_penetration: largest distance by which a disc reached out of the box at these times, in diameters.
         seconds: wall time of the last run without start-up and compilation, s.
         compile_seconds: wall time of compilation, s.
-        threads: number of threads at the end of the last run.
+        threads: number of threads that shared the work of the last run; 1 if they shared no slice.
         threads_reason: reason for this number of threads.
-        shared_slices: number of time slices that threads computed together.
-        aborted_slices: number of these that one thread computed again.
+        shared_slices: number of slices of time that several threads shared.
+        aborted_slices: number of these that one thread had to repeat.
     """
 
     completed: bool

@@ -26,7 +26,7 @@ DIAGNOSTICS = (
 
 
 def layout_of(
-    scene: Scene, gas: Gas, effects: Effects, without_positions: bool, extra_state: Iterable[Column] = ()
+    scene: Scene, gas: Gas, effects: Effects, has_positions: bool, extra_state: Iterable[Column] = ()
 ) -> LogLayout:
     """Layout of the log of a scene.
 
@@ -34,7 +34,7 @@ def layout_of(
         scene: the scene.
         gas: its discs at time 0.
         effects: its effects at time 0.
-        without_positions: whether the method has no positions of discs.
+        has_positions: whether discs have positions with its method.
         extra_state: values of the method that checkpoints store in addition to the discs.
     """
     x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
@@ -43,11 +43,11 @@ def layout_of(
         boundary=(x, y),
         gravity=scene.properties.acceleration,
         disc_columns=bundle.disc_constants(effects),
-        event_columns=row_columns(effects, without_positions) if scene.log.events else (),
-        checkpoint_arrays=tuple(disc_state(gas, effects, without_positions)),
+        event_columns=row_columns(effects, has_positions) if scene.log.events else (),
+        checkpoint_arrays=tuple(disc_state(gas, effects, has_positions)),
         checkpoint_values=(*totals(effects), *extra_state, *whole_state(effects)),
         observables=(*DIAGNOSTICS, *totals(effects), *extra_state, *observed(gas, effects)),
-        snapshot_arrays=tuple(snapshot_state(gas, effects, without_positions)) if scene.log.snapshot_every else (),
+        snapshot_arrays=tuple(snapshot_state(gas, effects, has_positions)) if scene.log.snapshot_every else (),
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,
     )
@@ -58,21 +58,21 @@ def totals(effects: Effects) -> tuple[Column, ...]:
     return *TOTALS, *bundle.counted(effects)
 
 
-def row_columns(effects: Effects, without_positions: bool = False) -> tuple[Column, ...]:
+def row_columns(effects: Effects, has_positions: bool = True) -> tuple[Column, ...]:
     """Columns of an event row with these effects."""
     has = {column.when for column in bundle.disc_state(effects)}
-    return event_columns(*has, TRIALS if without_positions else POSITION.when)
+    return event_columns(*has, POSITION.when if has_positions else TRIALS)
 
 
-def disc_state(gas: Gas, effects: Effects, without_positions: bool) -> Arrays:
+def disc_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
     """Arrays per disc that a checkpoint stores; times count from the checkpoint."""
-    motion = {VELOCITY: gas.velocity} if without_positions else {POSITION: gas.position, VELOCITY: gas.velocity}
+    motion = {POSITION: gas.position, VELOCITY: gas.velocity} if has_positions else {VELOCITY: gas.velocity}
     return motion | bundle.disc_state(effects)
 
 
-def snapshot_state(gas: Gas, effects: Effects, without_positions: bool) -> Arrays:
+def snapshot_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
     """Arrays per disc that a snapshot stores: those that are columns of events."""
-    state = disc_state(gas, effects, without_positions)
+    state = disc_state(gas, effects, has_positions)
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
 
 

@@ -115,7 +115,7 @@ def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Sim
     effects = make_effects(scene, start)
     v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
     method = method_of(scene, start, v_ref)
-    _check_columns(log, layout_of(scene, start, effects, method.without_positions, method.extra_state))
+    _check_columns(log, layout_of(scene, start, effects, method.has_positions, method.extra_state))
     if checkpoint is None:
         return Simulation(start, method, effects)
     gas = _restored(log, effects, checkpoint)
@@ -146,8 +146,8 @@ def _check_columns(log: Log, layout: LogLayout) -> None:
 def _check_reproduces(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
     """Raise LogError unless this program reproduces the first events after the last checkpoint."""
     first = 0 if last is None else last.row
-    batch = empty_batch(REPLAYED_ROWS + 2, row_columns(simulation.effects, simulation.method.without_positions))
-    an_event = 2 if simulation.method.without_positions else 1  # at least: the next event may be an error
+    batch = empty_batch(REPLAYED_ROWS + 2, row_columns(simulation.effects, simulation.method.has_positions))
+    an_event = 1 if simulation.method.has_positions else 2  # at least: the next event may be an error
     events = min(REPLAYED_ROWS, (len(log) - first) // an_event)
     rows = min(simulation.advance(Stop(), batch, events), len(log) - first)
     for stored in log.chunks(None, first, first + rows):

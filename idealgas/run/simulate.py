@@ -10,11 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.effects.bundle import Effects
+from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.diagnostics import Diagnostics
-from idealgas.engine.event_driven.method import expected_threads
-from idealgas.engine.methods import make_method
-from idealgas.engine.records import LATEST, ONE_THREAD, UNLIMITED, Threads
-from idealgas.engine.simulation import TRAJECTORY, Method, Simulation, Stop
+from idealgas.engine.event_driven.method import EventDriven, expected_threads
+from idealgas.engine.method import Method, Threads
+from idealgas.engine.monte_carlo import MonteCarlo
+from idealgas.engine.multiprecision import PreciseBruteForce
+from idealgas.engine.records import LATEST, UNLIMITED
+from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop
+from idealgas.engine.time_driven import TimeDriven
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.jit import compile_seconds
@@ -28,6 +32,9 @@ from idealgas.scene import Run, Scene
 from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
+
+ONE_WAS_FASTER = "one was faster: few events, a busy machine, or a log that needs a core"
+"""Why no slice was shared although several threads were available."""
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between reports of progress and checks for interruption
 
@@ -67,16 +74,14 @@ def stop_of(scene: Scene, n: int) -> Stop:
 def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
     """Method of a scene; start: its discs at time 0; v_ref: raised reference speed of a resumed run, length/time."""
     run = scene.run
-    return make_method(
-        run.method,
-        precision=run.precision or "float64",
-        dt=run.dt,
-        v_ref=v_ref or reference_speed(run, float(np.hypot(*start.velocity.T).max())),
-        seed=scene.scene.seed,
-        one_sided=run.impact == "one_sided",
-        rises=run.v_ref is None,
-        threads=_threads(run),
-    )
+    if run.method == "brute_force":
+        return PreciseBruteForce(run.precision) if run.precision in ("float32", "double-double") else BruteForce()
+    if run.method == "time_driven":
+        return TimeDriven(run.dt or math.nan)
+    if run.method == "monte_carlo":
+        v_ref = v_ref or reference_speed(run, float(np.hypot(*start.velocity.T).max()))
+        return MonteCarlo(scene.scene.seed, v_ref, one_sided=run.impact == "one_sided", rises=run.v_ref is None)
+    return EventDriven(threads=_threads(run))
 
 
 def _threads(run: Run) -> int | None:
@@ -87,7 +92,7 @@ def _threads(run: Run) -> int | None:
 def threads_of(scene: Scene, gas: Gas) -> Threads:
     """Threads that will share the work of a run; gas: the discs at time 0."""
     if scene.run.method != "event_driven":
-        return ONE_THREAD
+        return Threads()
     return expected_threads(gas, _threads(scene.run), scene.properties.local)
 
 
@@ -126,7 +131,7 @@ def simulate(
     with LogWriter(
         path,
         gas,
-        layout_of(scene, gas, effects, method.without_positions, method.extra_state),
+        layout_of(scene, gas, effects, method.has_positions, method.extra_state),
         scene_text=dump_document(scene),
         seed=scene.scene.seed,
         command=command,
@@ -221,7 +226,7 @@ class LoggedRun:
         """Store a snapshot of the discs, and a sample unless an epoch begins here, which has one."""
         simulation, time = self._simulation, self._next_snapshot
         gas, effects = simulation.state()
-        state = by_name(snapshot_state(gas, effects, simulation.method.without_positions))
+        state = by_name(snapshot_state(gas, effects, simulation.method.has_positions))
         if time > simulation.time and not simulation.epoch_over:
             self._observe(time, gas, effects, simulation.check_invariants_of(gas))
         self._log.snapshot(time, self._snapshots, state)
@@ -249,7 +254,7 @@ class LoggedRun:
     def _checkpoint(self) -> None:
         """Store the state at the start of an epoch."""
         simulation = self._simulation
-        state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.without_positions))
+        state = by_name(disc_state(simulation.gas, simulation.effects, simulation.method.has_positions))
         whole = by_name(whole_state(simulation.effects)) | by_name(simulation.method.extra_state)
         self._log.checkpoint(simulation.time, simulation.epoch, state, simulation.totals._asdict() | whole)
 
@@ -270,6 +275,8 @@ class LoggedRun:
         start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)
         drift = (end.balance - start.balance) / (max(start.scale, end.scale) or 1.0)
         totals, threads = simulation.counters, simulation.method.threads
+        if not threads.slices and threads.number > 1:
+            threads = threads._replace(number=1, reason=ONE_WAS_FASTER)
         return Summary(
             completed=simulation.finished(stop),
             end_time=end_time,

@@ -52,7 +52,7 @@ def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
 
 def batch_for(simulation: Simulation, rows: int) -> EventBatch:
     """An empty batch with the columns that the simulation fills."""
-    return empty_batch(rows, row_columns(simulation.effects, simulation.method.without_positions))
+    return empty_batch(rows, row_columns(simulation.effects, simulation.method.has_positions))
 
 
 def batches(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = UNLIMITED) -> Iterator[EventBatch]:

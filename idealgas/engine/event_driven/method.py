@@ -13,9 +13,10 @@ from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
+from idealgas.engine.method import Limits, Method, Threads
 from idealgas.engine.parallel.decomposition import DomainDecomposition, Workers
 from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, choose_threads
-from idealgas.engine.records import NO_EXTRA_STATE, Discs, Limits, Threads, make_discs
+from idealgas.engine.records import make_discs
 from idealgas.state import Gas
 
 MAX_UNSORTED = 4096
@@ -28,13 +29,9 @@ def expected_threads(gas: Gas, threads: int | None, local: bool) -> Threads:
     return choose_threads(threads, cells.rows - 2, len(gas), local)
 
 
-class EventDriven:
+class EventDriven(Method):
     """The event-driven method: its records, effects and predictions between the start and the end of an epoch."""
 
-    without_positions = False
-    single_epoch = False
-    extra_state = NO_EXTRA_STATE
-    discs: Discs
     _state: EventDrivenState
     _shared: Threads
 

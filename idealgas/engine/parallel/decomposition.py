@@ -18,11 +18,12 @@ from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import build, make_tree
 from idealgas.engine.event_driven.state import EventDrivenState
+from idealgas.engine.method import Limits
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
 from idealgas.engine.parallel.merge import PendingRows, TiedRowsError, time_order
 from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, make_subdomains, reset, slab_edges
 from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Subdomain
-from idealgas.engine.records import COUNTERS, UNLIMITED, Discs, Limits
+from idealgas.engine.records import COUNTERS, UNLIMITED, Discs
 from idealgas.jit import aligned
 from idealgas.physics import stress
 from idealgas.physics.periodic import periodic_axes

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from idealgas.engine.method import Threads
 from idealgas.engine.parallel.atomics import LINE
 from idealgas.engine.parallel.subdomain import (
     ACTIVE,
@@ -20,7 +21,6 @@ from idealgas.engine.parallel.subdomain import (
     lock_word,
     message_word,
 )
-from idealgas.engine.records import Threads
 from idealgas.jit import aligned
 
 

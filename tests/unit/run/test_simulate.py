@@ -10,7 +10,7 @@ from helpers.support import ROOT
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
 from idealgas.log import LogWriter, open_log
 from idealgas.run.energy import Energy
-from idealgas.run.simulate import simulate
+from idealgas.run.simulate import ONE_WAS_FASTER, simulate
 from idealgas.scene import load_scene, parse_scene
 
 CONFIGS = ROOT / "configs"
@@ -32,7 +32,8 @@ def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
     for path, behind in zip(paths, (True, False), strict=True):
         monkeypatch.setattr(LogWriter, "behind", behind)
         summary = simulate(scene, path)
-        assert (summary.threads, summary.shared_slices > 0) == (2, not behind)
+        assert (summary.threads, summary.shared_slices > 0) == ((1, False) if behind else (2, True))
+        assert summary.threads_reason == (ONE_WAS_FASTER if behind else "as run.threads says")
     assert not differences(*paths)
 
 

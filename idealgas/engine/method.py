@@ -1,0 +1,97 @@
+"""What a simulation needs of a method, the limits of a call, and how work is shared among threads."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.columns import Column, EventBatch
+from idealgas.effects.bundle import Effects
+from idealgas.engine.diagnostics import deepest_overlap_of_all
+from idealgas.engine.records import Discs, make_discs
+from idealgas.state import Gas
+
+
+class Limits(NamedTuple):
+    """When a call of an engine's kernel ends: at a time, or after a number of events.
+
+    Attributes:
+        until: local time, time.
+        events: largest number of events in this call.
+        collisions: largest number of collisions of two discs in this call.
+        trials: largest number of Monte Carlo trials in this call.
+    """
+
+    until: float
+    events: int
+    collisions: int
+    trials: int
+
+
+class Threads(NamedTuple):
+    """How a method shares its work among threads, without an effect on the result.
+
+    Attributes:
+        number: number of threads.
+        reason: why there are this many.
+        slices: number of slices of time that several threads shared.
+        aborted: number of these that one thread had to repeat.
+        min_events: smallest number of events per call of `advance` for which the work can be shared.
+        serial_events: largest number of events per call for which one thread works alone, so that another core is
+            free; 0 if a core is free anyway, or none can be.
+    """
+
+    number: int = 1
+    reason: str = "the method has one"
+    slices: int = 0
+    aborted: int = 0
+    min_events: int = 1
+    serial_events: int = 0
+
+
+class Method(ABC):
+    """A method that finds the events, with the state of one epoch.
+
+    Attributes:
+        discs: records of the discs in the present epoch.
+        has_positions: whether its discs have positions; without them, those of the gas stay as they are.
+        single_epoch: whether the run must be one epoch, because digits would be lost between epochs.
+    """
+
+    discs: Discs
+    has_positions = True
+    single_epoch = False
+
+    @property
+    def pending(self) -> bool:
+        """Whether rows of past events are still to be delivered by `advance`."""
+        return False
+
+    @property
+    def threads(self) -> Threads:
+        """How the work is shared."""
+        return Threads()
+
+    @property
+    def extra_state(self) -> Mapping[Column, float]:
+        """State of the method that later epochs depend on, by columns of the log; `advance` returns when it changes."""
+        return {}
+
+    def start(self, gas: Gas, effects: Effects) -> None:
+        """Begin an epoch with a gas at local time 0."""
+        self.discs = make_discs(gas, np.arange(len(gas)))
+        self._effects = effects
+
+    @abstractmethod
+    def advance(
+        self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
+    ) -> tuple[int, bool]:
+        """Process events up to the limits, or until the batch is full.
+
+        Returns the number of rows written, and whether everything up to the limit of time has happened.
+        """
+
+    def deepest_overlap(self) -> float:
+        """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
+        return deepest_overlap_of_all(self.discs.record, self._effects.periodic)
