@@ -1,7 +1,7 @@
 """Names of the package; written by tests/helpers/write_stub.py."""
 
 from idealgas._version import __version__ as __version__
-from idealgas.analysis.cooling.measure import cooling as cooling
+from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion.measure import effusion as effusion
 from idealgas.analysis.evolution.measure import evolution as evolution
@@ -31,3 +31,5 @@ from idealgas.scene import Scene as Scene
 from idealgas.scene import SceneError as SceneError
 from idealgas.scene import load_scene as load_scene
 from idealgas.scene import parse_scene as parse_scene
+
+cooling = CoolingAnalysis.measure

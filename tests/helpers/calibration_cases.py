@@ -4,8 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from idealgas import Log
-from idealgas.analysis.cooling.measure import cooling
+from idealgas import Log, cooling
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.effusion.measure import effusion
 from idealgas.analysis.heat_capacity.measure import heat_capacity

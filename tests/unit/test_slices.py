@@ -33,7 +33,7 @@ NAMED = {
     "log/export/frames.py": ({"periodic"}, "H5MD's word for a boundary"),
     "run/layout.py": ({"periodic"}, "H5MD's word for a boundary"),
     "analysis/core/moving_wall.py": ({"piston"}, "the room that a piston leaves, and what presses it"),
-    "analysis/cooling/theory.py": ({"restitution", "rotation"}, "the coefficients of collisions"),
+    "analysis/cooling.py": ({"restitution", "rotation"}, "the coefficients of collisions"),
     "analysis/evolution/theory.py": ({"restitution", "piston"}, "Haff's law and those of a piston"),
     "analysis/evolution/measure.py": ({"piston"}, "the course of a piston and its energy"),
     "analysis/evolution/figure.py": ({"piston"}, "the course of a piston"),

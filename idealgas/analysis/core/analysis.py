@@ -187,6 +187,7 @@ class Analysis:
         def function(*given: Any, **named: Any) -> Any:
             return cls.analyse(**arguments.bind(*given, **named).arguments)
 
+        function.__name__ = function.__qualname__ = cls.name
         return function
 
     @classmethod

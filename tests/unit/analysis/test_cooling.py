@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.cooling.figure import cooling_figure
-from idealgas.analysis.cooling.measure import cooling
+from idealgas import cooling
 from idealgas.errors import NotApplicableError
 
 GAS = """
@@ -46,7 +45,7 @@ def test_spins_come_to_a_ratio_of_their_own(make):
     middle = len(found.time) // 8
     assert found.spin[middle] / found.temperature[middle] > 0.4
     assert abs(math.log(found.spin_law[-1] / found.spin[-1])) < 0.5
-    assert len(cooling_figure(found).axes) == 4
+    assert len(found.plot().axes) == 4
 
 
 def test_clusters_are_said(make):
@@ -54,7 +53,7 @@ def test_clusters_are_said(make):
     found = cooling(log)
     untested, clusters, flow = found.caveats
     assert "no theory of collisions that lose more" in untested
-    assert clusters.startswith("Clusters form: numbers of discs in small cells scatter ")
+    assert clusters.startswith("Clusters form: numbers of discs in cells scatter ")
     assert flow.startswith("Discs move together: ")
     assert found.last_scatter.value > 3 * found.first_scatter.value
     assert found.law is None

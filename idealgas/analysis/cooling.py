@@ -1,0 +1,349 @@
+"""Measure how a gas cools whose discs lose energy in collisions: Haff's law, a₂, spin and clusters.
+
+Haff's time and the loss per collision with the Sonine correction, the fourth cumulant a₂ of the velocities, the
+ratio of the temperatures of spin and motion of rough discs, and how much numbers of discs in small cells scatter,
+which tells when clusters form.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.caveats import narrow
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, degrees_of_freedom
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
+from idealgas.analysis.core.stream import span
+from idealgas.analysis.core.tables import Number, Table, estimates
+from idealgas.analysis.theory import granular, hard_discs
+from idealgas.analysis.theory.granular import GranularParameters
+from idealgas.analysis.theory.values import Theory
+from idealgas.errors import NotApplicableError
+from idealgas.log import Log, LogState
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+INSTANTS, ROWS = 257, 9
+"""Number of instants of the series, and of those that the terminal shows."""
+
+FEW = 10
+"""Number of discs below which a caveat says that the theory is for many discs."""
+
+FEWEST = 16
+"""Least number of instants in the window of the averages."""
+
+SETTLED, FOLDS = 20.0, 5.0
+"""Averages begin after so many collisions per disc, and after so many relaxation times of the temperature ratio."""
+
+DISCS_PER_CELL = 8
+"""Approximate mean number of discs in the cells in which they are counted."""
+
+SIGNIFICANT = 4.0
+"""Standard errors of single states beyond which a gas counts as nonuniform."""
+
+LOSS_ERROR, TIME_ERROR, RATIO_ERROR = 0.015, 0.025, 0.05
+"""Relative errors of theory for the loss per collision, Haff's time and the temperature ratio.
+
+From simulations: 20 runs each of 300 discs at φ = 0.05, with e = 0.8 to 0.98 without spin, and with e = 0.9 or 0.95 and
+β = 0, 0.5 and 0.9.
+"""
+
+CUMULANT_ERROR = 0.05
+"""Relative error of a₂ by theory: terms of higher order in it."""
+
+UNTESTED = f"There is no theory of collisions that lose more than those with e = {granular.TESTED_FROM:g}."
+
+
+@dataclass(frozen=True)
+class Cooling(Result):
+    """Cooling of a gas at F times, compared with the theory of a uniform gas.
+
+    Attributes:
+        time: (F,), times.
+        collisions: (F,), mean number of collisions per disc before them.
+        temperature: (F,), mean m v²/2 in the frame of the centre of mass, energy.
+        spin: (F,), mean I ω², energy; None without spin.
+        cumulant: (F,), a₂ of the velocities.
+        scatter: (F,), variance over mean of the numbers of discs in equal cells; 1 for points at random positions.
+        flow: (F,), mean square of the momentum in a cell over that of discs that move independently.
+        cells: number of cells.
+        law, spin_law: (F,), temperatures of motion and spin by theory; None without a theory.
+        start, end: window of the averages, times.
+        loss: part of the temperature lost per collision of a disc.
+        haff: Haff's time τ of T = T₀/(1 + t/τ)² with the temperature T₀ at time 0.
+        fourth: mean of a₂.
+        temperature_ratio: mean of spin over temperature; None without rough discs.
+        first_scatter, last_scatter, last_flow: means of scatter and flow in the first or last tenth of the collisions.
+    """
+
+    time: np.ndarray
+    collisions: np.ndarray
+    temperature: np.ndarray
+    spin: np.ndarray | None
+    cumulant: np.ndarray
+    scatter: np.ndarray
+    flow: np.ndarray
+    cells: int
+    law: np.ndarray | None
+    spin_law: np.ndarray | None
+    start: float
+    end: float
+    loss: Estimate
+    haff: Estimate
+    fourth: Estimate
+    temperature_ratio: Estimate | None
+    first_scatter: Estimate
+    last_scatter: Estimate
+    last_flow: Estimate
+
+
+class CoolingAnalysis(Analysis):
+    """Cooling of a granular gas."""
+
+    position = 30
+    results = (Cooling,)
+    sections = (
+        Section(
+            "Cooling",
+            "Temperature against time, then cumulant, temperature ratio of rough discs, and the scatter of numbers and "
+            "momenta in cells against collisions per disc; theory dashed",
+        ),
+    )
+    start = "20 collisions per disc, or more with slow spins"
+    reads = "frames"
+
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Cooling:
+        """Measure how a gas of equal discs cools by its collisions, and compare it with the theory of a uniform gas.
+
+        Args:
+            log: log with events.
+            start: start of the averages, time; by default 20 collisions per disc, or more if the spin relaxes slowly.
+            end: end of the series and averages, time; by default the end of the log.
+            progress: called as progress(done, total) while states are read.
+
+        Raises:
+            NotApplicableError: if not only collisions of equal discs change the energy, or if the log is too short.
+        """
+        parameters, dof, number = _parameters(log), degrees_of_freedom(log), len(log.discs)
+        first, last = span(log, None, end)
+        t0, s0, _ = _moments(log, log.state_at(log.start_time), dof)
+        contacts = hard_discs.box_contacts(log.discs.radius[:1], [number], log.box, log.periodic)[0, 0]
+        rate = float(contacts) * hard_discs.mean_relative_speed(t0, float(log.discs.mass[0]))  # inf: too dense
+        known = math.isfinite(rate)
+        tau = granular.cooling_time(parameters, rate) if known else last - first
+        # equally many collisions between any two of these times, by Haff's law
+        time = np.clip(np.geomspace(tau + first, tau + last, INSTANTS) - tau, first, last)
+        temperature, spin, cumulant, scatter, flow = np.empty((5, len(time)))
+        shape = _cells(log)
+        for k, state in enumerate(log.frames(time)):
+            temperature[k], spin[k], cumulant[k] = _moments(log, state, dof)
+            scatter[k], flow[k] = _scatter(log, state, shape)
+            if progress is not None:
+                progress(k + 1, len(time))
+        collisions = _collisions(log, time)
+        settled = max(SETTLED, FOLDS * granular.relaxation(parameters))
+        window = np.flatnonzero(collisions >= settled if start is None else time >= start)
+        if len(window) < FEWEST:
+            needs = f"the averages begin after {settled:.3g}; --from T sets a start by hand"
+            raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions per disc ({needs})")
+        tested = parameters.normal >= granular.TESTED_FROM
+        rate /= dof / (2 * number)  # a conserved momentum leaves the same heat to fewer degrees of freedom
+        law = spin_law = None
+        if known and tested:
+            law, spin_law = granular.homogeneous_cooling(parameters, rate, t0, s0, time)
+        tenths = collisions / collisions[-1]
+        early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
+        together = mean_of_part(flow, tenths >= 0.9)
+        few = 1 / dof
+
+        def expected(value: float | None, relative: float) -> Theory | None:
+            """Theory of a uniform gas with a relative error."""
+            return Theory(value, relative * abs(value), "homogeneous cooling") if tested and value is not None else None
+
+        # averages over the window; in `cooled` the energy that motion and spin exchange does not show
+        energy = temperature[window] + number / dof * spin[window]
+        cooled = energy * (temperature[window] / energy).mean()
+        loss = expected(granular.cooling_per_collision(parameters) * 2 * number / dof, math.hypot(LOSS_ERROR, few))
+        slopes = np.diff(cooled**-0.5) / np.diff(time[window])  # constant by Haff's law
+        haff = expected(granular.cooling_time(parameters, rate) if known else None, math.hypot(TIME_ERROR, few))
+        a2, share = None, None
+        if parameters.rough:
+            relative = expected(granular.temperature_ratio(parameters), RATIO_ERROR)
+            share = mean(spin[window] / temperature[window], relative)
+        else:
+            a2 = expected(granular.fourth_cumulant(parameters.normal), CUMULANT_ERROR)
+        return Cooling(
+            time,
+            collisions,
+            temperature,
+            spin if log.inertia is not None else None,
+            cumulant,
+            scatter,
+            flow,
+            cells=int(shape.prod()),
+            law=law,
+            spin_law=None if log.inertia is None else spin_law,
+            start=float(time[window[0]]),
+            end=float(time[-1]),
+            loss=ratio(-np.diff(np.log(cooled)), np.diff(collisions[window]), loss),
+            haff=estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=haff),
+            fourth=mean(cumulant[window], a2),
+            temperature_ratio=share,
+            first_scatter=early,
+            last_scatter=late,
+            last_flow=together,
+            caveats=(
+                *([] if number >= FEW else [f"The laws are those of many discs, and here are {number}."]),
+                *([] if tested else [UNTESTED]),
+                *narrow(log),
+                *_nonuniform(early.value, late.value, together.value, int(shape.prod())),
+            ),
+        )
+
+    @staticmethod
+    def tables(result: Cooling) -> list[Table]:
+        """Tables of the averages and of the time series."""
+        rows = [
+            ("T lost per collision of a disc (share)", result.loss),
+            ("Haff's time τ, T = T₀/(1 + t/τ)² (time)", result.haff),
+            ("a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1", result.fourth),
+        ]
+        if result.temperature_ratio is not None:
+            rows.append(("temperature of spin over that of motion", result.temperature_ratio))
+        rows += [
+            ("scatter of numbers in cells, first tenth", result.first_scatter),
+            ("scatter of numbers in cells, last tenth", result.last_scatter),
+            ("square of momenta of cells over chance, last tenth", result.last_flow),
+        ]
+        notes = (
+            f"window: t = {result.start:.6g} to {result.end:.6g}",
+            f"{result.cells} cells; scatter of numbers: variance over mean; 1 for independent discs, as for momenta",
+        )
+        columns = {
+            "t": result.time,
+            "collisions": result.collisions,
+            "kinetic energy per disc": result.temperature,
+            "law": result.law,
+            "I ω² per disc": result.spin,
+            "a₂": result.cumulant,
+            "scatter": result.scatter,
+            "flow": result.flow,
+        }
+        shown = {name: values.tolist() for name, values in columns.items() if values is not None}
+        values = [tuple(map(Number, row)) for row in zip(*shown.values(), strict=True)]
+        return [estimates("Cooling", rows, notes), Table("Time series", tuple(shown), values, most=ROWS)]
+
+    @staticmethod
+    def figure(result: Cooling) -> "Figure":
+        """Picture of the temperature against time, and of the other series against collisions."""
+        from idealgas.analysis.core.style import COLOURS, GREY, panels
+
+        means = [("a₂ (no unit)", result.cumulant, result.fourth)]
+        if result.spin is not None and result.temperature_ratio is not None:
+            means.append(("spin over motion (no unit)", result.spin / result.temperature, result.temperature_ratio))
+        figure, (ax, *others, last) = panels(2 + len(means))
+        shown = result.time > 0
+        ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="kinetic energy per disc")
+        if result.spin is not None:
+            ax.plot(result.time[shown], result.spin[shown], color=COLOURS[1], label="I ω² per disc")
+        for law, label in ((result.law, "law of a uniform gas"), (result.spin_law, None)):
+            if law is not None:
+                ax.plot(result.time[shown], law[shown], "--", color=GREY, label=label)
+        ax.set(xscale="log", yscale="log", xlabel="t (time)", ylabel="temperature (energy, k_B = 1)")
+        window = result.collisions[result.time.searchsorted([result.start, result.end])]
+        for panel, (label, series, found) in zip(others, means, strict=True):
+            panel.plot(result.collisions, series, color=COLOURS[5], linewidth=0.9, label="measured")
+            panel.plot(window, [found.value] * 2, color=COLOURS[0], label="mean")
+            if found.theory is not None:
+                panel.axhline(found.theory, color=GREY, linestyle="--", label="theory")
+            panel.set(xlabel="collisions per disc", ylabel=label)
+        last.plot(result.collisions, result.scatter, color=COLOURS[0], label="numbers: variance over mean")
+        last.plot(result.collisions, result.flow, color=COLOURS[1], label="momenta: square over that by chance")
+        last.set(ylabel=f"in {result.cells} cells (no unit)", xlabel="collisions per disc", yscale="log")
+        for panel in (ax, *others, last):
+            panel.legend()
+        return figure
+
+
+def _parameters(log: Log) -> GranularParameters:
+    """Coefficients of the collisions; NotApplicableError unless equal discs lose energy in them and nowhere else."""
+    scene, properties = log.scene, log.scene.properties
+    found = GranularParameters(
+        1.0 if scene.restitution is None else scene.restitution.normal,
+        -1.0 if scene.rotation is None else scene.rotation.roughness,
+        properties.inertia,
+    )
+    others = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
+    elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
+    why = ""
+    if found.normal == 1 and abs(found.roughness) == 1:
+        why = "collisions of its discs lose no energy"
+    elif others or not (all(log.periodic) or elastic_walls):
+        why = f"more than collisions of discs changes its energy ({', '.join(others) or 'walls'})"
+    elif not log.has_positions or not log.has_events:
+        why = "it takes events with positions"
+    elif len(log.discs.species_names) > 1:
+        why = "its discs are of several species, and the laws are those of equal discs"
+    elif not log.discs.radius[0] > 0 or not log.discs.kinetic_energy > 0:
+        why = "its discs never meet"
+    if why:
+        raise NotApplicableError(f"{log.path}: {why}")
+    return found
+
+
+def _moments(log: Log, state: LogState, dof: int) -> tuple[float, float, float]:
+    """Temperatures of motion and spin and a₂ at one instant.
+
+    a₂ is without the bias of few discs: at fixed energy Gaussian ones have -2/(D + 2) on average.
+    """
+    square = ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)
+    spin = 0.0
+    if log.inertia is not None and state.angular_velocity is not None:
+        spin = float((log.inertia * state.angular_velocity**2).mean())
+    cumulant = (dof + 2) / dof * (square**2).mean() / (2 * square.mean() ** 2) - 1
+    return float((log.discs.mass * square).sum() / dof), spin, float(cumulant)
+
+
+def _cells(log: Log) -> np.ndarray:
+    """Numbers of equal cells along x and y in which discs are counted."""
+    side = math.sqrt(DISCS_PER_CELL * math.prod(log.box) / len(log.discs))
+    shape = np.maximum(np.round(np.array(log.box) / side).astype(int), 1)
+    return shape if (shape > 1).any() else np.array([2, 2])
+
+
+def _scatter(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float]:
+    """Variance over mean of the numbers of discs in cells; square of the sums of velocities over that by chance."""
+    velocity, cells = state.velocity - centre_of_mass_velocity(log), int(shape.prod())
+    at = np.minimum((state.position / np.array(log.box) * shape).astype(int), shape - 1)
+    cell = at[:, 0] * shape[1] + at[:, 1]
+    counts = np.bincount(cell, minlength=cells)
+    sums = sum(np.bincount(cell, v, cells) ** 2 for v in velocity.T)
+    return float(counts.var(ddof=1) / counts.mean()), float(np.sum(sums) / (velocity**2).sum())
+
+
+def _collisions(log: Log, time: np.ndarray) -> np.ndarray:
+    """Mean number of collisions per disc with other discs from time[0] to each of the times (F,)."""
+    counts = np.zeros(len(time))
+    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
+        counts += rows.time[rows.partner >= 0].searchsorted(time, "right")
+    return counts / len(log.discs)
+
+
+def _nonuniform(early: float, late: float, flow: float, cells: int) -> Iterator[str]:
+    """Caveats of a gas that is not uniform at the end, beyond chance in single states of M cells.
+
+    There scatter has an error of √(2/(M - 1)) of itself, and flow one of 1/√M.
+    """
+    end = "and the laws are those of a uniform gas."
+    if late > early * (1 + SIGNIFICANT * math.sqrt(4 / (cells - 1))):
+        yield f"Clusters form: numbers of discs in cells scatter {late / early:.3g} times as much as before, {end}"
+    if flow > 1 + SIGNIFICANT / math.sqrt(cells):
+        yield f"Discs move together: momenta of cells have {flow:.3g} times the square of independent discs, {end}"
