@@ -1,66 +1,105 @@
+"""What all commands that read a log have in common: they print what is asked for, and write nothing else."""
+
 import csv
 import json
 
+import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from idealgas_cli.main import main
+from helpers.support import called, error_of, output_of
 
 SCENE = """
 box.size = [20, 20]
 species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
 run.collisions_per_disc = 100
 """
+PLOTTED = ("temperature", "pressure", "heat-capacity", "profile", "evolution", "relaxation", "histogram")
+QUANTITIES = ("vx", "vy", "energy", "free-path", "free-time", "waiting-time")
+COMMANDS = [("info",), *((name,) for name in PLOTTED), *(("histogram", "--quantity", name) for name in QUANTITIES)]
+NOT_LOGS = ("missing", "folder", "empty", "text", "noise", "other", "start", "half")
 
 
 @pytest.fixture(scope="module")
-def path(tmp_path_factory):
+def folder(tmp_path_factory):
+    """A folder with the log run.h5, and files that are not logs."""
     folder = tmp_path_factory.mktemp("analysis")
     (folder / "scene.toml").write_text(SCENE)
-    ran = CliRunner().invoke(main, ["run", str(folder / "scene.toml"), "-o", str(folder / "run.h5")])
-    assert ran.exit_code == 0, ran.output
+    output_of("run", "scene.toml", "-o", "run.h5", folder=folder)
+    whole = (folder / "run.h5").read_bytes()
+    (folder / "half.h5").write_bytes(whole[: len(whole) // 2])
+    (folder / "start.h5").write_bytes(whole[:100])
+    (folder / "empty.h5").touch()
+    (folder / "noise.h5").write_bytes(bytes(range(256)) * 100)
+    (folder / "text.h5").write_text("[box]\nsize = [1, 1]\n")
+    (folder / "folder.h5").mkdir()
+    with h5py.File(folder / "other.h5", "w") as other:
+        other["x"] = [1.0, 2.0]
+    return folder
+
+
+@pytest.fixture
+def path(folder):
     return str(folder / "run.h5")
 
 
-def idealgas(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
-
-
-COMMANDS = [
-    ("info",),
-    ("temperature",),
-    ("pressure",),
-    ("heat-capacity",),
-    ("profile",),
-    ("evolution",),
-    *(
-        ("histogram", "--quantity", q)
-        for q in ("speed", "vx", "vy", "energy", "free-path", "free-time", "waiting-time")
-    ),
-]
+def listing(folder):
+    return {path.name: path.stat().st_mtime_ns for path in folder.iterdir()}
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
-def test_tables_and_json(path, command):
-    table = idealgas(*command, path)
-    assert table.exit_code == 0, table.output
-    assert table.stderr == ""
-    assert max(map(len, table.stdout.splitlines())) <= 400
-    found = idealgas(*command, path, "--json")
-    assert found.exit_code == 0
-    assert json.loads(found.stdout)
+def test_tables_and_json(folder, command):
+    before = listing(folder)
+    table = output_of(*command, "run.h5", folder=folder)
+    assert max(map(len, table.splitlines())) <= 400
+    assert json.loads(output_of(*command, "run.h5", "--json", folder=folder))
+    assert listing(folder) == before
+
+
+@pytest.mark.parametrize("command", PLOTTED)
+def test_pictures(command, path, tmp_path):
+    output_of(command, path, "--from", "0.5", "--to", "20", "--plot", "picture.png", folder=tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["picture.png"]
+    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+    line = error_of(command, path, "--plot", "picture.png", folder=tmp_path)
+    assert line == "picture.png: already exists (use --force to overwrite)\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--from", 1e6), "no window"),
+        (("--from", 5, "--to", 5), "no window"),
+        (("--plot", "picture.xyz"), "unknown figure format"),
+    ],
+)
+@pytest.mark.parametrize("command", PLOTTED)
+def test_bad_input_is_one_line(path, command, arguments, message):
+    assert message in error_of(command, path, *arguments)
+
+
+@pytest.mark.parametrize("name", NOT_LOGS)
+def test_a_file_that_is_not_a_log_is_the_same_line_for_all_commands(name, folder):
+    """Where a folder may be one of a sweep, it is named as one without results."""
+    before = listing(folder)
+    lines = {command: error_of(command, f"{name}.h5", folder=folder) for command in ("info", *PLOTTED)}
+    if name == "folder":
+        sweeps = {lines.pop(command) for command in ("pressure", "heat-capacity")}
+        assert sweeps == {"folder.h5: holds no results of a sweep\n"}
+    (line,) = set(lines.values())
+    assert line.startswith(f"{name}.h5: ")
+    assert listing(folder) == before
 
 
 def test_window(path):
-    found = json.loads(idealgas("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
+    found = json.loads(called("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
     assert found["window"] == {"start": 10.0, "end": 20.0, "equilibration_detected": False}
 
 
 def test_check_names_what_it_compares(path):
-    line = idealgas("pressure", path, "--check").stdout.splitlines()[-1]
+    line = output_of("pressure", path, "--check").splitlines()[-1]
     assert "agree within 4 standard errors" in line
     assert line.endswith("in walls, virial; pairs, virial.")
-    found = json.loads(idealgas("pressure", path, "--check", "--json").stdout)
+    found = json.loads(called("pressure", path, "--check", "--json").stdout)
     assert (found["agrees"], found["compared"], found["no_theory"]) == (True, ["walls, virial", "pairs, virial"], None)
 
 
@@ -75,15 +114,13 @@ def test_check_names_what_it_compares(path):
 def test_check_without_a_theory_says_so(overrides, why, tmp_path):
     (tmp_path / "scene.toml").write_text(SCENE.replace("collisions_per_disc = 100", "events = 2000"))
     options = [word for text in (*overrides, "species.placement=lattice") for word in ("--set", text)]
-    assert idealgas("run", tmp_path / "scene.toml", "-o", tmp_path / "run.h5", *options).exit_code == 0
-    checked = idealgas("pressure", tmp_path / "run.h5", "--check")
-    assert checked.exit_code == 0, checked.output
-    assert checked.stdout.splitlines()[-1].startswith("No theory here: ")
-    assert why in checked.stdout.splitlines()[-1]
-    as_json = idealgas("pressure", tmp_path / "run.h5", "--check", "--json")
-    assert as_json.exit_code == 0
-    assert json.loads(as_json.stdout)["agrees"] is None
-    assert why in json.loads(as_json.stdout)["no_theory"]
+    output_of("run", "scene.toml", "-o", "run.h5", *options, folder=tmp_path)
+    line = output_of("pressure", "run.h5", "--check", folder=tmp_path).splitlines()[-1]
+    assert line.startswith("No theory here: ")
+    assert why in line
+    found = json.loads(output_of("pressure", "run.h5", "--check", "--json", folder=tmp_path))
+    assert found["agrees"] is None
+    assert why in found["no_theory"]
 
 
 def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
@@ -92,42 +129,22 @@ def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
     dense = ("--set", "species.radius=1.2", "--set", "species.count=58", "--set", "species.placement=lattice")
     logs = [tmp_path / f"{name}.h5" for name in ("one", "two", "dilute")]
     for log, options in zip(logs, (dense, (*dense, "--set", "scene.seed=2"), ()), strict=True):
-        assert idealgas("run", tmp_path / "scene.toml", "-o", log, *options).exit_code == 0
-    checked = idealgas("pressure", *logs[:2], "--check")
-    assert checked.exit_code == 0
-    assert checked.stdout.splitlines()[-1].startswith("No theory here: there is none for a gas of packing fraction 0.")
-    assert idealgas("pressure", *logs[:2]).exit_code == 0
-    together = idealgas("pressure", *logs, "--check")
-    assert together.exit_code == 0
-    assert together.stdout.splitlines()[-1].count("φ = ") == 1
+        output_of("run", tmp_path / "scene.toml", "-o", log, *options)
+    checked = output_of("pressure", *logs[:2], "--check").splitlines()[-1]
+    assert checked.startswith("No theory here: there is none for a gas of packing fraction 0.")
+    output_of("pressure", *logs[:2])
+    assert output_of("pressure", *logs, "--check").splitlines()[-1].count("φ = ") == 1
 
 
 def test_check_that_fails_exits_with_one(path, monkeypatch):
     monkeypatch.setattr("idealgas.analysis.core.statistics.TOLERANCE", 1e-9)
-    result = idealgas("pressure", path, "--check")
-    assert result.exit_code == 1
+    result = called("pressure", path, "--check")
+    assert result.returncode == 1
     assert "do not agree" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--from", 1e6), "no window"),
-        (("--from", 5, "--to", 5), "no window"),
-        (("--plot", "picture.xyz"), "unknown figure format"),
-    ],
-)
-@pytest.mark.parametrize("command", COMMANDS[1:7], ids=" ".join)
-def test_bad_input_is_one_line(path, command, arguments, message):
-    result = idealgas(*command, path, *arguments)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert len(result.stderr.splitlines()) == 1
-    assert message in result.stderr
-
-
 def test_a_histogram_in_csv_has_its_bins(path):
-    rows = list(csv.DictReader(idealgas("histogram", path, "--csv").stdout.splitlines()))
+    rows = list(csv.DictReader(called("histogram", path, "--csv").stdout.splitlines()))
     bins = [row for row in rows if row["table"].startswith("Density of speed")]
     low, high, value, law = (np.array([float(row[name]) for row in bins]) for name in ("from", "to", "value", "theory"))
     assert value @ (high - low) == pytest.approx(1, abs=1e-3)

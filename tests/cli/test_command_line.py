@@ -8,7 +8,7 @@ import sys
 import click
 import pytest
 from click.testing import CliRunner
-from helpers.support import IDEALGAS, ROOT, called, idealgas
+from helpers.support import IDEALGAS, ROOT, called, error_of, idealgas, output_of
 from idealgas_cli.main import EXAMPLES, Commands, first_sentence, main
 
 from idealgas import __version__
@@ -27,8 +27,7 @@ def log(tmp_path_factory):
     """A log that `run` has written without a word."""
     folder = tmp_path_factory.mktemp("commands")
     (folder / "scene.toml").write_text(SCENE)
-    ran = called("run", "scene.toml", "-o", "run.h5", "--quiet", folder=folder)
-    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
+    assert output_of("run", "scene.toml", "-o", "run.h5", "--quiet", folder=folder) == ""
     return folder / "run.h5"
 
 
@@ -59,23 +58,20 @@ def test_what_is_written_is_named(log, tmp_path):
         done = called("temperature", log, "--plot", picture, "--force", *options)
         assert f"{picture}: written\n" in getattr(done, stream)
         assert done.stdout.count(": written") == (not options)
-    done = called("temperature", log, "--plot", picture, "--force", "--quiet")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert output_of("temperature", log, "--plot", picture, "--force", "--quiet") == ""
 
 
 def test_a_quiet_command_still_prints_what_is_asked_for_and_errors(log):
     assert called("temperature", log, "-q", "--json").stdout.startswith("{")
     assert called("temperature", log, "-q", "--csv").stdout.startswith("table,")
-    missing = called("temperature", "missing.h5", "-q")
-    assert (missing.returncode, missing.stderr.count("\n")) == (2, 1)
+    error_of("temperature", "missing.h5", "-q")
 
 
 def test_a_file_of_another_kind_is_named(log):
     """The line says what the file is, and which command reads such files."""
-    info, check = called("info", "scene.toml", folder=log.parent), called("check", "run.h5", folder=log.parent)
-    assert info.stderr == "scene.toml: not a log of idealgas, but a text (`idealgas check` reads scenes)\n"
-    assert check.stderr == "run.h5: not TOML text, but an HDF5 file (`idealgas info` reads logs)\n"
-    assert (info.returncode, check.returncode) == (2, 2)
+    info, check = (error_of(*words, folder=log.parent) for words in (("info", "scene.toml"), ("check", "run.h5")))
+    assert info == "scene.toml: not a log of idealgas, but a text (`idealgas check` reads scenes)\n"
+    assert check == "run.h5: not TOML text, but an HDF5 file (`idealgas info` reads logs)\n"
 
 
 def test_a_whole_number_may_be_written_with_an_exponent(log):
@@ -103,9 +99,7 @@ def test_a_window_beyond_the_end_has_all_digits(log):
     ],
 )  # fmt: skip
 def test_a_missing_folder_is_one_line_and_one_code(log, words):
-    done = called(*words.split(), folder=log.parent)
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert "none" in done.stderr
+    assert "none" in error_of(*words.split(), folder=log.parent)
     assert not (log.parent / "none").exists()
 
 
@@ -170,10 +164,7 @@ def test_version(flag):
 
 
 def test_an_unknown_command():
-    done = called("presure", "run.h5")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith('unknown command, did you mean "pressure"? (got presure; allowed ')
-    assert done.stderr.count("\n") == 1
+    assert error_of("presure").startswith('unknown command, did you mean "pressure"? (got presure; allowed ')
 
 
 def test_every_module_is_a_command_of_one_group():

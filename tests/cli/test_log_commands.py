@@ -8,7 +8,7 @@ from functools import partial
 
 import h5py
 import pytest
-from helpers.support import IDEALGAS, ROOT, called, idealgas
+from helpers.support import IDEALGAS, ROOT, called, error_of, idealgas
 
 from idealgas.log import LogError, open_log
 
@@ -76,10 +76,7 @@ def test_resume_to_a_later_end(copy):
 )
 def test_resume_refuses(copy, arguments, message):
     before = copy.read_bytes()
-    result = called("resume", copy, *arguments)
-    assert (result.returncode, result.stdout) == (2, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1
+    assert message in error_of("resume", copy, *arguments)
     assert copy.read_bytes() == before
 
 
@@ -174,11 +171,7 @@ def test_export_to_a_full_device(copy):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (
-            ("--format", "gsd", "--frames", "3", "-o", "-"),
-            "gsd cannot be written to a pipe (allowed csv, extxyz)",
-        ),
-        (("--format", "parquet", "--events", "-o", "-"), "parquet cannot be written to a pipe"),
+        (("--format", "gsd", "--frames", "3", "-o", "-"), "gsd cannot be written to a pipe (allowed csv, extxyz)"),
         (("--format", "extxyz", "--frames", "no"), "invalid choice of frames"),
         (("--format", "gsd", "--events"), "gsd has no events"),
         (("--format", "csv"), "either --events or --frames is required"),

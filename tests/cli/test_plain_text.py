@@ -8,7 +8,7 @@ import shutil
 from html.parser import HTMLParser
 
 import pytest
-from helpers.support import ROOT, called
+from helpers.support import ROOT, called, error_of
 from idealgas_cli._tables import print_tables
 from idealgas_cli._terminal import echo, terminal
 
@@ -112,6 +112,5 @@ def test_a_run_with_such_names(folder, command, monkeypatch):
 
 
 def test_a_file_that_is_not_there(folder):
-    done = called("info", "[/red]\x1b[31m.h5", folder=folder)
-    assert done.returncode == 2
-    assert done.stderr == "[/red]\\u001b[31m.h5: cannot be read: No such file or directory\n"
+    line = error_of("info", "[/red]\x1b[31m.h5", folder=folder)
+    assert line == "[/red]\\u001b[31m.h5: cannot be read: No such file or directory\n"

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from helpers.report_pages import FULL, PLAIN, picture, seek
-from helpers.support import ROOT, called
+from helpers.support import ROOT, called, error_of
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -182,19 +182,15 @@ def test_a_log_without_events_has_no_player(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "message"),
+    ("arguments", "message"),
     [
-        (("-o", "page.pdf"), 2, "page.pdf: unknown kind of report (allowed: .html)"),
-        (("-o", "no/page.html"), 2, "no/page.html: no folder no"),
-        (("-o", "page.html", "--from", "1e9"), 2, "no window from t = 1000000000"),
-        (("-o", "folder.html"), 2, "folder.html: is a folder"),
+        (("-o", "page.pdf"), "page.pdf: unknown kind of report (allowed: .html)"),
+        (("-o", "page.html", "--from", "1e9"), "no window from t = 1000000000"),
+        (("-o", "folder.html"), "folder.html: is a folder"),
     ],
 )
-def test_bad_input_is_one_line(pages, arguments, code, message, tmp_path, monkeypatch):
+def test_bad_input_is_one_line(pages, arguments, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "folder.html").mkdir()
-    result = called("report", pages("plain")[0], *arguments)
-    assert (result.returncode, result.stdout) == (code, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1
+    assert message in error_of("report", pages("plain")[0], *arguments)
     assert [path.name for path in tmp_path.iterdir()] == ["folder.html"]

@@ -104,3 +104,17 @@ def called(*arguments: object, folder: Path | None = None) -> subprocess.Complet
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         raise done.exception
     return subprocess.CompletedProcess(words, done.exit_code, done.stdout, done.stderr)
+
+
+def output_of(*arguments: object, folder: Path | None = None) -> str:
+    """What the command prints within this process, without errors."""
+    done = called(*arguments, folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def error_of(*arguments: object, folder: Path | None = None, code: int = 2) -> str:
+    """The one line with which the command fails within this process, with nothing else printed."""
+    done = called(*arguments, folder=folder)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (code, "", 1)
+    return done.stderr

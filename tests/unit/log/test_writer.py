@@ -4,8 +4,6 @@ import errno
 import json
 import math
 import os
-import subprocess
-import sys
 import threading
 import time
 
@@ -286,39 +284,3 @@ def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
     with pytest.raises(OutputError, match="No space left"):
         writer.close()
     assert not any(thread.name == "log writer" for thread in threading.enumerate())
-
-
-FULL = """
-import resource, sys
-from pathlib import Path
-from helpers.log_samples import new_writer, write_rows
-from idealgas.errors import OutputError
-writer = new_writer(Path(sys.argv[1]), compression=sys.argv[2])
-resource.setrlimit(resource.RLIMIT_FSIZE, (20_000_000, resource.RLIM_INFINITY))
-try:
-    with writer:
-        write_rows(writer, 10_000_000)
-except OutputError as error:
-    print(error)
-    sys.exit(error.exit_code)
-"""
-
-
-@pytest.mark.parametrize("compression", ["gzip", "none"])
-def test_rows_written_before_a_limit_are_readable(tmp_path, compression):
-    """RLIMIT_FSIZE stands for a full disk: writing fails in the middle of the run and in closing too."""
-    path = tmp_path / "run.h5"
-    tests = os.path.join(os.path.dirname(__file__), "..", "..")
-    child = subprocess.run(
-        [sys.executable, "-c", FULL, path, compression],
-        env=os.environ | {"PYTHONPATH": tests},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert (child.returncode, child.stderr) == (1, "")
-    assert child.stdout == f"{path}: cannot be written: {os.strerror(errno.EFBIG)}\n"
-    with open_log(path) as log:
-        assert check(log) >= 4 * BLOCK
-        assert not log.complete
