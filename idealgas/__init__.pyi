@@ -3,7 +3,7 @@
 from idealgas._version import __version__ as __version__
 from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.statistics import Estimate as Estimate
-from idealgas.analysis.effusion.measure import effusion as effusion
+from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.evolution.measure import evolution as evolution
 from idealgas.analysis.heat_capacity.measure import heat_capacity as heat_capacity
 from idealgas.analysis.histogram.measure import histogram as histogram
@@ -33,3 +33,4 @@ from idealgas.scene import load_scene as load_scene
 from idealgas.scene import parse_scene as parse_scene
 
 cooling = CoolingAnalysis.measure
+effusion = EffusionAnalysis.measure

@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from idealgas import Log, cooling
+from idealgas import Log, cooling, effusion
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.effusion.measure import effusion
 from idealgas.analysis.heat_capacity.measure import heat_capacity
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.order.measure import order

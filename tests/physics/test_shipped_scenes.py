@@ -11,9 +11,9 @@ import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, of_runs
 from scipy import stats
 
+from idealgas import effusion
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.effusion.measure import effusion
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.profile.measure import profile
