@@ -3,6 +3,8 @@
 Machine code is cached on disk by numba, which looks only at the source file of an entry point and would serve outdated
 code when a function in another file changes. So the cache is in a folder named by a digest of all sources that hold
 compiled code, and of the versions of the compilers.
+
+numba is imported when the first entry point is called: commands that compile nothing start without it.
 """
 
 import atexit
@@ -11,22 +13,18 @@ import os
 import shutil
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
+from functools import cache, cached_property, update_wrapper
 from pathlib import Path
 from typing import Any
 
-import llvmlite
-import numba
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic, register_jitable
-from numba.extending import overload as _overload
 
-if numba.config.DISABLE_JIT:
+INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+if INTERPRETED:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
 
 CACHE_LINE = 64  # bytes
@@ -62,6 +60,9 @@ def cache_folder() -> Path:
 
     It is in NUMBA_CACHE_DIR if that is set, else in `idealgas` in the user's cache folder.
     """
+    import llvmlite
+    import numba
+
     digest = hashlib.sha256(f"{sys.version} {numba.__version__} {llvmlite.__version__} {np.__version__}".encode())
     for path, source in sources().items():
         digest.update(f"{path.relative_to(_PACKAGE)} {len(source)} ".encode() + source)
@@ -95,22 +96,66 @@ def _remove_old(base: Path) -> None:
                 shutil.rmtree(path, ignore_errors=True)
 
 
-def njit(function: Callable) -> Any:
-    """Compile an entry point: without fastmath and without the GIL, cached on disk.
+_declared: list[Callable[[], object]] = []
+"""What numba gets to know of inlined and other functions when the first entry point is compiled."""
+_lock = threading.RLock()
 
-    Where an inlined function calls it, it is not inlined: numba would inherit `forceinline` from there.
+
+class EntryPoint:
+    """A function that is compiled when it is first called: without fastmath and without the GIL, cached on disk.
+
+    Where another compiled function calls it, it is not inlined: numba would inherit `forceinline` from there.
     """
-    if numba.config.DISABLE_JIT:
-        return function
-    own = Path(function.__code__.co_filename).is_relative_to(_PACKAGE)  # only these are in the digest
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder()) if own else before
-    try:
-        compiled = numba.njit(function, cache=own, forceinline=False, **_OPTIONS)
-    finally:
-        numba.config.CACHE_DIR = before
-    compiled.compile = _watched(compiled)
-    return compiled
+
+    def __init__(self, function: Callable) -> None:
+        """Take the function in Python."""
+        self.py_func = function
+        update_wrapper(self, function)
+        _declare(self, function, {"forceinline": False, **_PART})
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the machine code."""
+        return self.compiled(*arguments)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """Numba's dispatcher of the function."""
+        import numba
+
+        with _lock:
+            while _declared:
+                _declared.pop(0)()
+            own = Path(self.py_func.__code__.co_filename).is_relative_to(_PACKAGE)  # only these are in the digest
+            before = numba.config.CACHE_DIR
+            numba.config.CACHE_DIR = str(cache_folder()) if own else before
+            try:
+                compiled = numba.njit(self.py_func, cache=own, forceinline=False, **_OPTIONS)
+            finally:
+                numba.config.CACHE_DIR = before
+            compiled.compile = _watched(compiled)
+            return compiled
+
+
+def njit(function: Callable) -> Any:
+    """Make a function an entry point of compiled code, see `EntryPoint`."""
+    return function if INTERPRETED else EntryPoint(function)
+
+
+def when_compiling(declare: Callable[[], object]) -> Callable[[], object]:
+    """Decorate a function that declares something to numba, to be called before the first entry point is compiled."""
+    if not INTERPRETED:
+        _declared.append(declare)
+    return declare
+
+
+def _declare(name: Any, function: Callable, options: dict[str, Any]) -> None:
+    """Let compiled code call `function` by a name."""
+
+    @when_compiling
+    def declare() -> None:
+        from numba.extending import overload
+
+        overload(name, jit_options=options, strict=False)(lambda *arguments: function)
 
 
 _seconds = 0.0
@@ -126,6 +171,8 @@ def _watched(compiled: Any) -> Callable:
 
     Where two processes save machine code of one function for different types at once, both may use the same file name.
     """
+    import numba
+
     make = compiled.compile
 
     def compile_for(signature: tuple) -> Any:
@@ -148,17 +195,45 @@ def _watched(compiled: Any) -> Callable:
 
 def inline(function: Callable) -> Any:
     """Compile a small function that LLVM inserts into the entry points that call it; in Python it stays as it is."""
-    return register_jitable(**_INLINE)(function)
+    _declare(function, function, _INLINE)
+    return function
 
 
 def noinline(function: Callable) -> Any:
     """Compile a long or rarely called function as part of its entry points; in Python it stays as it is."""
-    return register_jitable(forceinline=False, **_PART)(function)
+    _declare(function, function, {"forceinline": False, **_PART})
+    return function
 
 
 def overload(function: Callable) -> Callable:
     """Decorate a function that chooses inlined code by the types of its arguments; `function` is what Python calls."""
-    return _overload(function, jit_options=_INLINE)
+
+    def decorate(choose: Callable) -> Callable:
+        @when_compiling
+        def declare() -> None:
+            from numba.extending import overload
+
+            overload(function, jit_options=_INLINE)(choose)
+
+        return choose
+
+    return decorate
+
+
+def intrinsic(function: Callable) -> Callable:
+    """Decorate a function that numba's `intrinsic` takes: compiled code calls it, Python cannot."""
+
+    def declared(*arguments: Any) -> Any:
+        raise TypeError(f"{function.__name__} is for compiled code only")
+
+    @when_compiling
+    def declare() -> None:
+        from numba.extending import intrinsic, overload
+
+        made = intrinsic(function)
+        overload(declared, jit_options=_INLINE, strict=False)(lambda *types: lambda *arguments: made(*arguments))
+
+    return declared
 
 
 def prefetch(array: Any, row: Any) -> None:
@@ -172,11 +247,14 @@ def prefetch_next_line(array: Any, row: Any) -> None:
     """
 
 
-def _prefetch(distance: int, for_writing: int) -> Any:
+def _prefetch(distance: int, for_writing: int) -> Callable:
     """Intrinsic function that prefetches what lies at a distance (bytes) from a row of an array."""
 
     @intrinsic
     def fetch(typing: Any, array: Any, row: Any) -> Any:
+        from llvmlite import ir
+        from numba import types
+
         def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             i32, byte = ir.IntType(32), ir.IntType(8).as_pointer()
             values = context.make_array(array)(context, builder, arguments[0])

@@ -7,13 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from idealgas.columns import BATH, Column, Kind, columns_named
-from idealgas.jit import njit
+from idealgas.columns import BATH, Kind
 
-RULED = columns_named(("time", "disc", "partner", "kind"))
-"""Event columns to which the rule applies."""
-
-NO_PAIR, OTHER_KIND = 1, 2
 DISC, THERMOSTAT = int(Kind.DISC), int(Kind.THERMOSTAT)
 
 
@@ -29,39 +24,21 @@ def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
     """
     if "disc" not in columns or "partner" not in columns:
         return
-    fault, row = _first_fault(*(_of_one_type(columns, column) for column in RULED), start > 0)
-    if fault == NO_PAIR:
-        raise ValueError(f"events/partner: no pair in row {start + row}")
-    if fault == OTHER_KIND:
-        raise ValueError(f"events/kind: not that of its partner in row {start + row}")
-
-
-def _of_one_type(columns: Mapping[str, np.ndarray], column: Column) -> np.ndarray:
-    """A column, empty if it is missing, as a read-only view, so that one type is compiled."""
-    found = columns.get(column.name, np.empty(0, column.dtype)).view()
-    found.flags.writeable = False
-    return found
-
-
-@njit
-def _first_fault(time, disc, partner, kind, is_second_allowed):
-    """Code of the first fault, pairs before kinds, or 0, and its row. time and kind may be empty."""
-    n = disc.shape[0]
-    odd = -1  # first row of another kind
-    allowed = is_second_allowed  # whether the row may be the second one of a pair
-    for k in range(n):
-        one, other = np.int64(disc[k]), np.int64(partner[k])
-        if (
-            kind.shape[0] > 0
-            and odd < 0
-            and ((kind[k] == DISC) != (other >= 0) or (kind[k] == THERMOSTAT) != (other == BATH))
-        ):
-            odd = k
-        if other >= 0 and one >= other and not allowed:
-            return NO_PAIR, k
-        allowed = one < other
-        if allowed and k + 1 < n:
-            same_time = time.shape[0] == 0 or time[k] == time[k + 1]
-            if disc[k + 1] != other or partner[k + 1] != one or not same_time:
-                return NO_PAIR, k
-    return (OTHER_KIND, odd) if odd >= 0 else (0, 0)
+    disc, partner = columns["disc"].astype(np.int64), columns["partner"]
+    first = disc < partner  # of the two rows of a collision
+    second = (partner >= 0) & ~first
+    lonely = np.zeros(len(disc), bool)
+    lonely[1:] = second[1:] & ~first[:-1]
+    lonely[:1] = second[:1] & (start == 0)
+    ones = np.flatnonzero(first[:-1])
+    wrong = (disc[ones + 1] != partner[ones]) | (partner[ones + 1] != disc[ones])
+    if "time" in columns:
+        wrong |= columns["time"][ones + 1] != columns["time"][ones]
+    lonely[ones[wrong]] = True
+    if lonely.any():
+        raise ValueError(f"events/partner: no pair in row {start + int(lonely.argmax())}")
+    if "kind" in columns:
+        kind = columns["kind"]
+        other = ((kind == DISC) != (partner >= 0)) | ((kind == THERMOSTAT) != (partner == BATH))
+        if other.any():
+            raise ValueError(f"events/kind: not that of its partner in row {start + int(other.argmax())}")

@@ -10,10 +10,8 @@ import operator
 from typing import Any
 
 import numpy as np
-from numba import types
-from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
 
-from idealgas.jit import inline, overload
+from idealgas.jit import inline, overload, when_compiling
 from idealgas.physics import double_double
 
 
@@ -67,37 +65,37 @@ def parts(a):
     return a.high, a.low
 
 
-class PairType(types.Type):
-    """Type of `Pair` in compiled code."""
-
-    def __init__(self) -> None:
-        """Register the type's name with numba."""
-        super().__init__("Pair")
+PAIR: Any = None
+"""Type of `Pair` in compiled code."""
 
 
-PAIR = PairType()
+@when_compiling
+def _declare_pair() -> None:
+    """Make `Pair` known to numba: its type, its two floats in memory, and `Pair(high, low)`."""
+    global PAIR
+    from numba import types
+    from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
 
+    class PairType(types.Type):
+        def __init__(self) -> None:
+            super().__init__("Pair")
 
-@register_model(PairType)
-class _Model(models.StructModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, [("high", types.float64), ("low", types.float64)])
+    PAIR = PairType()
 
+    @register_model(PairType)
+    class Model(models.StructModel):
+        def __init__(self, manager: Any, kind: Any) -> None:
+            super().__init__(manager, kind, [("high", types.float64), ("low", types.float64)])
 
-make_attribute_wrapper(PairType, "high", "high")
-make_attribute_wrapper(PairType, "low", "low")
+    make_attribute_wrapper(PairType, "high", "high")
+    make_attribute_wrapper(PairType, "low", "low")
+    type_callable(Pair)(lambda context: lambda high, low: PAIR)
 
-
-@type_callable(Pair)
-def _type_of_pair(context: Any) -> Any:
-    return lambda high, low: PAIR
-
-
-@lower_builtin(Pair, types.float64, types.float64)
-def _code_of_pair(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    pair = context.make_helper(builder, PAIR)
-    pair.high, pair.low = arguments
-    return pair._getvalue()
+    @lower_builtin(Pair, types.float64, types.float64)
+    def make(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        pair = context.make_helper(builder, PAIR)
+        pair.high, pair.low = arguments
+        return pair._getvalue()
 
 
 def _operate(sign: Any, operation: Any) -> None:
@@ -158,6 +156,8 @@ def number(value, like):
 
 @overload(number)
 def _number(value, like):
+    from numba import types
+
     if like is PAIR:
         return lambda value, like: Pair(value, 0.0)
     if like == types.float32:

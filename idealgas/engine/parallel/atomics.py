@@ -5,11 +5,7 @@ Loads acquire and stores release: a thread that loads a value also sees all that
 
 import platform
 
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
-
-from idealgas.jit import CACHE_LINE, inline
+from idealgas.jit import CACHE_LINE, inline, intrinsic
 
 LINE = CACHE_LINE // 8
 """Words per cache line: words that different threads write often are at least this far apart."""
@@ -41,6 +37,7 @@ def load(typingctx, array, index):
 @intrinsic
 def store(typingctx, array, index, value):
     """Set array[index] to a value of the array's own type."""
+    from numba import types
 
     def code(context, builder, signature, arguments):
         builder.store_atomic(arguments[2], _pointer(context, builder, signature.args[0], *arguments[:2]), "release", 8)
@@ -74,6 +71,8 @@ def add(typingctx, array, index, value):
 @intrinsic
 def pause(typingctx):
     """Hint to the processor that this thread waits for a word to change."""
+    from llvmlite import ir
+    from numba import types
 
     def code(context, builder, signature, arguments):
         if hint := _HINTS.get(platform.machine()):
@@ -88,6 +87,8 @@ def pause(typingctx):
 @intrinsic
 def yield_cpu(typingctx):
     """Yield the processor to another thread."""
+    from llvmlite import ir
+    from numba import types
 
     def code(context, builder, signature, arguments):
         name = "sched_yield"

@@ -3,7 +3,6 @@
 import os
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from idealgas.engine.method import Threads
@@ -21,7 +20,7 @@ from idealgas.engine.parallel.subdomain import (
     lock_word,
     message_word,
 )
-from idealgas.jit import aligned
+from idealgas.jit import INTERPRETED, aligned
 
 
 class Tuning(NamedTuple):
@@ -59,7 +58,7 @@ def choose_threads(threads: int | None, rows: int, n: int, local: bool, tuning: 
 
     threads: as requested; None for as many as are worthwhile. local: whether discs collide only with what is near them.
     """
-    if numba.config.DISABLE_JIT:
+    if INTERPRETED:
         return Threads(1, "nothing is compiled")
     if not local:
         return Threads(1, "every disc may meet the piston")

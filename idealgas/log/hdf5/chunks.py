@@ -28,6 +28,9 @@ _TILE = 2048
 _WIDTHS = (4, 8)
 """Bytes of the items that compiled functions shuffle; others use NumPy."""
 
+_WORTH_LOADING = 64 * 2**20
+"""Bytes that NumPy decodes in about the time that loading compiled functions takes."""
+
 _LARGEST_KEPT = 31 * 2**20
 """Nearly the bytes of the largest block that glibc can be made to keep."""
 
@@ -191,7 +194,7 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
     if not mask & SHUFFLE and dtype.itemsize > 1:
         planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, -1)
         planes.flags.writeable = False  # of one type, to be compiled once
-        if dtype.itemsize in _WIDTHS:
+        if dtype.itemsize in _WIDTHS and _is_worth_loading(size):
             items = np.empty(planes.shape[1], f"u{dtype.itemsize}")
             unshuffle(planes, items)
             return items.view(dtype)
@@ -215,12 +218,32 @@ def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
     """
     words = np.frombuffer(data, "<u2", len(data) // 2)
     words.flags.writeable = False  # of one type, to be compiled once
-    total, moment = map(int, _sums(words))
+    total, moment = map(int, (_sums if _is_worth_loading(len(data)) else _sums_in_numpy)(words))
     simple, running = 256 * total, 256 * (len(words) * total - moment)
     if len(data) % 2:
         simple += int(data[-1]) << 8
         running += simple
     return struct.pack("<HH", _fold(simple), _fold(running))
+
+
+_decoded = 0
+
+
+def _is_worth_loading(size: int) -> bool:
+    """Whether compiled functions are used for `size` bytes more: what reads little starts without numba."""
+    global _decoded
+    _decoded += size
+    return _decoded > _WORTH_LOADING
+
+
+def _sums_in_numpy(words: np.ndarray) -> tuple[int, int]:
+    """What `_sums` returns, in floats that hold each partial sum exactly."""
+    total = moment = 0
+    for first in range(0, len(words), 65535):
+        part = words[first : first + 65535].astype(float)
+        total += int(part.sum())
+        moment += int(part @ np.arange(len(part), dtype=float))
+    return total, moment
 
 
 @njit
