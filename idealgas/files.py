@@ -218,18 +218,20 @@ def is_locked(path: Path) -> bool:
 
 
 def open_regular(path: Path) -> IO[bytes]:
-    """Open a file for reading. OSError for what is not a regular file, of which nothing is touched.
+    """Open a regular file for reading, unbuffered. Raises OSError for anything else."""
+    return open(path, "rb", buffering=0, opener=regular)
 
-    To open a device may do something to it, and to open a FIFO waits for its other end.
-    """
-    _check_regular(path.stat())
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+
+def regular(path: str, flags: int) -> int:
+    """Opener for `open`, of regular files only. Opening a device may change it, and opening a FIFO waits."""
+    _check_regular(os.stat(path))
+    descriptor = os.open(path, flags | os.O_NONBLOCK)
     try:
         _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
     except OSError:
         os.close(descriptor)
         raise
-    return os.fdopen(descriptor, "rb", buffering=0)
+    return descriptor
 
 
 def _check_regular(found: os.stat_result) -> None:

@@ -26,7 +26,7 @@ class LogHeader:
         self.unclosed = file.unclosed
         self.box: tuple[float, float] = tuple(file.fixed("box").tolist())
         self.gravity: tuple[float, float] = tuple(file.fixed("gravity").tolist())
-        words = file.attribute("box", "boundary").tolist()
+        words = np.asarray(file.attribute("box", "boundary")).tolist()
         file.checked(lambda: check_boundary(words), "box")
         self.periodic = tuple(word == b"periodic" for word in words)
         file.checked(lambda: check_images(any(self.periodic), file.names("checkpoints")), "checkpoints/image")

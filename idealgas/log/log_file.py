@@ -14,11 +14,9 @@ from idealgas.columns import Column
 from idealgas.files import HEAD, describe_file_type, is_locked, open_regular
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
-from idealgas.log.hdf5 import safe_hdf5
 from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, table_of
-from idealgas.log.hdf5.safe_hdf5 import open_dataset, open_object
 from idealgas.log.hdf5.superblock import ClearedFile, has_consistency_flags
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
@@ -120,7 +118,7 @@ class LogFile:
         """Values of a dataset that was stored before the run."""
 
         def read() -> np.ndarray:
-            column = StoredColumn(open_dataset(self._file, name))
+            column = StoredColumn(self._file, name)
             self.rules.check_fixed(name, column)
             data = column.read(0, column.shape[0])
             self.rules.check(name, data)
@@ -137,18 +135,13 @@ class LogFile:
         """Result of an action that raises ValueError for invalid data. what: name of the data, put before the error."""
         return self._read(action, what and f"{what}: ")
 
-    def attribute(self, name: str, attribute: str) -> np.ndarray:
+    def attribute(self, name: str, attribute: str) -> Any:
         """Value of an attribute of a dataset or group."""
-        return self._read(lambda: safe_hdf5.attribute(open_object(self._file, name), attribute), f"{name}: ")
+        return self._read(lambda: self._file[name].attrs[attribute], f"{name}: ")
 
     def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int]:
         """Attributes of a group by name, each a text or an integer."""
-
-        def read() -> dict[str, str | int]:
-            group = open_object(self._file, name)
-            return {key: safe_hdf5.value(group, key) for key in wanted}
-
-        return self._read(read, f"{name}: ")
+        return self._read(lambda: {key: _text_or_integer(self._file[name], key) for key in wanted}, f"{name}: ")
 
     def _open(self) -> None:
         self.close()
@@ -161,10 +154,9 @@ class LogFile:
                 raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(file.read(HEAD))}")
         self.unclosed = flags
         self._file = h5py.File(ClearedFile(self.path) if flags else self.path, "r")
-        root = open_object(self._file, "/")
-        if not h5py.h5a.exists(root, b"format") or safe_hdf5.value(root, "format") != schema.FORMAT:
+        if "format" not in self._file.attrs or _text_or_integer(self._file, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")
-        version = safe_hdf5.value(root, "format_version")
+        version = _text_or_integer(self._file, "format_version")
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
@@ -196,7 +188,7 @@ class LogFile:
 
     def _column_at(self, path: str) -> StoredColumn:
         try:
-            return StoredColumn(open_dataset(self._file, path))
+            return StoredColumn(self._file, path)
         except (KeyError, ValueError) as error:
             raise ValueError(f"{path}: {reason(error)}") from error
 
@@ -223,3 +215,15 @@ class LogFile:
                     raise DamageError(self.path, f"{what}{reason(error)}") from error
             attempt += 1
             time.sleep(PAUSE)
+
+
+def _text_or_integer(item: h5py.HLObject, name: str) -> str | int:
+    """Attribute that is a single text or integer. Raises ValueError otherwise."""
+    value = item.attrs[name]
+    try:
+        value = value.decode() if isinstance(value, bytes) else value
+    except UnicodeDecodeError as error:
+        raise ValueError(f"attribute {name}: not UTF-8 text") from error
+    if not isinstance(value, str | np.integer):
+        raise ValueError(f"attribute {name}: not a single text or integer")
+    return value if isinstance(value, str) else int(value)

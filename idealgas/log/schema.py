@@ -19,7 +19,6 @@ import numpy as np
 from idealgas._version import __version__
 from idealgas.columns import BLOCK, PLAIN_COLUMNS, POSITION, SIDES, VELOCITY, Column, Kind, side_ends
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.objects import Objects, set_attributes
 from idealgas.state import Gas
 
 FORMAT = "idealgas log"
@@ -129,30 +128,29 @@ class LogLayout:
 
 def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajectory: int) -> None:
     """Write the header: versions, box, discs and walls."""
-    objects = Objects(file.id, layout.compression)
-    set_attributes(
-        file.id,
-        format=np.bytes_(FORMAT),
-        format_version=VERSION,
-        seed=np.bytes_(str(seed)),  # a seed may have more than 64 bits
-        created=np.bytes_(datetime.now(UTC).isoformat(timespec="seconds")),
-    )
-    set_attributes(objects.group("versions"), **_versions(), trajectory=trajectory)
-    set_attributes(objects.group("h5md"), version=H5MD_VERSION)
-    set_attributes(objects.group("h5md/author"), name=np.bytes_("unknown"))
-    set_attributes(objects.group("h5md/creator"), name=np.bytes_("idealgas"), version=np.bytes_(__version__))
-    walls, store = layout.walls, objects.constant
-    box = store(BOX.name, np.array(gas.box, BOX.dtype), BOX.unit)
-    set_attributes(box, boundary=np.array(layout.boundary, "S"))
-    store(GRAVITY.name, np.array(layout.gravity, GRAVITY.dtype), GRAVITY.unit)
-    store("discs/id", np.arange(len(gas), dtype=ID.dtype))
+    file.attrs["format"] = np.bytes_(FORMAT)
+    file.attrs["format_version"] = VERSION
+    file.attrs["seed"] = np.bytes_(str(seed))  # a seed may have more than 64 bits
+    file.attrs["created"] = np.bytes_(datetime.now(UTC).isoformat(timespec="seconds"))
+    file.create_group("versions").attrs.update({**_versions(), "trajectory": trajectory})
+    file.create_group("h5md").attrs["version"] = H5MD_VERSION
+    file.create_group("h5md/author").attrs["name"] = np.bytes_("unknown")
+    file.create_group("h5md/creator").attrs.update({"name": np.bytes_("idealgas"), "version": np.bytes_(__version__)})
+
+    def store(path: str, values: Any, column: Column) -> None:
+        data = values if column.dtype == "S" else np.array(values, column.dtype)  # in one chunk, for its checksum
+        _create(file, path, column.unit, layout, data=data, chunks=data.shape)
+
+    store("box", gas.box, BOX)
+    file["box"].attrs["boundary"] = np.array(layout.boundary, "S")
+    store("gravity", layout.gravity, GRAVITY)
+    store("discs/id", np.arange(len(gas)), ID)
     given = {column: getattr(gas, column.name) for column in DISC_COLUMNS} | dict(layout.disc_columns)
     for column, values in given.items():
-        store(f"discs/{column.name}", np.asarray(values, column.dtype), column.unit)
-    store("discs/species_name", _text(gas.species_names))
-    store("walls/name", _text([wall.name for wall in walls]))
-    ends = np.array([(wall.start, wall.end) for wall in walls], ENDPOINTS.dtype).reshape(-1, *ENDPOINTS.shape)
-    store("walls/endpoints", ends, ENDPOINTS.unit)
+        store(f"discs/{column.name}", values, column)
+    store("discs/species_name", _text(gas.species_names), NAME)
+    store("walls/name", _text([wall.name for wall in layout.walls]), NAME)
+    store("walls/endpoints", [(wall.start, wall.end) for wall in layout.walls], ENDPOINTS)
 
 
 def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:
@@ -160,7 +158,6 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
 
     text_sizes: size of each text in a row of `runs`, bytes.
     """
-    objects = Objects(file.id, layout.compression)
     paths: list[str] = []
 
     def add(path: str, column: Column, rows: int) -> None:
@@ -169,7 +166,9 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
             dtype = h5py.enum_dtype({kind.name: kind.value for kind in Kind}, basetype="u1")
         elif path.startswith("runs/"):
             dtype = h5py.string_dtype("utf-8", text_sizes[column.name])
-        objects.column(path, dtype, (rows, *column.shape), column.unit)
+        shape, growing = (0, *column.shape), (None, *column.shape)
+        chunk = (rows, *column.shape)
+        _create(file, path, column.unit, layout, dtype=dtype, shape=shape, maxshape=growing, chunks=chunk)
         paths.append(path)
 
     def add_elements(group: str, columns: Sequence[Column], rows: int) -> None:
@@ -181,7 +180,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
             path = f"{group}/{column.name}"
             add(f"{path}/value", column, rows)
             for shared in SAMPLE_COLUMNS if path != first else ():
-                objects.link(f"{path}/{shared.name}", f"{first}/{shared.name}")
+                file[f"{path}/{shared.name}"] = file[f"{first}/{shared.name}"]
 
     for name in text_sizes:
         add(f"runs/{name}", Column(name, "S"), 1)
@@ -198,19 +197,23 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
     if layout.snapshot_arrays:
         arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.snapshot_arrays]
         add_elements("particles/discs", arrays, some)
-        _describe_particles(file, objects)
+        box = file.create_group("particles/discs/box")  # which H5MD requires, as links to the constants of the discs
+        box.attrs.update({"dimension": 2, "boundary": file["box"].attrs["boundary"]})
+        box["edges"] = file["box"]
+        for name in ("id", "species", "mass", "radius"):
+            file[f"particles/discs/{name}"] = file[f"discs/{name}"]
     for column in SUMMARY_COLUMNS:
         add(f"summary/{column.name}", column, SUMMARY_ROWS)
     Commit.create(file, paths)
 
 
-def _describe_particles(file: h5py.File, objects: Objects) -> None:
-    """Add what H5MD requires for snapshots: the box, and links to the constants of the discs."""
-    box = objects.group("particles/discs/box")
-    set_attributes(box, dimension=2, boundary=file["box"].attrs["boundary"])
-    objects.link("particles/discs/box/edges", "box")
-    for name in ("id", "species", "mass", "radius"):
-        objects.link(f"particles/discs/{name}", f"discs/{name}")
+def _create(file: h5py.File, path: str, unit: str, layout: LogLayout, **options: Any) -> None:
+    """Create a dataset, with checksums and the compression of the log."""
+    if layout.compression == "gzip":
+        options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+    dataset = file.create_dataset(path, fletcher32=True, **options)
+    if unit:
+        dataset.attrs["unit"] = np.bytes_(unit)
 
 
 @cache

@@ -4,10 +4,16 @@ import math
 
 import h5py
 import numpy as np
+from h5py import h5z
 from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
-from idealgas.log.hdf5.safe_hdf5 import layout_of
+
+NUMBERS = ("<f8", "<i8", "<u8", "<i4", "<u4", "<u2", "|u1")
+"""NumPy types of all numbers in a log."""
+
+_COMPRESSED = (h5z.FILTER_SHUFFLE, h5z.FILTER_DEFLATE, h5z.FILTER_FLETCHER32)
+_PLAIN = (h5z.FILTER_FLETCHER32,)
 
 
 class StoredColumn:
@@ -20,14 +26,27 @@ class StoredColumn:
         extent: number of rows.
     """
 
-    def __init__(self, dataset: h5py.h5d.DatasetID, encoder: chunks.Encoder | None = None) -> None:
-        """Check the layout of a dataset. Raises ValueError for one that no log has."""
-        self.id = dataset
-        layout = layout_of(dataset)
-        self.dtype, self.shape, self.chunk = layout.dtype, layout.shape, layout.chunk
+    def __init__(self, file: h5py.File, path: str, encoder: chunks.Encoder | None = None) -> None:
+        """Open a dataset. Raises KeyError if it is missing, ValueError for a layout that no log has."""
+        if path not in file:
+            raise KeyError("missing")
+        dataset = file[path]
+        if not isinstance(dataset, h5py.Dataset):
+            raise ValueError("not a dataset")
+        stored = dataset.id.get_create_plist()
+        if stored.get_layout() != h5py.h5d.CHUNKED:
+            raise ValueError("not in chunks")
+        pipeline = tuple(stored.get_filter(k)[0] for k in range(stored.get_nfilters()))
+        if pipeline not in (_COMPRESSED, _PLAIN):
+            raise ValueError(f"filters {', '.join(map(str, pipeline)) or 'none'} (allowed: {_COMPRESSED} or {_PLAIN})")
+        self.id, self.dtype, self.shape, self.chunk = dataset.id, dataset.dtype, dataset.shape, dataset.chunks
+        if self.dtype.kind != "S" and self.dtype.str not in NUMBERS:
+            raise ValueError(f"unsupported type (allowed: {', '.join(NUMBERS)} and text of fixed length)")
+        if self.shape[1:] != self.chunk[1:]:
+            raise ValueError(f"in chunks of shape {self.chunk} (got an extent of {self.shape})")
         self._encoder = encoder or chunks.Encoder()
-        self.extent: int = layout.shape[0]  # asking HDF5 each time takes as long as storing some planes
-        self._compressed = layout.compressed
+        self.extent: int = self.shape[0]  # asking HDF5 each time takes as long as storing some planes
+        self._compressed = pipeline == _COMPRESSED
         self._origin = (0,) * (len(self.chunk) - 1)
 
     def read(self, start: int, rows: int, tail: int = 0) -> np.ndarray:
@@ -49,21 +68,12 @@ class StoredColumn:
     def whole(self, start: int, verify: bool = True) -> np.ndarray:
         """The whole chunk that begins at row `start`, including values beyond the last row.
 
-        At most as many bytes are read as a chunk of this size can have.
-
-        Args:
-            start: first row of the chunk.
-            verify: whether its checksum has to match.
+        verify: whether its checksum has to match.
         """
-        values = math.prod(self.chunk)
-        room = np.empty(chunks.most_stored(values * self.dtype.itemsize), np.uint8)
-        try:
-            mask, stored = self.id.read_direct_chunk((start, *self._origin), out=room)
-        except ValueError as error:
-            raise ValueError(f"a chunk of more than {len(room):,} bytes") from error
+        mask, stored = self.id.read_direct_chunk((start, *self._origin))
         if not self._compressed:  # bit 0 of its pipeline is the checksum's
             mask = chunks.PLAIN
-        return chunks.decode(stored, mask, self.dtype, values, verify).reshape(self.chunk)
+        return chunks.decode(stored, mask, self.dtype, math.prod(self.chunk), verify).reshape(self.chunk)
 
     def write(self, start: int, rows: int, data: np.ndarray, plain: bool = False) -> None:
         """Write a whole chunk, after the dataset has grown to its last row, as HDF5 requires.
@@ -76,14 +86,12 @@ class StoredColumn:
         """
         if self.extent < start + rows:
             self.resize(start + rows)
-        offset = (start, *self._origin)
         data = np.asarray(data, self.dtype)
-        if not self._compressed:
-            self.id.write_direct_chunk(offset, self._encoder.plain(data), 0)
-        elif plain:
-            self.id.write_direct_chunk(offset, self._encoder.plain(data), chunks.PLAIN)
+        if self._compressed and not plain:
+            stored, mask = self._encoder.compressed(data), chunks.COMPRESSED
         else:
-            self.id.write_direct_chunk(offset, self._encoder.compressed(data), chunks.COMPRESSED)
+            stored, mask = self._encoder.plain(data), chunks.PLAIN if self._compressed else 0
+        self.id.write_direct_chunk((start, *self._origin), stored, mask)
 
     def resize(self, rows: int) -> None:
         """Set the number of rows."""

@@ -14,7 +14,6 @@ from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.column import StoredColumn
-from idealgas.log.hdf5.safe_hdf5 import attribute, open_dataset
 
 DATASET = "commit"
 
@@ -58,10 +57,10 @@ class Commit(NamedTuple):
     @classmethod
     def read(cls, file: h5py.File) -> Self:
         """Newest complete record. Raises ValueError if neither slot is complete."""
-        dataset = open_dataset(file, DATASET)
-        paths = [path.decode() for path in attribute(dataset, "datasets").tolist()]
+        stored = StoredColumn(file, DATASET)
+        paths = [path.decode() for path in file[DATASET].attrs["datasets"].tolist()]
         tables = list(dict.fromkeys(map(table_of, paths)))
-        stored, width = StoredColumn(dataset), 2 + len(tables) + len(paths) + 1
+        width = 2 + len(tables) + len(paths) + 1
         if (stored.dtype, stored.shape, stored.chunk) != (np.dtype("u8"), (2, width), (1, width)):
             raise ValueError(f"{DATASET}: not a record of {len(paths)} datasets")
         slots = []

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import h5py
 
-from idealgas.files import lock, open_regular
+from idealgas.files import lock, open_regular, regular
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SIZE = 48
@@ -46,7 +46,7 @@ def clear_consistency_flags(path: Path) -> None:
         file.write(block)
 
 
-class ClearedFile(io.RawIOBase):
+class ClearedFile(io.FileIO):
     """A file for reading whose file consistency flags appear to be cleared.
 
     HDF5's own way to read such a file, SWMR, retries indefinitely where a byte is damaged. The file appears to end far
@@ -55,48 +55,37 @@ class ClearedFile(io.RawIOBase):
 
     def __init__(self, path: Path) -> None:
         """Open a file. Raises ValueError if the superblock is damaged."""
-        self._file = open_regular(path)
-        self._position = 0
+        super().__init__(path, opener=regular)
+        self._at_end = False
         try:
-            self._head = _cleared(self._file.read(_SIZE), _FAR)
+            self._head = _cleared(self.read(_SIZE), _FAR)
         except ValueError:
-            self._file.close()
+            self.close()
             raise
 
-    def readable(self) -> bool:
-        """Whether the file can be read."""
-        return True
-
-    def seekable(self) -> bool:
-        """Whether the file supports random access."""
-        return True
+    def __del__(self) -> None:
+        self.close()  # HDF5 does not
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Change the position in the file."""
-        self._position = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._position, os.SEEK_END: _FAR}[whence]
-        return self._position
+        """Change the position in the file; HDF5 seeks the end only to find the size, which may be too far for lseek."""
+        self._at_end = whence == os.SEEK_END
+        return _FAR if self._at_end else super().seek(offset, whence)
 
     def tell(self) -> int:
         """Position in the file."""
-        return self._position
+        return _FAR if self._at_end else super().tell()
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
         """Read bytes into a buffer. Raises OSError if all of them lie beyond the end of the file."""
-        data, count = memoryview(buffer).cast("B"), 0
-        if self._position >= os.fstat(self._file.fileno()).st_size:
-            raise OSError(errno.EINVAL, "lies beyond the end of the file")
-        while some := os.preadv(self._file.fileno(), [data[count:]], self._position + count):
+        start, data, count = self.tell(), memoryview(buffer).cast("B"), 0
+        while some := super().readinto(data[count:]):
             count += some
+        if not count:
+            raise OSError(errno.EINVAL, "lies beyond the end of the file")
         data[count:] = bytes(len(data) - count)
-        head = self._head[self._position : self._position + len(data)]
+        head = self._head[start : start + len(data)]
         data[: len(head)] = head
-        self._position += len(data)
         return len(data)
-
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-        super().close()
 
 
 def abandon(file: h5py.File) -> None:

@@ -11,7 +11,6 @@ from isal import isal_zlib
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import DATASET, Commit, table_of
-from idealgas.log.hdf5.safe_hdf5 import open_dataset
 
 
 class TableWriter:
@@ -126,7 +125,7 @@ def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dic
     encoder = chunks.Encoder()
     for path in commit.tails:
         with _named(path):
-            columns[table_of(path)][path] = column = StoredColumn(open_dataset(file, path), encoder)
+            columns[table_of(path)][path] = column = StoredColumn(file, path, encoder)
             column.id.get_num_chunks()  # reads the whole index
     return {name: TableWriter(columns[name], commit, rows) for name, rows in keep.items()}
 
@@ -139,6 +138,6 @@ def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: 
         os.fsync(descriptor)
     rows = {name: table.stored for name, table in tables.items()}
     tails = {path: crc for table in tables.values() for path, crc in table.checksums().items()}
-    Commit(sequence, os.fstat(descriptor).st_size, rows, tails).write(open_dataset(file, DATASET))
+    Commit(sequence, os.fstat(descriptor).st_size, rows, tails).write(file[DATASET].id)
     if fsync:
         os.fsync(descriptor)
