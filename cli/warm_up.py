@@ -19,7 +19,7 @@ def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
     Machine code is compiled for the effects of a scene and cached on disk. Without a scene, it is compiled for all
     example scenes.
     """
-    from idealgas.run.warm_up import warm_up as compile_for
+    from idealgas.run.simulate import warm_up as compile_for
     from idealgas.scene import load_scene
 
     scenes = {str(path): load_scene(path) for path in paths or shipped()}

@@ -82,7 +82,7 @@ def epoch_length(
     return 2.0 ** math.floor(power)
 
 
-def speed_beyond(gas: Gas, effects: Effects) -> float:
+def driving_speed(gas: Gas, effects: Effects) -> float:
     """Estimated increase of the mean speed of the discs by gravity, a piston or a heat bath, length/time.
 
     For epoch lengths only.
@@ -103,7 +103,7 @@ def thermostat_collision_rate(gas: Gas, effects: Effects) -> float:
     return 0.0 if effects.thermostat is None else len(gas) * effects.thermostat.rate
 
 
-def energy_beyond(gas: Gas, effects: Effects) -> float:
+def driving_energy(gas: Gas, effects: Effects) -> float:
     """Largest energy that a piston with a mass can bring on its way across the box; 0 without one."""
     if effects.piston is None:
         return 0.0

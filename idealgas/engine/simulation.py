@@ -10,7 +10,7 @@ import numpy as np
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
-from idealgas.engine.epoch import encounters_per_length, epoch_length, speed_beyond, thermostat_collision_rate
+from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length, thermostat_collision_rate
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import (
     COUNTERS,
@@ -98,7 +98,7 @@ class Simulation:
         until_change = next_change(self.effects, self.time) - self.time
         self.length = until_change
         if not self.method.single_epoch:
-            periodic, extra_speed = periodic_axes(self.effects.periodic), speed_beyond(self.gas, self.effects)
+            periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
             thermostat_collisions = thermostat_collision_rate(self.gas, self.effects)
             self.length = min(
                 epoch_length(self.gas, self._encounters, extra_speed, periodic, thermostat_collisions), until_change

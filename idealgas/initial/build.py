@@ -142,8 +142,8 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
             )
     if at_random:
         chosen = np.concatenate([ids[k + 1] for k in sorted(at_random, key=lambda k: -scene.species[k].radius)])
-        patience = max(placement.PATIENCE * len(chosen), placement.LEAST_PATIENCE)
-        placed = placement.insert_randomly(grid, position, radius, bounds, chosen, random, patience)
+        max_refusals = max(placement.REFUSALS_PER_DISC * len(chosen), placement.MIN_REFUSALS)
+        placed = placement.insert_randomly(grid, position, radius, bounds, chosen, random, max_refusals)
         if placed < len(chosen):
             k = next(k for k in at_random if chosen[placed] in ids[k + 1])
             got = f"{len(chosen)} discs, {placed} placed"

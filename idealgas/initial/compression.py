@@ -25,8 +25,8 @@ GAP = 1e-9
 SLACK = 0.3
 """Width of the border in which neighbours are listed, in diameters of the largest disc."""
 
-RESCALED, PATIENCE = 4, 5_000
-"""Collisions per disc after which velocities are scaled back, and after which the discs count as jammed."""
+RESCALE_INTERVAL, MAX_COLLISIONS = 4, 5_000
+"""Collisions per disc after which velocities are rescaled, and after which the discs count as jammed."""
 
 
 class Growing(NamedTuple):
@@ -76,14 +76,14 @@ def compress(
     n, period = len(radius), np.array(box)
     velocity, rate = random.standard_normal((n, 2)), RATE / float(radius.mean())
     done, end = 0, 1 + GAP
-    while scale < end and done < PATIENCE * n:
+    while scale < end and done < MAX_COLLISIONS * n:
         velocity -= velocity.mean(axis=0)
         velocity /= math.sqrt(float((velocity**2).mean()))
         slack = min(SLACK * 2 * float(radius.max()), (min(box) / 2 - 2 * float(radius.max())) / 2)
         reach = 2 * float(radius.max()) * scale + 2 * slack  # discs come nearer by `slack`, and grow by as much
         longest = min((end - scale) / rate, slack / (2 * float(radius.max()) * rate))
         discs = _at_rest(position, velocity, radius, period, reach)
-        events, time = _grow(discs, scale, rate, slack / 2, longest, RESCALED * n)
+        events, time = _grow(discs, scale, rate, slack / 2, longest, RESCALE_INTERVAL * n)
         moved = discs.position + velocity * (time - discs.time)[:, None]
         position[:] = np.minimum(moved % period, np.nextafter(period, 0.0))
         scale = end if time == (end - scale) / rate else scale + rate * time

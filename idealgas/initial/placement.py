@@ -14,11 +14,11 @@ from idealgas.jit import inline, njit
 from idealgas.physics.periodic import nearest_image
 from idealgas.scene.lattice import TriangularLattice
 
-PATIENCE = 3_000
-"""Mean number of refused positions per disc after which random placement gives up."""
+REFUSALS_PER_DISC = 3_000
+"""Mean number of refused positions per disc after which random placement fails."""
 
-LEAST_PATIENCE = 3_000_000
-"""Number of refused positions, of all discs together, before which random placement never gives up."""
+MIN_REFUSALS = 3_000_000
+"""Number of refused positions, of all discs together, before which random placement never fails."""
 
 
 WALL = np.dtype([("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8")], align=True)
@@ -183,16 +183,16 @@ def find_free(grid, position, radius, sites, reach, free):
 
 
 @njit
-def insert_randomly(grid, position, radius, bounds, ids, rng, patience):
+def insert_randomly(grid, position, radius, bounds, ids, rng, max_refusals):
     """Place discs at random in the order of `ids`; return the number of those that found room.
 
-    bounds: (N, 4) x0, y0, x1, y1 for each disc's centre, length. patience: number of refused positions after which to
-    stop.
+    bounds: (N, 4) x0, y0, x1, y1 for each disc's centre, length. max_refusals: of positions, after
+    which to stop.
     """
     placed = 0
     refused = 0
     step = False  # whether a disc in place makes a step, instead of a new one that looks for room
-    while placed < len(ids) and (refused < patience or step):
+    while placed < len(ids) and (refused < max_refusals or step):
         i = ids[int(placed * rng.random())] if step else ids[placed]
         x0, y0, x1, y1 = bounds[i, 0], bounds[i, 1], bounds[i, 2], bounds[i, 3]
         if step:

@@ -5,9 +5,8 @@ Without gravity the contact times run in any precision, see `arithmetic`.
 
 from idealgas.jit import inline
 from idealgas.physics.arithmetic import number
-from idealgas.physics.ballistic import time_to_plane
 from idealgas.physics.gravity import acceleration_along
-from idealgas.physics.motion import NEVER
+from idealgas.physics.motion import NEVER, time_to_plane
 from idealgas.physics.restitution import wall_restitution_factor
 from idealgas.physics.rotation import tangential_impulse_at_wall
 from idealgas.physics.thermal import emit, is_thermal

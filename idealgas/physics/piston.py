@@ -7,9 +7,8 @@ velocity.
 import numpy as np
 
 from idealgas.jit import inline
-from idealgas.physics.ballistic import stays_above, time_to_plane
 from idealgas.physics.gravity import acceleration_along
-from idealgas.physics.motion import NEVER, position_after, velocity_after
+from idealgas.physics.motion import NEVER, position_after, stays_above, time_to_plane, velocity_after
 from idealgas.physics.restitution import wall_restitution_factor
 
 PISTON = np.dtype(

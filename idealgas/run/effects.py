@@ -1,17 +1,29 @@
-"""The effects of a scene in a run: their states at time 0."""
+"""The effects of a scene in a run: states at time 0, and exact sums, which checkpoints store and samples round."""
+
+import math
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects import EFFECTS
 from idealgas.effects.bundle import Effects, inner_energy, present
 from idealgas.effects.effect import Start
-from idealgas.run.sums import with_sums
+from idealgas.engine.epoch import driving_energy, driving_speed, encounters_per_length
+from idealgas.physics.exact_sum import make_sums, restore, stored, values
+from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
+from idealgas.scene.walls import number_walls, walls_inside
 from idealgas.state import Gas
+
+ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
+TENSOR = ("xx", "xy", "yy", "yx")
+LEAST_SHARE = 2.0**-40
+"""Smallest typical energy over the largest that effects may add, so that sums stay far below 2^100 units."""
 
 
 def make_effects(scene: Scene, gas: Gas) -> Effects:
-    """Effects of a scene at time 0, None for absent ones; gas: its discs at time 0."""
+    """Effects of a scene at time 0, with all sums; gas: its discs at time 0."""
     scene = scene.resolved()
     start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene))
     effects = Effects(**{effect.field: effect.make(scene.tables_of(effect), start) for effect in EFFECTS})
@@ -27,3 +39,128 @@ def _spins(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     velocity = [d.angular_velocity or 0.0 for d in scene.disc] + [s.angular_velocity or 0.0 for s in scene.species]
     temperature = [0.0] * len(scene.disc) + [s.spin_temperature or 0.0 for s in scene.species]
     return np.repeat(velocity, count), np.repeat(temperature, count)
+
+
+def with_sums(
+    effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool, inner_energy: float
+) -> Effects:
+    """The effects with all sums of a run, at time 0.
+
+    Args:
+        effects: without sums.
+        scene: the scene of the run.
+        gas: its discs at time 0.
+        gives_energy: whether walls give energy to discs, or take some.
+        loses_energy: whether collisions lose energy.
+        inner_energy: energy of the discs in addition to the kinetic one that collisions may turn into it.
+    """
+    speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
+    largest = max(0.5 * float(gas.mass.mean()) * speed**2, driving_energy(gas, effects), inner_energy)
+    energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * largest)
+    return effects._replace(
+        wall_energy=make_sums([energy] * walls) if gives_energy else None,
+        dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
+        bath_energy=None if scene.properties.bath is None else make_sums([energy]),
+        flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
+    )
+
+
+def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
+    """Sums of the momentum flux; speed: typical speed of the discs, length/time."""
+    momentum = float(gas.mass.mean()) * speed
+    encounters = encounters_per_length(gas, scene.properties.periodic)
+    flight = len(gas) / encounters if encounters > 0 else max(gas.box)
+    apart = 2.0 * float(gas.radius.mean())
+    tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)
+    heat = [momentum * speed * flight] * 2 + [momentum * speed * apart] * 2 if scene.log.heat_flow else []
+    frame = gas.mass @ gas.velocity / gas.mass.sum() if heat else np.zeros(2)
+    faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
+    normal_impulse, tangential_impulse = (make_sums([momentum] * faces) for _ in range(2))
+    return StressAccumulator(
+        tensor=make_sums(tensor),
+        buffer=empty_buffer(),
+        walls=make_sums([momentum * max(gas.box)]),
+        normal_impulse=normal_impulse,
+        tangential_impulse=tangential_impulse,
+        hits=np.zeros(faces, np.int64),
+        pairs=np.zeros((species, species), np.int64) if species > 1 else None,
+        species=gas.species.copy() if species > 1 else None,
+        x=gas.box[0] / 2,
+        y=gas.box[1] / 2,
+        heat=make_sums(heat) if heat else None,
+        vx=float(frame[0]),
+        vy=float(frame[1]),
+    )
+
+
+def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> float:
+    """Typical speed of the discs, length/time: at the start, or the larger one that effects may drive."""
+    mass = float(gas.mass.mean())
+    hottest = max(scene.properties.temperatures, default=0.0)
+    start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
+    within = math.sqrt(LEAST_SHARE * 2 * inner_energy / mass)
+    return max(start, driving_speed(gas, effects), math.sqrt(hottest / mass), within) or 1.0
+
+
+def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
+    """Columns of the samples and arrays of all sums of these effects."""
+    if (given := effects.wall_energy) is not None:
+        yield Column("wall_energy", "f8", given.shape, ENERGY), given
+    if (lost := effects.dissipated) is not None:
+        yield Column("dissipated_energy", "f8", lost.shape, ENERGY), lost
+    if (heat := effects.bath_energy) is not None:
+        yield Column("bath_energy", "f8", (), ENERGY), heat
+    if (flow := effects.flow) is not None:
+        tensor = np.asarray(flow.tensor)  # a slice of a recarray takes ten times as long
+        yield Column("kinetic_flow", "f8", (3,), ACTION), tensor[KINETIC]
+        yield Column("collision_flow", "f8", (4,), ACTION), tensor[COLLISIONAL]
+        yield Column("wall_virial", "f8", (), ACTION), flow.walls
+        yield Column("face_normal_impulse", "f8", (len(flow.normal_impulse),), MOMENTUM), flow.normal_impulse
+        yield (
+            Column("face_tangential_impulse", "f8", (len(flow.tangential_impulse),), MOMENTUM),
+            flow.tangential_impulse,
+        )
+        if flow.heat is not None:
+            flowing = np.asarray(flow.heat)
+            yield Column("kinetic_heat_flow", "f8", (2,), HEAT), flowing[:2]
+            yield Column("collision_heat_flow", "f8", (2,), HEAT), flowing[2:]
+
+
+def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
+    """Columns and arrays of all numbers of collisions."""
+    if (flow := effects.flow) is not None:
+        yield Column("face_hits", "i8", flow.hits.shape), flow.hits
+        if flow.pairs is not None:
+            yield Column("pair_collisions", "i8", flow.pairs.shape), flow.pairs
+
+
+def _exact(column: Column, sums: np.ndarray) -> Column:
+    """Column of checkpoints: three integers per sum, see `stored`."""
+    return Column(f"{column.name}_sum", "i8", (len(sums), 3), column.unit)
+
+
+def exact_sums(effects: Effects) -> Values:
+    """Exact sums and numbers of collisions, for checkpoints."""
+    entries = {_exact(column, sums): stored(sums) for column, sums in _sums(effects)}
+    return entries | {column: counts.copy() for column, counts in _counts(effects)}
+
+
+def observed_sums(effects: Effects) -> Values:
+    """Sums rounded to floats and numbers of collisions, for samples."""
+    rounded = {column: _shaped(values(sums), column) for column, sums in _sums(effects)}
+    return rounded | {column: counts.copy() for column, counts in _counts(effects)}
+
+
+def _shaped(found: np.ndarray, column: Column) -> np.ndarray:
+    """Values in the shape of a column; yx of a collision flow without a sum of its own is xy."""
+    if column.shape and len(found) < column.shape[0]:
+        found = np.append(found, found[TENSOR.index("xy")])
+    return found.reshape(column.shape)
+
+
+def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> None:
+    """Set the sums to the values of a checkpoint, by name."""
+    for column, sums in _sums(effects):
+        restore(sums, entries[_exact(column, sums).name])
+    for column, counts in _counts(effects):
+        counts[:] = entries[column.name]

@@ -8,8 +8,8 @@ from idealgas.columns import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, A
 from idealgas.effects import bundle
 from idealgas.effects.bundle import Effects
 from idealgas.log import Checkpoint, LogLayout, Wall
+from idealgas.run.effects import exact_sums, observed_sums, restore_sums
 from idealgas.run.energy import Energy, energy_of
-from idealgas.run.sums import kept_sums, observed_sums, restore_sums
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
@@ -78,7 +78,7 @@ def snapshot_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
 
 def whole_state(effects: Effects) -> Values:
     """Values of the effects as a whole and exact sums that a checkpoint stores, at the start of an epoch."""
-    return bundle.whole_state(effects) | kept_sums(effects)
+    return bundle.whole_state(effects) | exact_sums(effects)
 
 
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:

@@ -2,9 +2,11 @@
 
 import math
 import os
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -143,6 +145,17 @@ def simulate(
         return LoggedRun(scene, Simulation(gas, method, effects), log, past, compiled_before).run(
             on_progress, interrupted
         )
+
+
+def warm_up(scene: Scene) -> float:
+    """Compile the machine code of a scene and return the seconds it took; almost none if it was cached.
+
+    The scene runs up to its first event, and its log is deleted. Raises the same errors as `simulate`.
+    """
+    first = {"events": 1, "collisions_per_disc": None, "trials": None}
+    short = scene.model_copy(update={"run": scene.run.model_copy(update=first)})
+    with tempfile.TemporaryDirectory(prefix="idealgas-warm-up-") as folder:
+        return simulate(short, Path(folder) / "run.h5").compile_seconds
 
 
 class RunHistory(NamedTuple):

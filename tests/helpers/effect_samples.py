@@ -23,8 +23,8 @@ from idealgas.physics.rotation import Rotation
 from idealgas.physics.stress import StressAccumulator, empty_buffer
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat, draw_first_collisions
+from idealgas.run.effects import exact_sums
 from idealgas.run.layout import by_name
-from idealgas.run.sums import kept_sums
 from idealgas.state import Gas
 
 BOX = (12.0, 9.0)
@@ -122,7 +122,7 @@ def make_flow(gas: Gas, faces: int, tensor: int = 6) -> StressAccumulator:
 
 def sums_of(effects: Effects) -> list[np.ndarray]:
     """The sums of a run: those that do not depend on order as whole numbers, and counts."""
-    return list(by_name(kept_sums(effects)).values())
+    return list(by_name(exact_sums(effects)).values())
 
 
 def allowed(names: set[str]) -> bool:

@@ -18,9 +18,8 @@ from idealgas.engine.parallel.subdomain import MIN_ROWS
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
 from idealgas.physics.periodic import Periodic
-from idealgas.run.effects import make_effects
+from idealgas.run.effects import exact_sums, make_effects
 from idealgas.run.layout import by_name
-from idealgas.run.sums import kept_sums
 from idealgas.scene import parse_scene
 from idealgas.state import Gas
 
@@ -168,7 +167,7 @@ def log_with(gas: Gas, effects: Effects, stop: Stop, events: int, method: EventD
     end, effects = simulation.state()
     counted = simulation.counters
     numbers = [counted.events, counted.disc_collisions, counted.wall_hits, simulation.time, simulation.last_event_time]
-    sums = by_name(kept_sums(effects)).values()
+    sums = by_name(exact_sums(effects)).values()
     return [*(column for column in rows if column is not None), end.position, end.velocity, *sums, np.array(numbers)]
 
 

@@ -35,9 +35,8 @@ from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat
 from idealgas.physics.wall import SEGMENT
-from idealgas.run.effects import make_effects
+from idealgas.run.effects import make_effects, with_sums
 from idealgas.run.simulate import stop_of
-from idealgas.run.sums import with_sums
 from idealgas.scene import Scene
 from idealgas.state import Gas
 

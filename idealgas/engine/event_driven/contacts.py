@@ -7,13 +7,14 @@ from idealgas.engine.event_driven.cells import cell_index
 from idealgas.engine.event_driven.prediction import (
     NO_CONTACT,
     SIDE_OF_BOX,
+    image_precedes,
     images_of,
     partner_rank,
+    precedes,
     segment_partner,
 )
 from idealgas.engine.event_driven.state import copy_image, image_of, record_image
 from idealgas.engine.event_driven.wall_cells import images_to_item
-from idealgas.engine.order import image_precedes, precedes
 from idealgas.jit import inline, njit, noinline
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between

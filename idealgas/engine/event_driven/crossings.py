@@ -5,10 +5,9 @@ import numpy as np
 from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
-from idealgas.physics.ballistic import time_to_plane
 from idealgas.physics.disc_wall import arrival_delay, centre_range
 from idealgas.physics.gravity import acceleration_along
-from idealgas.physics.motion import NEVER, position_after, velocity_after
+from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along
 from idealgas.physics.piston import is_piston_side
 

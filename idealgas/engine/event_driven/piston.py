@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX
+from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX, precedes, wall_rank
 from idealgas.engine.event_driven.scheduler import update
-from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import inline
 from idealgas.physics.piston import misses_piston_until, piston_contact, stop_contact
 

@@ -1,9 +1,14 @@
-"""Predictions for each disc: its next contact, and its next cell crossing, side or thermostat collision."""
+"""Predictions for each disc, its next contact and its next crossing, and the order of simultaneous events.
+
+Of simultaneous events, the smaller pair (smaller id, other id) comes first, where walls precede the heat bath and that
+precedes any disc. Of simultaneous contacts with one partner in two images, that image comes first that is fewer box
+lengths away from the disc with the smaller id, counted along x and then along y. The rule uses ids only, never indices
+in memory, so every method and every renumbering gives the same order.
+"""
 
 import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, HEAT_BATH
-from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import inline
 from idealgas.physics.motion import NEVER
 
@@ -15,20 +20,43 @@ PREDICTION = np.dtype(
         ("partner_count", "u4"),  # the partner's count when predicted: the contact is stale once it differs
         ("image_x", "i2"),  # box lengths to the partner's record or the segment, where sides are periodic
         ("image_y", "i2"),
-        (
-            "crossing_code",
-            "i4",
-        ),  # 0-3: crosses to the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT
+        ("crossing_code", "i4"),  # 0-3: to the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT
     ],
     align=True,
 )
 SIDE_OF_BOX = 4
 THERMOSTAT = SIDE_OF_BOX + HEAT_BATH
-"""Codes of what is no cell crossing: SIDE_OF_BOX and the number of what the disc meets."""
+"""Codes of other events than cell crossings: SIDE_OF_BOX plus the number of the side or the heat bath."""
 
 NO_CONTACT = 0.5 * NEVER  # before NEVER: a pair without a contact, at NEVER, is not simultaneous with it
 
 U = np.uintp  # unsigned: negative indices need not be checked for
+
+FIRST_WALL = -(1 << 31)
+
+
+@inline
+def wall_rank(wall):
+    """Rank of a wall among a disc's partners: before all discs, in order of wall number."""
+    return FIRST_WALL + wall
+
+
+@inline
+def precedes(a, b, c, d):
+    """Whether the event of ids (a, b) comes before the simultaneous one of (c, d); b and d may be wall ranks."""
+    a_low, a_high = (b, a) if 0 <= b < a else (a, b)
+    c_low, c_high = (d, c) if 0 <= d < c else (c, d)
+    return a_low < c_low or (a_low == c_low and a_high < c_high)
+
+
+@inline
+def image_precedes(own, other, images, others):
+    """Whether a disc meets a partner in the image `images` before it meets it, at the same time, in the image `others`.
+
+    images, others: numbers of box lengths (x, y). own: id of the disc. other: id or wall rank of the partner.
+    """
+    ahead = images[0] < others[0] or (images[0] == others[0] and images[1] < others[1])
+    return ahead if other < 0 or own < other else images != others and not ahead
 
 
 @inline

@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.engine.event_driven.prediction import event_ids
-from idealgas.engine.order import precedes
+from idealgas.engine.event_driven.prediction import event_ids, precedes
 from idealgas.jit import aligned, inline, njit, noinline
 from idealgas.physics.motion import NEVER
 

@@ -70,7 +70,7 @@ def test_no_two_discs_overlap_on_the_way():
 
 
 def test_discs_that_jam_say_where(monkeypatch):
-    monkeypatch.setattr(compression, "PATIENCE", 20)
+    monkeypatch.setattr(compression, "MAX_COLLISIONS", 20)
     with pytest.raises(
         SceneError, match=r"no room for all discs by compression \(got jammed at a packing fraction of 0.[5-7]"
     ):

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from helpers.rounding import exact, gamma
 
-from idealgas.physics.ballistic import stays_above, time_to_plane
-from idealgas.physics.motion import NEVER
+from idealgas.physics.motion import NEVER, stays_above, time_to_plane
 
 pytestmark = pytest.mark.interpreted
 

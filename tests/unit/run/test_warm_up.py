@@ -7,7 +7,7 @@ from click.testing import CliRunner
 from helpers.support import ROOT
 from idealgas_cli.main import main
 
-from idealgas.run import warm_up as module
+from idealgas.run import simulate as module
 from idealgas.scene import load_scene, parse_scene
 
 SCENE = """

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX
+from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX, precedes, wall_rank
 from idealgas.engine.event_driven.scheduler import (
     NO_TIE,
     clear,
@@ -18,7 +18,6 @@ from idealgas.engine.event_driven.scheduler import (
     resolve_ties,
     update,
 )
-from idealgas.engine.order import precedes, wall_rank
 from idealgas.jit import aligned, njit
 
 pytestmark = pytest.mark.interpreted

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from idealgas.engine.order import precedes, wall_rank
+from idealgas.engine.event_driven.prediction import precedes, wall_rank
 
 pytestmark = pytest.mark.interpreted
 
