@@ -6,14 +6,16 @@ predictions.
 
 import numpy as np
 
-from idealgas.columns import EventBatch
+from idealgas.columns import BATH, FIRST_SEGMENT, EventBatch
 from idealgas.engine.event_writer import (
+    DISC,
+    PISTON,
+    THERMOSTAT,
+    WALL,
+    WALL_END,
     batch_capacity,
+    write_hit,
     write_pair,
-    write_piston_hit,
-    write_segment_hit,
-    write_side_hit,
-    write_thermostat_collision,
 )
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import add_to_counters, check_clock
@@ -33,8 +35,7 @@ from idealgas.physics.periodic import boundary_crossings_along, images_between, 
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.wall import segment_contact
 
-U = np.uintp
-PAIR, SIDE, SEGMENT, PISTON, STOP, THERMOSTAT, BOUNDARY_CROSSING = range(7)
+SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
 
 
 @inline
@@ -43,7 +44,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
 
     best: an event as `next_event` returns it. length_x, length_y: size of the box.
     """
-    disc = record[U(i)]
+    disc = record[i]
     for side in range(4):
         along_y = side >= 2
         if is_piston_side(side, effects.piston):
@@ -53,7 +54,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
         elif not boundary_crossings_along(effects.periodic, i, along_y)[1]:
             time = side_contact(disc, side, length_y if along_y else length_x, effects.gravity)
             if time < best[0]:
-                best = (time, SIDE, i, side, 0, 0)
+                best = (time, WALL, i, side, 0, 0)
     return segment_event(disc, i, effects.segments, effects, best)
 
 
@@ -70,12 +71,12 @@ def segment_event(disc, i, segments, effects, best):
     """The earlier of the event `best` and disc i's next contact with a wall segment, in all images."""
     if segments is not None:
         for k in range(segments.shape[0]):
-            if segments[U(k)].active:
+            if segments[k].active:
                 for image_x in range(*image_range(effects.periodic, False)):
                     for image_y in range(*image_range(effects.periodic, True)):
                         images = images_to_wall(effects.periodic, i, (image_x, image_y))
                         time = segment_contact(
-                            disc, i, segments[U(k)], effects.gravity, effects.restitution, effects.periodic, images
+                            disc, i, segments[k], effects.gravity, effects.restitution, effects.periodic, images
                         )
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)
@@ -86,7 +87,7 @@ def segment_event(disc, i, segments, effects, best):
 def thermostat_event(i, thermostat, best):
     """The earlier of the event `best` and disc i's next thermostat collision."""
     if thermostat is not None:
-        time = thermostat.time[U(i)]
+        time = thermostat.time[i]
         if time < best[0]:
             best = (time, THERMOSTAT, i, 0, 0, 0)
     return best
@@ -99,10 +100,10 @@ def pair_event(record, i, j, effects, best):
         for image_y in range(*image_range(effects.periodic, True)):
             images = images_between(effects.periodic, i, j, (image_x, image_y))
             time = contact_time(
-                record[U(i)], record[U(j)], i, j, effects.gravity, effects.restitution, effects.periodic, images
+                record[i], record[j], i, j, effects.gravity, effects.restitution, effects.periodic, images
             )
             if time < best[0]:
-                best = (time, PAIR, i, j, image_x, image_y)
+                best = (time, DISC, i, j, image_x, image_y)
     return best
 
 
@@ -119,7 +120,7 @@ def boundary_crossing_event(record, i, periodic, best):
     A crossing changes no record, but the images in which the disc has to be searched for contacts.
     """
     if periodic is not None:
-        disc = record[U(i)]
+        disc = record[i]
         for axis in range(2):
             boundary_crossings, is_periodic = boundary_crossings_along(periodic, i, axis == 1)
             if is_periodic:
@@ -144,12 +145,12 @@ def stop_event(piston, best):
 
 @inline
 def next_event(record, box, effects):
-    """Earliest event as (local time, sort of event, disc, partner, image_x, image_y); records are in order of id.
+    """Earliest event as (local time, kind, disc, partner, image_x, image_y); records are in order of id.
 
     For a BOUNDARY_CROSSING the partner is the axis, and image_x the direction. Events are compared in the order that
     decides between simultaneous ones: the smaller id first, then walls, then the heat bath, then the other id.
     """
-    best = (NEVER, PAIR, 0, 0, 0, 0)
+    best = (NEVER, DISC, 0, 0, 0, 0)
     for i in range(record.shape[0]):
         best = wall_event(record, i, effects, box[0], box[1], best)
         best = thermostat_event(i, effects.thermostat, best)
@@ -163,7 +164,7 @@ def next_event(record, box, effects):
 def cross_boundary(periodic, i, axis, forward):
     """Count disc i's crossing of a periodic side along an axis; forward: 1 or -1."""
     if periodic is not None:
-        periodic.boundary_crossings[U(i), axis] += np.int32(forward)
+        periodic.boundary_crossings[i, axis] += np.int32(forward)
 
 
 @njit
@@ -192,27 +193,28 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
         if what == STOP:
             resolve_stop(time, effects.piston)
             continue
-        disc = record[U(i)]
+        disc = record[i]
         clock = epoch_start + time
-        if what == PAIR:
+        if what == DISC:
             images = images_between(effects.periodic, i, partner, (image_x, image_y))
-            resolve_pair(disc, record[U(partner)], i, partner, time, images, effects)
+            resolve_pair(disc, record[partner], i, partner, time, images, effects)
             rows += write_pair(batch, rows, clock, record, ids, i, partner, effects)
             collisions += 1
-        elif what == SIDE:
+        elif what == WALL:
             resolve_side(disc, i, partner, time, effects)
-            rows += write_side_hit(batch, rows, clock, i, partner, disc, effects)
+            rows += write_hit(batch, rows, clock, i, -1 - partner, WALL, disc, effects)
         elif what == SEGMENT:
             images = images_to_wall(effects.periodic, i, (image_x, image_y))
             at_end = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
-            rows += write_segment_hit(batch, rows, clock, i, partner, at_end, disc, effects)
+            wall = -1 - FIRST_SEGMENT - partner
+            rows += write_hit(batch, rows, clock, i, wall, WALL_END if at_end else WALL, disc, effects)
         elif what == THERMOSTAT:
             resolve_thermostat_collision(disc, i, time, effects.thermostat, effects)
-            rows += write_thermostat_collision(batch, rows, clock, i, disc, effects)
+            rows += write_hit(batch, rows, clock, i, BATH, THERMOSTAT, disc, effects)
             thermostat_collisions += 1
         else:
-            resolve_piston(disc, i, time, effects.piston, effects)
-            rows += write_piston_hit(batch, rows, clock, i, effects.piston, disc, effects)
+            side = resolve_piston(disc, i, time, effects.piston, effects)
+            rows += write_hit(batch, rows, clock, i, -1 - side, PISTON, disc, effects)
         events += 1
         events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from idealgas.columns import BATH, FIRST_SEGMENT, Kind
+from idealgas.columns import Kind
 from idealgas.jit import inline, prefetch_next_line
 
 DISC, WALL, WALL_END, PISTON, THERMOSTAT = (int(kind) for kind in Kind)
+U = np.uintp
 NO_END = 1 << 62  # rows, where no log is kept
 
 
@@ -29,21 +30,21 @@ def write_position(column, row, disc):
 def write_spin(column, row, own, rotation):
     """Write a disc's angular velocity (1/time) into a row, where discs spin."""
     if rotation is not None:
-        column[row] = rotation.omega[np.uintp(own)]
+        column[row] = rotation.omega[U(own)]
 
 
 @inline
 def write_image(column, row, own, periodic):
     """Write a disc's image (box lengths along x and y) into a row, where sides are periodic."""
     if periodic is not None:
-        column[row, 0] = periodic.image[np.uintp(own), 0]
-        column[row, 1] = periodic.image[np.uintp(own), 1]
+        column[row, 0] = periodic.image[U(own), 0]
+        column[row, 1] = periodic.image[U(own), 1]
 
 
 @inline
 def write_event(batch, row, time, own, partner, kind, disc, effects):
     """Write one disc's row of an event: its state after the event."""
-    u = np.uintp(row)
+    u = U(row)
     batch.time[u] = time
     batch.disc[u] = own
     batch.partner[u] = partner
@@ -80,12 +81,12 @@ def fetch_next_rows(batch, row):
 def write_pair(batch, row, time, record, ids, i, j, effects):
     """Write both rows of a collision of discs i and j, that of the smaller id first."""
     if batch is not None:
-        fetch_next_rows(batch, np.uintp(row))
-        a, b = (i, j) if ids[np.uintp(i)] < ids[np.uintp(j)] else (j, i)
-        a_id = np.int64(ids[np.uintp(a)])
-        b_id = np.int64(ids[np.uintp(b)])
-        write_event(batch, row, time, a_id, b_id, DISC, record[np.uintp(a)], effects)
-        write_event(batch, row + 1, time, b_id, a_id, DISC, record[np.uintp(b)], effects)
+        fetch_next_rows(batch, U(row))
+        a, b = (i, j) if ids[U(i)] < ids[U(j)] else (j, i)
+        a_id = np.int64(ids[U(a)])
+        b_id = np.int64(ids[U(b)])
+        write_event(batch, row, time, a_id, b_id, DISC, record[U(a)], effects)
+        write_event(batch, row + 1, time, b_id, a_id, DISC, record[U(b)], effects)
         return 2
     return 0
 
@@ -94,42 +95,14 @@ def write_pair(batch, row, time, record, ids, i, j, effects):
 def write_trial(batch, row, trial):
     """Write the number of a Monte Carlo trial into both rows of a pair."""
     if batch is not None:
-        batch.trial[np.uintp(row)] = trial
-        batch.trial[np.uintp(row + 1)] = trial
+        batch.trial[U(row)] = trial
+        batch.trial[U(row + 1)] = trial
 
 
 @inline
-def write_side_hit(batch, row, time, own, side, disc, effects):
-    """Write the row of a disc that hit a side of the box."""
+def write_hit(batch, row, time, own, partner, kind, disc, effects):
+    """Write the row of an event of one disc; partner: -1 - k for wall k, or BATH."""
     if batch is not None:
-        write_event(batch, row, time, np.int64(own), -1 - side, WALL, disc, effects)
-        return 1
-    return 0
-
-
-@inline
-def write_segment_hit(batch, row, time, own, segment, at_end, disc, effects):
-    """Write the row of a disc that hit a wall segment."""
-    if batch is not None:
-        kind = WALL_END if at_end else WALL
-        write_event(batch, row, time, np.int64(own), -1 - FIRST_SEGMENT - segment, kind, disc, effects)
-        return 1
-    return 0
-
-
-@inline
-def write_piston_hit(batch, row, time, own, piston, disc, effects):
-    """Write the row of a disc that hit the piston."""
-    if batch is not None and piston is not None:
-        write_event(batch, row, time, np.int64(own), -1 - piston[0].side, PISTON, disc, effects)
-        return 1
-    return 0
-
-
-@inline
-def write_thermostat_collision(batch, row, time, own, disc, effects):
-    """Write the row of a thermostat collision."""
-    if batch is not None:
-        write_event(batch, row, time, np.int64(own), BATH, THERMOSTAT, disc, effects)
+        write_event(batch, row, time, np.int64(own), partner, kind, disc, effects)
         return 1
     return 0

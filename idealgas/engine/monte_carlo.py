@@ -2,15 +2,15 @@
 
 Trials are a Poisson process; each takes any pair and accepts it in the ratio of its collision rate to the largest
 possible one, so that collisions happen exactly at the rates of their pairs. Such a process has no memory: an epoch
-begins with a new waiting time and with random numbers of its own, keyed by the seed and the epoch's start. So the
-velocities alone are enough to continue a run, with v_ref where that has been raised.
+begins with a new waiting time and its own random numbers, keyed by the seed and the epoch's start. So the velocities
+alone, with a raised v_ref, are enough to continue a run.
 
 The largest possible rate is that of a pair of the largest discs at the relative speed v_ref. Where v_ref is a default,
 it is raised at the collision after which two discs of the new speed could be faster than it, before the next trial:
-then no pair ever exceeds it, seen or not. A collision is an instant that does not look ahead, and from it on both the
-rate of trials and the share accepted go with the new v_ref; so every pair still collides at its own rate (thinning with
-a bound that depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). To wait until a pair that is too fast
-comes up in a trial would not do: it would have collided too rarely until then.
+then no pair ever exceeds it, seen or not. This instant depends on the past only, and from it on both the rate of trials
+and the accepted fraction follow the new v_ref; so every pair still collides at its own rate (thinning with a bound that
+depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). Waiting for a trial with a pair that is too fast
+would be wrong: the pair would have collided too rarely until then.
 """
 
 import math
@@ -22,14 +22,13 @@ from idealgas.columns import Column, EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_writer import batch_capacity, write_pair, write_trial
 from idealgas.engine.method import Limits, Method
-from idealgas.engine.resolve import energy_of_pair, record_pair_loss
+from idealgas.engine.resolve import resolve_pair
 from idealgas.errors import UserError
 from idealgas.jit import inline, njit
 from idealgas.physics.collision_rates import mean_trial_time
-from idealgas.physics.disc_disc import collide, random_contact
+from idealgas.physics.disc_disc import random_contact
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
-from idealgas.physics.restitution import record_collision
 from idealgas.state import Gas
 
 U = np.uintp
@@ -54,22 +53,6 @@ def random_pair(number, start):
     i = np.int64(number * (1.0 - draw(start, 1)))
     j = np.int64((number - 1) * (1.0 - draw(start, 2)))
     return i, j + (j >= i)
-
-
-@inline
-def collide_at_random(record, ids, i, j, time, offset, effects):
-    """Collide discs i and j at a local time; offset: impact parameter divided by the sum of the radii."""
-    a = record[U(i)]
-    b = record[U(j)]
-    random_contact(a, b, offset)
-    a.t = time
-    b.t = time
-    energy = energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)
-    collide(a, b, ids[U(i)], ids[U(j)], effects.restitution, effects.rotation, None, NO_IMAGES)
-    energy -= energy_of_pair(a, b, ids[U(i)], ids[U(j)], effects.rotation, effects.dissipated)
-    record_pair_loss(effects.dissipated, energy)
-    record_collision(effects.restitution, ids[U(i)], time)
-    record_collision(effects.restitution, ids[U(j)], time)
 
 
 @inline
@@ -129,7 +112,9 @@ def advance_trials(
         if draw(start, 3) * fastest > rate:
             continue
         offset = draw(start, 4)
-        collide_at_random(record, ids, i, j, time, offset if one_sided else 2.0 * offset - 1.0, effects)
+        random_contact(a, b, offset if one_sided else 2.0 * offset - 1.0)
+        a.t = b.t = time
+        resolve_pair(a, b, ids[U(i)], ids[U(j)], time, NO_IMAGES, effects)
         write_trial(batch, rows, counter.trials)
         rows += write_pair(batch, rows, epoch_start + time, record, ids, i, j, effects)
         collisions += 1

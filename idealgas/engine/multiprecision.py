@@ -5,13 +5,14 @@ ordered as in `brute_force`. All pairs are searched for the next event; as a con
 computed again only when one of them has changed. Local times count from the start of the run, which is a single epoch.
 """
 
-from typing import Any, NamedTuple
+from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
-from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
+from idealgas.engine.event_writer import WALL, batch_capacity, write_hit, write_pair
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import add_to_counters, check_clock
 from idealgas.jit import inline, njit
@@ -26,19 +27,12 @@ NO_PARTNER = -5  # the sides are -1 to -4
 ELASTIC = 2.0  # 1 + the coefficient of restitution
 
 
-class Columns(NamedTuple):
-    """The discs as columns in order of id: each (N,) f4 or f8, or (N, 2) f8 for pairs of floats.
+Disc = namedtuple("Disc", "x y vx vy t r m")
+"""One disc, with the numbers of `DISC` in one type."""
 
-    Attributes:
-        x: position along x, length.
-        y: position along y, length.
-        vx: velocity along x, length/time.
-        vy: velocity along y, length/time.
-        t: local time of position and velocity, time.
-        r: radius, length.
-        m: mass.
-        box: width and height of the box, length; (2,), or (2, 2) for pairs.
-    """
+
+class Columns(NamedTuple):
+    """All discs in order of id: each number a column (N,) f4 or f8, or (N, 2) f8 for pairs; and the size of the box."""
 
     x: np.ndarray
     y: np.ndarray
@@ -48,28 +42,6 @@ class Columns(NamedTuple):
     r: np.ndarray
     m: np.ndarray
     box: np.ndarray
-
-
-class Disc(NamedTuple):
-    """One disc as the laws take it; all numbers are of one type.
-
-    Attributes:
-        x: position along x, length.
-        y: position along y, length.
-        vx: velocity along x, length/time.
-        vy: velocity along y, length/time.
-        t: local time of position and velocity, time.
-        r: radius, length.
-        m: mass.
-    """
-
-    x: Any
-    y: Any
-    vx: Any
-    vy: Any
-    t: Any
-    r: Any
-    m: Any
 
 
 class Next(NamedTuple):
@@ -244,7 +216,7 @@ def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, ba
         else:
             resolve_side(c, i, -1 - j, time)
             write_record(c, i, record[i])
-            rows += write_side_hit(batch, rows, epoch_start + clock, i, -1 - j, record[i], effects)
+            rows += write_hit(batch, rows, epoch_start + clock, i, j, WALL, record[i], effects)
         find_again(c, upcoming, i, j)
         events += 1
         events_at_this_time = check_clock(clock, now, events_at_this_time, record.shape[0])

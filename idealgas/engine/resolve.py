@@ -1,4 +1,4 @@
-"""Effect of an event on the records: the discs, or disc and wall, are moved to its time, collide, and are counted."""
+"""Effect of an event on the records: the discs, or disc and wall, move to its time, collide, and are counted."""
 
 import numpy as np
 
@@ -30,17 +30,10 @@ def energy_of(disc, own, rotation):
 
 
 @inline
-def record_wall_energy(wall_energy, wall, energy):
-    """Add an energy (mass length²/time²) to what a wall has given to discs, where that is recorded."""
-    if wall_energy is not None:
-        add(wall_energy[U(wall)], energy)
-
-
-@inline
-def record_bath_energy(bath_energy, energy):
-    """Add an energy (mass length²/time²) to what the heat bath has given to discs, where that is recorded."""
-    if bath_energy is not None:
-        add(bath_energy[0], energy)
+def add_energy(sums, k, energy):
+    """Add an energy (mass length²/time²) to sum k, where these energies are recorded."""
+    if sums is not None:
+        add(sums[U(k)], energy)
 
 
 @inline
@@ -52,17 +45,11 @@ def energy_of_pair(a, b, a_id, b_id, rotation, dissipated):
 
 
 @inline
-def record_pair_loss(dissipated, energy):
-    """Add an energy (mass length²/time²) to what was lost in collisions of two discs, where losses are recorded."""
-    if dissipated is not None:
-        add(dissipated[0], energy)
-
-
-@inline
-def record_wall_loss(dissipated, wall, thermal, energy):
-    """Add an energy to what was lost in hits of a wall, unless it emits discs, where losses are recorded."""
-    if dissipated is not None and not is_thermal(thermal, wall):
-        add(dissipated[U(1 + wall)], energy)
+def record_wall_energy(wall, given, lost, effects):
+    """Record the energies that a wall gave to a disc and that were lost; a thermal wall loses none."""
+    add_energy(effects.wall_energy, wall, given)
+    if not is_thermal(effects.thermal, wall):
+        add_energy(effects.dissipated, 1 + wall, lost)
 
 
 @inline
@@ -86,7 +73,7 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
     before = a.vx, a.vy, b.vx, b.vy
     collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
     energy -= energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
-    record_pair_loss(effects.dissipated, energy)
+    add_energy(effects.dissipated, 0, energy)
     record_collision_stress(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
     finish(a, a_id, time, effects)
     finish(b, b_id, time, effects)
@@ -101,7 +88,7 @@ def arrive(disc, time, effects):
 
 @inline
 def bounce(disc, own, nx, ny, wall, time, effects):
-    """Reflect or emit a disc, whose record is at the time of contact, at a wall at rest; record the wall's energy.
+    """Reflect or emit a disc, whose record is at the time of contact, at a wall at rest; record the energies.
 
     nx, ny: unit normal of the wall towards the disc. wall: number of the wall. Returns the momentum (px, py) that the
     disc received, mass length/time.
@@ -111,8 +98,7 @@ def bounce(disc, own, nx, ny, wall, time, effects):
     vy = disc.vy
     collide_with_wall(disc, own, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
     energy -= energy_of(disc, own, effects.rotation)
-    record_wall_energy(effects.wall_energy, wall, -energy)
-    record_wall_loss(effects.dissipated, wall, effects.thermal, energy)
+    record_wall_energy(wall, -energy, energy, effects)
     finish(disc, own, time, effects)
     return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
 
@@ -146,7 +132,7 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
 
 @inline
 def resolve_piston(disc, own, time, piston, effects):
-    """Collide a disc with the piston at a local time."""
+    """Collide a disc with the piston at a local time; return the number of the piston's side."""
     if piston is not None:
         p = piston[0]
         arrive(disc, time, effects)
@@ -157,12 +143,13 @@ def resolve_piston(disc, own, time, piston, effects):
         vy = disc.vy
         collide_with_piston(disc, own, p, effects.restitution)
         after = energy_of(disc, own, effects.rotation)
-        record_wall_energy(effects.wall_energy, p.side, after - energy)
-        record_wall_loss(effects.dissipated, p.side, effects.thermal, loss - energy_at_piston(disc, after, p))
+        record_wall_energy(p.side, after - energy, loss - energy_at_piston(disc, after, p), effects)
         finish(disc, own, time, effects)
         nx, ny = inward_normal(p.side)
         px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
         record_hit(effects.flow, disc, p.side, nx, ny, abs(ny), abs(nx), px, py)
+        return p.side
+    return 0
 
 
 @inline
@@ -177,11 +164,11 @@ def resolve_stop(time, piston):
 
 @inline
 def resolve_thermostat_collision(disc, own, time, thermostat, effects):
-    """Give a disc a new velocity from the heat bath at a local time; it is no collision: no contact duration begins."""
+    """Give a disc a new velocity from the heat bath at a local time; no contact duration begins."""
     if thermostat is not None:
         arrive(disc, time, effects)
         energy = energy_of(disc, own, effects.rotation)
         andersen_collision(disc, own, thermostat, effects.rotation)
-        record_bath_energy(effects.bath_energy, energy_of(disc, own, effects.rotation) - energy)
+        add_energy(effects.bath_energy, 0, energy_of(disc, own, effects.rotation) - energy)
         wrap(disc, own, effects.periodic)
         disc.count += np.uint32(1)

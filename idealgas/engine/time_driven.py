@@ -13,7 +13,7 @@ import numpy as np
 
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
-from idealgas.engine.event_writer import batch_capacity, write_pair, write_side_hit
+from idealgas.engine.event_writer import WALL, batch_capacity, write_hit, write_pair
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import add_to_counters, make_discs
 from idealgas.engine.resolve import resolve_pair, resolve_side
@@ -231,7 +231,7 @@ def advance_steps(
             if side >= 0:
                 disc = record[U(s.cursor)]
                 resolve_side(disc, ids[U(s.cursor)], side, time, effects)
-                rows += write_side_hit(batch, rows, epoch_start + time, ids[U(s.cursor)], side, disc, effects)
+                rows += write_hit(batch, rows, epoch_start + time, ids[U(s.cursor)], -1 - side, WALL, disc, effects)
                 events += 1
                 now = time
                 continue

@@ -8,6 +8,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from idealgas.columns import BATH, FIRST_SEGMENT
 from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
 from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, predict_crossing
@@ -15,14 +16,7 @@ from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, pred
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
 from idealgas.engine.event_driven.prefetch import prefetch_next
 from idealgas.engine.event_driven.scheduler import clear, has_other_event, is_resolved, remove, resolve_ties
-from idealgas.engine.event_writer import (
-    batch_capacity,
-    write_pair,
-    write_piston_hit,
-    write_segment_hit,
-    write_side_hit,
-    write_thermostat_collision,
-)
+from idealgas.engine.event_writer import PISTON, THERMOSTAT, WALL, WALL_END, batch_capacity, write_hit, write_pair
 from idealgas.engine.parallel.subdomain import DONE
 from idealgas.engine.parallel.synchronization import (
     count_simultaneous,
@@ -147,36 +141,37 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         if of_piston:
             i = np.int64(prediction.partner)
             hit = at_contact and record[U(i)].count == prediction.partner_count
-            if not at_contact:
-                resolve_stop(time, effects.piston)
             if hit:
                 remove(state.tree, state.prediction, ids, i)
-                resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+                side = resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+                rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - side, PISTON, record[U(i)], effects)
+            elif not at_contact:
+                resolve_stop(time, effects.piston)
             predict_piston(record, ids, state, effects.piston, effects.gravity)
             if not hit:
                 change = np.int64(Repredict.STALE)
                 i = np.int64(-1)
                 continue
-            rows += write_piston_hit(batch, rows, epoch_start + time, ids[U(i)], effects.piston, record[U(i)], effects)
         elif other >= 0:
             images = images_of(prediction)
             resolve_pair(record[U(i)], record[U(other)], ids[U(i)], ids[U(other)], time, images, effects)
             rows += write_pair(batch, rows, epoch_start + time, record, ids, i, other, effects)
             collisions += 1
         elif at_contact:
-            wall = segment_of(prediction.partner)
+            segment = segment_of(prediction.partner)
             at_end = resolve_segment(
-                record[U(i)], ids[U(i)], wall, time, images_of(prediction), effects.segments, effects
+                record[U(i)], ids[U(i)], segment, time, images_of(prediction), effects.segments, effects
             )
-            rows += write_segment_hit(batch, rows, epoch_start + time, ids[U(i)], wall, at_end, record[U(i)], effects)
+            wall, kind = -1 - FIRST_SEGMENT - segment, WALL_END if at_end else WALL
+            rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], wall, kind, record[U(i)], effects)
         elif is_thermostat_collision(prediction.crossing_code, effects.thermostat):
             thermostat_collisions += 1
             resolve_thermostat_collision(record[U(i)], ids[U(i)], time, effects.thermostat, effects)
-            rows += write_thermostat_collision(batch, rows, epoch_start + time, ids[U(i)], record[U(i)], effects)
+            rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], BATH, THERMOSTAT, record[U(i)], effects)
         else:
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
-            rows += write_side_hit(batch, rows, epoch_start + time, ids[U(i)], side, record[U(i)], effects)
+            rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - side, WALL, record[U(i)], effects)
         change = np.int64(Repredict.EVENT)
     finish(subdomain, reached)
     add_to_counters(counters[0], events, collisions, thermostat_collisions, now, events_at_this_time)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.columns import EventBatch
+from idealgas.columns import EVENT_COLUMNS, EventBatch, empty_batch
 from idealgas.effects.bundle import Effects, add_sums_of, clear_sums, with_own_sums
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.prefetch import make_pipeline
@@ -86,7 +86,7 @@ class Workers:
             return None
         rows = self.tuning.buffer * slabs
         if self._rows is None or len(self._rows.time) != rows:
-            self._rows = EventBatch(*(_column_like(column, rows) for column in batch))  # type: ignore[arg-type]
+            self._rows = empty_batch(rows, [c for c in EVENT_COLUMNS if getattr(batch, c.name) is not None])
         return self._rows
 
     def run(self, work: Callable[[int], None], number: int, abort_slice: Callable[[], None]) -> None:
@@ -231,7 +231,7 @@ class DomainDecomposition:
             return why
         self._state.unpredicted[0] = False
         for slab in slabs:
-            slab.add_to(self._effects)
+            add_sums_of(self._effects, slab.effects)
         if done["events"]:
             total["time"], total["events_at_this_time"] = last["time"], last["events_at_this_time"]
         self._measure_rate(counters[0], total[0], end)
@@ -312,7 +312,7 @@ class _Slab:
             images=None if state.images is None else aligned(len(state.images), state.images.dtype),
             unpredicted=np.zeros(1, np.bool_),
         )
-        self._effects = with_own_sums(effects)
+        self.effects = with_own_sums(effects)
         self.filled = 0
         self.counters = np.zeros(1, COUNTERS).view(np.recarray)
 
@@ -324,24 +324,16 @@ class _Slab:
         rows: memory for the events, with local times; None without a log. unpredicted: whether an epoch begins.
         """
         self.counters[:] = np.zeros(1, COUNTERS)
-        clear_sums(self._effects)
+        clear_sums(self.effects)
         self._state.unpredicted[0] = unpredicted
         _build(self._state, record, subdomain.low, subdomain.high)
         self.filled, _ = advance_events(
-            record, ids, self._state, self._effects, limits, 0.0, rows, self.counters, subdomain
+            record, ids, self._state, self.effects, limits, 0.0, rows, self.counters, subdomain
         )
-        if self._effects.flow is not None:
-            stress.flush(self._effects.flow)
-
-    def add_to(self, effects: Effects) -> None:
-        """Add the sums of the slice to those of the run."""
-        add_sums_of(effects, self._effects)
+        if self.effects.flow is not None:
+            stress.flush(self.effects.flow)
 
 
 def _build(state: EventDrivenState, record: Any, low: int, high: int) -> None:
     """Build the scheduler of the discs in the rows from `low` to before `high`; empty if nothing is predicted yet."""
     build(state.tree, state.prediction, record, low, low if state.unpredicted[0] else high)
-
-
-def _column_like(column: np.ndarray | None, rows: int) -> np.ndarray | None:
-    return None if column is None else np.empty((rows, *column.shape[1:]), column.dtype)
