@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from helpers.support import record, same_rows
+from helpers.support import gas_of, record, same_rows
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
@@ -52,15 +52,8 @@ def make(case: Case) -> Gas:
     else:
         position += draw.uniform(-0.99, 0.99, position.shape) * slack[:, None] * 0.7
         velocity = draw.normal(size=(case.number, 2))
-    return Gas(
-        box=(columns * pitch, rows * pitch),
-        position=position,
-        velocity=velocity,
-        radius=radius,
-        mass=draw.choice(case.masses, case.number),
-        species=np.zeros(case.number, np.uint16),
-        species_names=("gas",),
-    )
+    box = (columns * pitch, rows * pitch)
+    return gas_of(box, position, velocity, radius, draw.choice(case.masses, case.number))
 
 
 def assert_same_log(case: Case, events: int) -> None:
@@ -98,16 +91,8 @@ def test_many_simultaneous_events():
     side = 10
     x, y = np.meshgrid(np.arange(side) * 2.0 + 1.0, np.arange(side) * 2.0 + 1.0)
     draw = np.random.default_rng(8)
-    n = side * side
-    gas = Gas(
-        box=(2.0 * side, 2.0 * side),
-        position=np.column_stack((x.ravel(), y.ravel())),
-        velocity=draw.choice([-1.0, 1.0], (n, 2)),
-        radius=np.full(n, 1.0),
-        mass=np.ones(n),
-        species=np.zeros(n, np.uint16),
-        species_names=("gas",),
-    )
+    velocity = draw.choice([-1.0, 1.0], (side * side, 2))
+    gas = gas_of((2.0 * side, 2.0 * side), np.column_stack((x.ravel(), y.ravel())), velocity, 1.0)
     stop = Stop(events=400)
     oracle = record(Simulation(gas, BruteForce()), stop)
     assert (np.diff(oracle.time) == 0).mean() > 0.9

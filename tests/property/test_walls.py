@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from helpers.random_walls import HEIGHT, WIDTH, crossings, distances, some_walls
-from helpers.support import batches
+from helpers.support import batches, gas_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -50,12 +50,7 @@ def place_discs(scene: Scene) -> Gas | None:
         if clear and all(np.hypot(*(p - q)) > 2 * scene.radius for q in placed):
             placed.append(p)
         if len(placed) == scene.number:
-            n = scene.number
-            velocity = draw.normal(size=(n, 2))
-            return Gas(
-                (WIDTH, HEIGHT), np.array(placed), velocity, np.full(n, scene.radius), np.ones(n),
-                np.zeros(n, np.uint16), ("gas",),
-            )  # fmt: skip
+            return gas_of((WIDTH, HEIGHT), placed, draw.normal(size=(scene.number, 2)), scene.radius)
     return None
 
 
@@ -86,33 +81,22 @@ def assert_clear(start, velocity, pull, duration, end, walls, radius) -> None:
     assert (path < np.array([WIDTH, HEIGHT]) - radius + DEPTH).all()
 
 
-few = settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
-many = settings(few, max_examples=10_000)
+few = settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+many = settings(few, max_examples=20_000)
+
+
+pulls = st.sampled_from([None, (0.0, -1.0), (0.3, 0.1), (-2.0, 0.0)])
 
 
 @few
-@given(scenes)
+@given(scenes, pulls)
 @pytest.mark.slow
-def test_no_disc_crosses_a_wall(scene):
-    assert_walls_hold(scene)
-
-
-@few
-@given(scenes, st.sampled_from([(0.0, -1.0), (0.3, 0.1), (-2.0, 0.0)]))
-@pytest.mark.slow
-def test_no_falling_disc_crosses_a_wall(scene, gravity):
+def test_no_disc_crosses_a_wall(scene, gravity):
     assert_walls_hold(scene, gravity)
 
 
 @pytest.mark.long
 @many
-@given(scenes)
-def test_no_disc_crosses_a_wall_in_many_scenes(scene):
-    assert_walls_hold(scene)
-
-
-@pytest.mark.long
-@many
-@given(scenes, st.sampled_from([(0.0, -1.0), (0.3, 0.1), (-2.0, 0.0)]))
-def test_no_falling_disc_crosses_a_wall_in_many_scenes(scene, gravity):
+@given(scenes, pulls)
+def test_no_disc_crosses_a_wall_in_many_scenes(scene, gravity):
     assert_walls_hold(scene, gravity)

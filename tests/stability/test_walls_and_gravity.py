@@ -204,20 +204,3 @@ def test_a_multiple_root_at_a_wall_end(speed):
     within("multiple roots: energy, relative", abs(energy / (0.5 * (speed**2 + 16.0) + start[1]) - 1), 1e-14)
     free = start + np.array([speed, 4.0]) * 5.0 + np.array([0.0, -12.5])
     within("multiple roots: place after the touch", np.abs(state.position[0] - free).max(), 1e-6)
-
-
-def test_a_hot_disc_among_cold_ones():
-    """A million times faster than the others: every contact to 1e-12 of a diameter, energy to 1e-12."""
-    draw = np.random.default_rng(4)
-    place = np.stack(np.meshgrid(np.arange(10), np.arange(10)), axis=-1).reshape(-1, 2) * 4.0 + 2.0
-    velocity = 1e-6 * draw.normal(size=(100, 2))
-    velocity[55] = 0.8, 0.6
-    gas = gas_of((40, 40), place, velocity, 0.5)
-    simulation = Simulation(gas, EventDriven())
-    rows = record(simulation, Stop(events=20_000))
-    first = np.flatnonzero(rows.partner > rows.disc.astype(np.int64))
-    distance = np.hypot(*(rows.position[first] - rows.position[first + 1]).T)
-    within("hot among cold: contact distance, in diameters", np.abs(distance - 1).max(), 1e-12)
-    within(
-        "hot among cold: energy, relative", abs(simulation.state()[0].kinetic_energy / gas.kinetic_energy - 1), 1e-12
-    )
