@@ -5,7 +5,7 @@ from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.evolution.measure import evolution as evolution
-from idealgas.analysis.heat_capacity.measure import heat_capacity as heat_capacity
+from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram.measure import histogram as histogram
 from idealgas.analysis.order.measure import order as order
 from idealgas.analysis.pressure.measure import pressure as pressure
@@ -34,3 +34,4 @@ from idealgas.scene import parse_scene as parse_scene
 
 cooling = CoolingAnalysis.measure
 effusion = EffusionAnalysis.measure
+heat_capacity = HeatCapacityAnalysis.measure

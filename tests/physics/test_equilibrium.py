@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 
-from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
-from idealgas.analysis.heat_capacity.measure import heat_capacity
+from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature import temperature
@@ -160,7 +159,7 @@ def test_heat_capacity_is_the_number_of_discs(tmp_path):
         path = tmp_path / f"{t}.h5"
         simulate(scene(500, 0.1, 400, seed=20 + k, temperature=t), path)
         logs.append(open_log(path))
-    routes = combine_heat_capacity([heat_capacity(log) for log in logs]).routes
+    routes = HeatCapacityAnalysis.combine([HeatCapacityAnalysis.measure(log) for log in logs]).routes
     for log in logs:
         log.close()
     assert [route.name for route in routes] == ["dE/dT", "E/T"]

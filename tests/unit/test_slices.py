@@ -37,8 +37,8 @@ NAMED = {
     "analysis/evolution/theory.py": ({"restitution", "piston"}, "Haff's law and those of a piston"),
     "analysis/evolution/measure.py": ({"piston"}, "the course of a piston and its energy"),
     "analysis/evolution/figure.py": ({"piston"}, "the course of a piston"),
-    "analysis/heat_capacity/energy_series.py": ({"piston"}, "the energy of a piston"),
-    "analysis/heat_capacity/measure.py": ({"gravity", "piston"}, "constant pressure, and the kinds of gas by name"),
+    "analysis/heat_capacity/__init__.py": ({"gravity", "piston"}, "the kinds of gas by name"),
+    "analysis/heat_capacity/fluctuations.py": ({"piston"}, "constant pressure, and the energy of a piston"),
     "movie/piston_track.py": ({"piston"}, "where a piston is"),
     "report/player.py": ({"gravity", "periodic", "piston"}, "names in the data of the page"),
 }

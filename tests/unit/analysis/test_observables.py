@@ -7,14 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from idealgas import heat_capacity
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, check_theory
 from idealgas.analysis.core.style import save
-from idealgas.analysis.heat_capacity.combine import combine_heat_capacity
-from idealgas.analysis.heat_capacity.figure import heat_capacity_figure
-from idealgas.analysis.heat_capacity.measure import CLOSED, heat_capacity
+from idealgas.analysis.heat_capacity import CLOSED, HeatCapacityAnalysis
 from idealgas.analysis.histogram.figure import histogram_figure
 from idealgas.analysis.histogram.measure import QUANTITIES, histogram
 from idealgas.analysis.info import info
@@ -199,7 +198,7 @@ def test_temperatures_of_the_directions_add_up(log):
 def test_heat_capacity_of_one_log(log):
     """The exact energy over the temperature by the pressure."""
     measured = heat_capacity(log)
-    (route,) = combine_heat_capacity([measured]).routes
+    (route,) = HeatCapacityAnalysis.combine([measured]).routes
     assert (route.name, route.kind) == ("E/T", CLOSED)
     assert route.value.value == pytest.approx(0.5 / measured.temperature.value, rel=1e-10)
 
@@ -207,14 +206,14 @@ def test_heat_capacity_of_one_log(log):
 def test_heat_capacity_of_two_logs_has_their_slope(log, hotter):
     cold, hot = logs = [heat_capacity(log), heat_capacity(hotter)]
     slope = (hot.energy.value - cold.energy.value) / (hot.temperature.value - cold.temperature.value)
-    found = {route.name: route.value for route in combine_heat_capacity(logs).routes}
+    found = {route.name: route.value for route in HeatCapacityAnalysis.combine(logs).routes}
     assert found["dE/dT"].value == pytest.approx(slope, rel=1e-10)
     error = slope * np.hypot(cold.temperature.standard_error, hot.temperature.standard_error) / 1.5 * slope
     assert found["dE/dT"].standard_error == pytest.approx(error, rel=1e-10)
 
 
 def test_logs_of_one_energy_have_no_slope(log):
-    found = combine_heat_capacity([heat_capacity(log), heat_capacity(log)])
+    found = HeatCapacityAnalysis.combine([heat_capacity(log), heat_capacity(log)])
     assert [route.name for route in found.routes] == ["E/T"]
     assert "several energies" in found.refused["dE/dT"]
 
@@ -223,7 +222,7 @@ def test_results_are_json(log, hotter):
     results = [
         pressure(log),
         temperature(log),
-        combine_heat_capacity([heat_capacity(log), heat_capacity(hotter)]),
+        HeatCapacityAnalysis.combine([heat_capacity(log), heat_capacity(hotter)]),
         histogram(log, "speed"),
     ]
     for values in (*(result.as_dict() for result in results), info(log)):
@@ -238,7 +237,7 @@ def test_every_axis_has_a_name(log, hotter):
     for figure in (
         pressure_figure(pressure(log)),
         temperature_figure(temperature(log)),
-        heat_capacity_figure(combine_heat_capacity([heat_capacity(log), heat_capacity(hotter)])),
+        HeatCapacityAnalysis.combine([heat_capacity(log), heat_capacity(hotter)]).plot(),
         *(histogram_figure(histogram(log, quantity)) for quantity in ("speed", "waiting-time")),
     ):
         for ax in figure.axes:

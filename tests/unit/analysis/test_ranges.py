@@ -7,7 +7,7 @@ import pytest
 from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, only, silent
 
 from idealgas.analysis import registry
-from idealgas.analysis.heat_capacity.energy_series import energy_series
+from idealgas.analysis.heat_capacity.fluctuations import energy_series
 from idealgas.analysis.theory.forecast import forecast
 from idealgas.analysis.theory.granular import GranularParameters, cooling_per_collision
 from idealgas.errors import UserError

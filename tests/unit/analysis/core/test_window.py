@@ -3,7 +3,7 @@
 import pytest
 
 from idealgas import analyse, open_log, parse_scene, simulate
-from idealgas.analysis.heat_capacity.energy_series import energy_series
+from idealgas.analysis.heat_capacity.fluctuations import energy_series
 from idealgas.errors import NotApplicableError
 
 GAS = '[[species]]\nname = "gas"\ncount = 60\nradius = 0.02\ntemperature = 1\n'

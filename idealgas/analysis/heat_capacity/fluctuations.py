@@ -1,0 +1,180 @@
+"""Heat capacity from the fluctuations of sampled energies, and its theory; no events are needed.
+
+Samples are stored at the starts of epochs, whose length depends on the speed of the discs at that time, and with
+`log.snapshot_every` also at evenly spaced times, which are independent of the state of the gas.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.analysis.core.autoregression import inefficiency
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
+from idealgas.analysis.core.equilibration import equilibrated_from, measure
+from idealgas.analysis.core.statistics import Estimate, estimate, mean
+from idealgas.analysis.theory import hard_discs, values
+from idealgas.analysis.theory.values import Theory
+from idealgas.errors import UserError
+from idealgas.log import Log
+from idealgas.physics.piston import piston_energy
+
+FEWEST = 16
+"""Smallest number of samples from which fluctuations can be measured."""
+
+LEAST_SAMPLES = 32
+"""Least number of independent samples for heat capacities from fluctuations; the error of a variance is then 25 %."""
+
+LARGEST_ERROR = 0.5
+"""Largest standard error of such a heat capacity, relative to it."""
+
+FEW_IN_COLUMN = 0.47
+"""Relative error, times N, of the heat capacity of many discs under gravity for N discs of a fixed energy.
+
+The largest part of it over all heights of the box, by exact integration over the states of 2 to 20 points.
+"""
+
+SOURCE = "degrees of freedom"
+"""Name of the theory."""
+
+
+@dataclass(frozen=True)
+class EnergySeries:
+    """Energies of a gas at n sampled times after equilibration.
+
+    kinetic: (n,), kinetic energy of translation of the discs. energy: (n,), energy of the discs by motion, spin and
+    position, including that of a piston with a mass. Both are relative to the gas as a whole where nothing stops its
+    motion. position: (n,), coordinate of the piston, length; None without one. start: time of the first sample.
+    """
+
+    kinetic: np.ndarray
+    energy: np.ndarray
+    position: np.ndarray | None
+    start: float
+
+
+def energy_series(log: Log, start: float | None = None, end: float | None = None) -> EnergySeries:
+    """Sampled energies between two times, by default from detected equilibrium to the end of the log.
+
+    Raises:
+        UserError: if there are no samples, or too few in equilibrium.
+    """
+    scene, observed = log.scene, log.observables
+    time = observed["kinetic_energy"][0]
+    last = log.end_time if end is None else end
+    if len(time) < 2 or not np.diff(time).max() > 0:
+        raise UserError(f"{log.path}: no samples of the energy")
+    if start is None and log.has_events:
+        start = measure(log, [], None, end).start
+    first_time = log.start_time if start is None else start
+    if every := scene.log.snapshot_every:
+        at = np.flatnonzero(np.isin(time, every * np.arange(last // every + 1)) & (time >= first_time) & (time <= last))
+    else:
+        step = np.diff(time).max()
+        grid = np.arange(first_time, last + 1e-9 * step, step)
+        at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample at a point of the grid, but for rounding
+        at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(last, "right"))]
+    common = centre_of_mass_energy(log)
+    kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
+    position = None
+    if scene.piston and scene.piston.mass:
+        position, velocity = (observed[name][1][at] for name in ("piston_position", "piston_velocity"))
+        pull = scene.piston.acceleration(scene.box.size, scene.properties.acceleration)
+        energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
+    first = 0
+    if start is None:
+        first = equilibrated_from(log, time[at], (kinetic, energy))
+    if len(at) - first < FEWEST:
+        raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
+    position = None if position is None else position[first:]
+    return EnergySeries(kinetic[first:], energy[first:], position, float(time[at[first]]))
+
+
+def bath_fluctuations(energy: np.ndarray, n: int, bath: float, other: float, capacity: Theory | None) -> Estimate:
+    """Heat capacity C = Var(E)/T² per disc in a heat bath, corrected for the variance of the mean of the series.
+
+    Args:
+        energy: series of energies.
+        n: number of discs.
+        bath: temperature of the bath, energy.
+        other: part of C that is not due to discs: 3/2 for position and motion of a piston, else 0.
+        capacity: theory of the result.
+    """
+    energy = energy - energy.mean()
+    lost = mean(energy).standard_error ** 2
+    return estimate(
+        lambda e, square: ((square - e**2 + lost) / bath**2 - other) / n, energy, energy**2, theory=capacity
+    )
+
+
+def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, capacity: Theory | None) -> Estimate:
+    """Heat capacity per disc from the variance of the kinetic energy K at fixed energy E, exact at finite N.
+
+    All states of one energy are equally probable, so that K/E follows Beta(a, b) with a = D/2 and a + b = C, and
+    r = a Var(K)/⟨K⟩² is b/(a + b + 1). Source: Lebowitz, Percus & Verlet, Phys. Rev. 153, 250 (1967).
+
+    Args:
+        kinetic: series of kinetic energies.
+        n: number of discs.
+        dof: degrees of freedom D of their motion.
+        other: part of C that is not due to discs: 3/2 for position and motion of a piston, else 0.
+        capacity: theory of the result.
+    """
+    a = dof / 2
+    kinetic = kinetic / kinetic.mean() - 1
+    lost = mean(kinetic).standard_error ** 2
+
+    def per_disc(k: float, square: float) -> float:
+        r = a * (square - k**2 + lost) / (1 + k) ** 2
+        return (a + r * (a + 1) / (1 - r) - other) / n
+
+    return estimate(per_disc, kinetic, kinetic**2, theory=capacity)
+
+
+def too_few(route: str, found: Estimate, series: np.ndarray) -> tuple[str, ...]:
+    """Why the fluctuations of a series give no heat capacity, as one sentence; empty if its samples are enough."""
+    samples, error = len(series) / inefficiency(series), found.standard_error
+    if samples < LEAST_SAMPLES:
+        why = f"{samples:.0f} independent samples of the energy are too few ({LEAST_SAMPLES} needed)"
+    elif 0 < error <= LARGEST_ERROR * found.value:
+        return ()
+    else:
+        why = f"its error is too large ({found.value:.2g} ± {error:.2g})"
+    return (f"No heat capacity from {route}: {why}; a longer run, or samples at shorter times, would give one.",)
+
+
+def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:
+    """Heat capacity C per disc by theory, and C_P - C_A per disc with a piston (k_B = 1); None where theory is unknown.
+
+    Each degree of freedom adds 1/2; a conserved momentum takes one away. The position of a disc under gravity adds
+    1 - x² eˣ/(eˣ - 1)² with x = m g h/T and the height h that its centre can reach; N discs of a fixed energy differ
+    from that by a part 1/N. A piston adds Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
+    """
+    scene, gas, part = log.scene, log.discs, 0.0
+    motion = degrees_of_freedom(log) / (2 * len(gas))
+    per_disc = motion + (0.5 if scene.properties.spins else 0.0)
+    pull = np.array(log.gravity)
+    mixture = len(gas.species_names) > 1
+    if pull.any():
+        if not (scene.properties.fixed_walls and scene.properties.empty) or pull.all() or mixture:
+            return None, None
+        axis = int(np.flatnonzero(pull)[0])
+        temperature = float(series.kinetic.mean() / (len(gas) * motion))
+        x = float(gas.mass[0] * abs(pull[axis]) * (gas.box[axis] - 2 * gas.radius[0]) / temperature)
+        per_disc += 1 - x * x * math.exp(-x) / math.expm1(-x) ** 2
+        part = FEW_IN_COLUMN / len(gas) if scene.properties.isolated else 0.0
+        if part > values.LARGEST_ERROR:
+            return None, None
+    if series.position is None or scene.piston is None:
+        return Theory(per_disc, part * per_disc, SOURCE), None
+    if mixture:
+        return None, None
+    across = gas.box[1 - scene.piston.axis]
+    room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))
+    phi = gas.packing_fraction * gas.area / (room * across)
+    if phi > hard_discs.HIGHEST:
+        return None, None
+    step = 1e-4 * phi
+    z, above, below = (float(hard_discs.compressibility_factor(phi + shift)) for shift in (0.0, step, -step))
+    excess = z * z / (z + phi * (above - below) / (2 * step))
+    return Theory(per_disc + excess, 0.0, SOURCE), excess
