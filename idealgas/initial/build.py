@@ -38,11 +38,6 @@ def make_gas(scene: Scene) -> Gas:
     return gas
 
 
-def number_of_discs(scene: Scene) -> int:
-    """Number N of discs of a scene."""
-    return len(scene.disc) + sum(species.count for species in scene.species)
-
-
 def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...]]:
     """Radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
     kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))

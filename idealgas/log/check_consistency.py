@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from idealgas.columns import IMAGES, POSITIONS, SPINS, TRIALS, event_columns
-from idealgas.initial.build import disc_constants, number_of_discs
+from idealgas.initial.build import disc_constants
 from idealgas.log.schema import Wall
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
@@ -37,8 +37,8 @@ def check_scene(
     """
     if scene.box.size != gas.box:
         raise ValueError(f"a box of {scene.box.size} (box: {gas.box})")
-    if (number := number_of_discs(scene)) != len(gas):
-        raise ValueError(f"{number} discs (discs/id: {len(gas)})")
+    if scene.number_of_discs != len(gas):
+        raise ValueError(f"{scene.number_of_discs} discs (discs/id: {len(gas)})")
     radius, mass, species, names = disc_constants(scene)
     if names != gas.species_names:
         raise ValueError(f"species {', '.join(names)} (discs/species_name: {', '.join(gas.species_names)})")

@@ -1,7 +1,6 @@
-"""A scene's tables together, as a TOML file holds them, before anything between them is checked.
+"""All tables of a scene, before checks between them, and the defaults and estimates that follow from several tables.
 
-Reduced units, k_B = 1; a whole number will do for any number. The tables of the effects follow from
-the list of effects.
+Reduced units, k_B = 1. The tables of the effects follow from the list of effects.
 """
 
 import math
@@ -13,17 +12,17 @@ from idealgas.effects import EFFECTS
 from idealgas.effects.effect import EffectSpec, Tables
 from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
 from idealgas.effects.rotation import loses
-from idealgas.scene.defaults import (
-    RestingDisc,
-    contact_duration,
-    mean_free_time,
-    number_of_discs,
-    resting_disc,
-    trial_time,
-)
+from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
+from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species
 from idealgas.toml.table import Rectangle, Table, Vector
+
+DEFAULT_CONTACT = 0.05
+"""Default contact duration in units of the mean free time, where a constant force presses discs together."""
+
+SHORT_CONTACT = 1e-6
+"""Default contact duration in units of the time for a mean diameter at the mean speed, where no force does."""
 
 
 class _Discs(Table):
@@ -112,22 +111,55 @@ class Document(_DiscsAndEffects):
         return body_force[0], body_force[1]
 
     @property
+    def number_of_discs(self) -> int:
+        """Number N of discs."""
+        return sum(s.count for s in self.species) + len(self.disc)
+
+    @property
+    def mean_speed(self) -> float:
+        """Expected mean speed of the discs at the start, length/time."""
+        return mean_speed(self.species, self.disc)
+
+    @property
+    def _radii(self) -> list[tuple[float, int]]:
+        """Radii, and numbers of discs that have them."""
+        return [(s.radius, s.count) for s in self.species] + [(d.radius, 1) for d in self.disc]
+
+    @property
+    def _covered_area(self) -> float:
+        return math.pi * math.fsum(r * r * count for r, count in self._radii)
+
+    @property
     def free_time(self) -> float:
-        """Expected time between two collisions of a disc at the start, see `mean_free_time`, time."""
-        return mean_free_time(self.species, self.disc, self.room, self.box.periodic, self.body_force)
+        """Expected time between two collisions of a disc, with discs and sides, time; infinite if nothing moves.
+
+        The speed is that of a disc with the mean speed at the start after a fall through half of the room.
+        """
+        n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
+        size = right - left, top - bottom
+        phi = self._covered_area / (size[0] * size[1])
+        diameter, largest = self._sum_of_diameters / n, max(self._radii)[0]
+        encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n
+        path = 1.0 / max(encounters, 1.0 / sum(size))
+        speed = math.sqrt(self.mean_speed**2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
+        return path / speed if speed > 0 else math.inf
 
     @property
     def trial_time(self) -> float:
-        """Expected time between two trials of Monte Carlo, see `trial_time`, time."""
-        return trial_time(self.run, self.species, self.disc, self.box.size)
+        """Expected time between two trials of the Monte Carlo method, time; infinite if nothing moves."""
+        n, speed = self.number_of_discs, reference_speed(self.run, self.mean_speed)
+        if n < 2 or speed == 0:
+            return math.inf
+        area = self.box.size[0] * self.box.size[1]
+        return mean_trial_time(n, area, min(self._covered_area / area, DENSEST), 2 * max(self._radii)[0], speed)
 
     @property
     def expected_end(self) -> float:
         """About when the run ends, by what happens at the start, time; infinite if nothing ends it."""
-        run, n = self.run, number_of_discs(self.species, self.disc)
+        run = self.run
         ends = [run.until or math.inf]
         if run.events is not None:
-            ends.append(run.events * self.free_time / n)
+            ends.append(run.events * self.free_time / self.number_of_discs)
         if run.collisions_per_disc is not None:
             ends.append(run.collisions_per_disc * self.free_time)
         if run.trials is not None:
@@ -136,19 +168,36 @@ class Document(_DiscsAndEffects):
 
     @property
     def contact_duration(self) -> float:
-        """Time after a collision in which a disc loses nothing, time; 0 if discs never lose anything."""
+        """Time after a collision in which a disc loses no energy, time; 0 if discs never do, infinite if nothing moves.
+
+        A constant force presses a resting disc on the wall below it, so the default bounds its hits by a multiple of
+        those of the gas. Without such a force the discs of a cluster part as soon as their collisions are elastic, and
+        the default only has to end the collapse: no average can distinguish it from zero.
+        """
         if self.restitution is None or self.restitution.elastic:
             return 0.0
-        return contact_duration(
-            self.restitution, self.species, self.disc, self.room, self.box.periodic, self.body_force
-        )
+        if self.restitution.contact_duration is not None:
+            return self.restitution.contact_duration
+        if any(self.body_force):
+            return DEFAULT_CONTACT * self.free_time
+        if self.mean_speed == 0:
+            return math.inf
+        return SHORT_CONTACT * self._sum_of_diameters / self.number_of_discs / self.mean_speed
+
+    @property
+    def _sum_of_diameters(self) -> float:
+        return sum(2 * s.radius * s.count for s in self.species) + sum(2 * d.radius for d in self.disc)
 
     @property
     def rest(self) -> RestingDisc | None:
         """What discs do that have come to rest; None if no constant force presses them, or nothing is lost."""
-        if self.restitution is None:
+        force = math.hypot(*self.body_force)
+        if self.restitution is None or self.restitution.elastic or force == 0:
             return None
-        return resting_disc(self.restitution, self.contact_duration, self.free_time, self.body_force)
+        duration, e = self.contact_duration, min(self.restitution.normal, self.restitution.wall)
+        most = 1 / (e * duration) if e > 0 else None
+        height, energy = force * duration**2 / 8, (force * duration) ** 2 / 8
+        return RestingDisc((1 / duration, most), height, energy, None if most is None else most * self.free_time)
 
     @property
     def collapse_risk(self) -> bool:

@@ -15,7 +15,6 @@ NAMED = {
     "scene/__init__.py": ({*NAMES} - {"periodic"}, "hands out the classes of the tables"),
     "scene/tables.py": ({"periodic"}, "the word for a side"),
     "scene/document.py": ({*NAMES} - {"thermal", "gravity"}, "defaults that follow from other tables"),
-    "scene/defaults.py": ({"restitution"}, "the default of its contact duration"),
     "scene/checks/__init__.py": (
         {"rotation", "restitution", "wall", "thermostat", "gravity", "piston"},
         "checks of several tables",

@@ -19,7 +19,6 @@ from idealgas.scene.checks.discs import (
     species_issues,
 )
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
-from idealgas.scene.defaults import number_of_discs
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
@@ -112,7 +111,7 @@ def _thermostat_issues(scene: Document) -> Iterator[Issue]:
     thermostat, until = scene.thermostat, scene.run.until
     if thermostat is None or until is None:
         return
-    collisions = thermostat.rate * until * number_of_discs(scene.species, scene.disc)
+    collisions = thermostat.rate * until * scene.number_of_discs
     if collisions > MAX_THERMOSTAT_COLLISIONS:
         most = thermostat.rate * MAX_THERMOSTAT_COLLISIONS / collisions
         allowed = f"<= {MAX_THERMOSTAT_COLLISIONS:g}, by a rate <= {most:.3g}"

@@ -97,9 +97,9 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
         got = f'method = "{MONTE_CARLO}"'
         yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
     if not {"species", "disc"} & invalid and (scene.species or scene.disc):
-        if sum(s.count for s in scene.species) + len(scene.disc) < 2:
+        if scene.number_of_discs < 2:
             yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
-        elif mean_speed(scene.species, scene.disc) == 0:
+        elif scene.mean_speed == 0:
             yield Issue((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
         elif scene.run.v_ref is not None:
             yield from _slow_issues(scene, scene.run.v_ref)
@@ -156,7 +156,7 @@ def endless_issues(scene: Document) -> Iterator[Issue]:
     if run.events is None and run.collisions_per_disc is None:
         yield Issue(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
         return
-    alone = sum(s.count for s in scene.species) + len(scene.disc) == 1
+    alone = scene.number_of_discs == 1
     if (
         not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in scene.species)
         and not any(any(d.velocity) for d in scene.disc)
