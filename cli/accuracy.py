@@ -47,7 +47,7 @@ def accuracy(
     if on_orbit:
         with _progress_bar() as progress:
             orbit = study_orbit(gas, seed=scene.scene.seed, progress=progress)
-        result = accuracy_report.orbit_dict(orbit)
+        result = orbit.as_dict()
         rows = [{key: value for key, value in row.items() if key != "times"} for row in result["survivals"]]
         figures, show = [accuracy_figure.orbit_figure(orbit)], lambda: _print_orbit(orbit)
     else:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,12 +18,12 @@ from idealgas.scene import Scene
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages of a whole run of the scene in its window of equilibrium; None where a quantity does not apply.
+    """Averages of a scene's run over its equilibrium window; None where a quantity does not apply.
 
     rate: pair collisions of the gas per time. z_pairs, z_walls: Z = PA/NT by the virial of the pairs and of the walls,
-    with theory. distance: Kolmogorov-Smirnov distance of the speeds from their law. noise: its expected value by
-    chance. drift: relative change of the energy. overlap: deepest overlap in units of the sum of two radii. window:
-    time at which the window starts.
+    with theory. distance: Kolmogorov-Smirnov distance of the speeds from their distribution. noise: its expected value
+    by chance. drift: relative change of the energy. overlap: deepest overlap in units of the sum of two radii. window:
+    start of the window, time.
     """
 
     rate: Estimate
@@ -40,8 +41,7 @@ def measure_averages(
 ) -> tuple[Averages, Summary]:
     """Run a scene to its end and measure its averages; the log at `path` is removed afterwards.
 
-    window: start of the window, time, the same for all cases; None for detected equilibrium. progress: called with the
-    share of the run that is done.
+    window: start of the window, time; None to detect equilibrium. progress: called with the fraction done.
     """
     summary = simulate(scene, path, force=True, on_progress=lambda p: progress(p.share))
     with open_log(path) as log:
@@ -52,19 +52,12 @@ def measure_averages(
 
 def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
     distance = noise = None
-    try:
-        speeds = histogram(log, "speed", window)
-    except UserError:
-        pass
-    else:
-        max_errors = max(speeds.distributions, key=lambda found: found.tests[-1].distance)
-        distance, noise = (
-            max_errors.tests[-1].distance,
-            0.87 / math.sqrt(max_errors.samples),
-        )  # mean of Kolmogorov's distribution
+    with suppress(UserError):
+        worst = max(histogram(log, "speed", window).distributions, key=lambda found: found.tests[-1].distance)
+        distance, noise = worst.tests[-1].distance, 0.87 / math.sqrt(worst.samples)  # mean of Kolmogorov's distribution
     try:
         found = pressure(log, window)
-    except UserError:  # this gas has no theory: only count collisions
+    except UserError:  # not applicable to this gas: only count collisions
         count = summary.disc_collisions
         rate = Estimate(count / summary.end_time, math.sqrt(count) / summary.end_time, count)
         return Averages(rate, None, None, distance, noise, summary.energy_drift, summary.deepest_overlap, None)
@@ -89,7 +82,7 @@ def _total_rate(found: Pressure, log: Log) -> Estimate:
     for entry in found.collision_rates:
         if (pair := frozenset((entry.species, entry.other))) not in seen:
             seen.add(pair)
-            share = number[entry.species] * (0.5 if len(pair) == 1 else 1.0)
-            value += share * entry.rate.value
-            variance += (share * entry.rate.standard_error) ** 2
+            discs = number[entry.species] * (0.5 if len(pair) == 1 else 1.0)
+            value += discs * entry.rate.value
+            variance += (discs * entry.rate.standard_error) ** 2
     return Estimate(value, math.sqrt(variance), math.inf)

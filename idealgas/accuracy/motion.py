@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from idealgas.accuracy.cases import Case, Start
-from idealgas.columns import EventBatch, Kind, empty_batch
-from idealgas.effects.bundle import Effects
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.columns import Kind, empty_batch
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.multiprecision import PreciseBruteForce, make_columns, turn_back
 from idealgas.engine.simulation import NO_STOP, Simulation
@@ -28,14 +28,10 @@ class Missed:
     missed: int
 
     @property
-    def share(self) -> float:
-        """Share of missed collisions."""
-        return self.missed / self.compared if self.compared else math.nan
-
-    @property
-    def error(self) -> float:
-        """Standard error of the share; that of one missed collision if none was missed."""
-        return math.sqrt(max(self.missed, 1)) / self.compared if self.compared else math.nan
+    def share(self) -> Estimate:
+        """Fraction of missed collisions; if none was missed, with the error of a single one."""
+        number = self.compared or math.nan
+        return Estimate(self.missed / number, math.sqrt(max(self.missed, 1)) / number, self.compared)
 
 
 def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Callable[[float], None]) -> list[Missed]:
@@ -43,7 +39,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
 
     Only collisions of two discs without an earlier collision with other discs are compared. A collision is missed if,
     in the case, neither disc has collided by the end of the next time step. rate: collisions per disc and time.
-    progress: called with the share of the work that is done.
+    progress: called with the fraction done.
     """
     reference = start.simulation(EventDriven())
     compared, missed = np.zeros((2, len(cases)), int)
@@ -68,7 +64,7 @@ def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndar
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
     simulation = start.simulation(case.make())
-    batch = batch_for(start.effects)
+    batch = empty_batch(columns=row_columns(start.effects))
     for count in simulation.slices(NO_STOP, batch, pause=duration):
         rows = batch.rows(0, count)
         met = rows.kind == Kind.DISC
@@ -77,11 +73,6 @@ def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndar
         time[disc[new]] = rows.time[met][first[new]]
         partner[disc[new]] = rows.partner[met][first[new]]
     return time, partner
-
-
-def batch_for(effects: Effects) -> EventBatch:
-    """Empty batch of events with the columns that the effects need."""
-    return empty_batch(columns=row_columns(effects))
 
 
 def flown_through(

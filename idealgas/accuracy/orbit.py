@@ -95,8 +95,8 @@ class Survival:
 class OrbitStudy:
     """Lifetime of the orbit in every precision.
 
-    period: of the orbit in the scene, time at speed 1. placements: number of other boxes and radii. survivals: lifetime
-    in each precision. time_per_digit: slope of a line through the medians, time per decimal digit.
+    period: of the orbit in the scene, time at speed 1. placements: number of other boxes and radii. time_per_digit:
+    slope of a line through the medians, time per decimal digit.
     """
 
     period: float
@@ -105,8 +105,8 @@ class OrbitStudy:
     time_per_digit: float
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return asdict(self)
+        """Plain values by name, with the results in sentences, ready for JSON."""
+        return asdict(self) | {"sentences": self.sentences()}
 
     def sentences(self) -> list[str]:
         """Results in sentences."""
@@ -189,8 +189,8 @@ def study_orbit(
 ) -> OrbitStudy:
     """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in every precision.
 
-    gas: start on the orbit (`is_on_orbit`). seed: of the random boxes. progress: called with the name of the work that
-    is being done and its share that is done.
+    gas: start on the orbit (`is_on_orbit`). seed: of the random boxes. progress: called with the name of the current
+    work and the fraction of it that is done.
     """
     boxes = placements(gas, number, seed)
     period = float(three_disc_orbit(gas.box, float(gas.radius[0])).period)

@@ -5,23 +5,21 @@ import json
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.accuracy.orbit import OrbitStudy
 from idealgas.accuracy.study import Accuracy, Row
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import save
 from idealgas.files import check_output, storage_error, written
 
 TARGET = 0.01  # relative error in the sentences on its cost
-CLEAR = 3.0  # standard errors from which on a bias is significant
-LARGEST = 0.03  # largest bias that is taken as proportional to the time step
-LOST = 0.1  # rms distance in diameters from which on a trajectory is lost
+CLEAR = 3.0  # standard errors beyond which a bias is significant
+LARGEST = 0.03  # largest bias that counts as proportional to the time step
+LOST = 0.1  # rms distance in diameters beyond which a trajectory is lost
 
 
 def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
@@ -37,7 +35,7 @@ def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
         "cpu_s_per_time_most": row.timing.most,
         "cpu_s_per_collision": number(row.timing.per_collision),
         **with_error("rate_bias", row.rate),
-        "missed_share": number(row.missed.share) if row.missed else None,
+        **with_error("missed_share", row.missed.share if row.missed else None),
         "missed": row.missed.missed if row.missed else None,
         "missed_of": row.missed.compared if row.missed else None,
         **with_error("z_pairs_bias", row.z_pairs),
@@ -81,10 +79,11 @@ def lost_after(row: Row, found: Accuracy) -> float | None:
 
 def sentences(found: Accuracy) -> list[str]:
     """Results in sentences."""
-    said = [_of_rate(found), _of_pressure(found), _of_missed(found), *_of_motion(found)]
+    rate = price(found, "the collision rate", lambda row: row.rate)
+    results = [rate, _pressure(found), _missed(found), *_motion(found)]
     if found.left_out:
-        said.append(f"No trajectories were compared: {found.left_out}.")
-    return [sentence for sentence in said if sentence]
+        results.append(f"No trajectories were compared: {found.left_out}.")
+    return [sentence for sentence in results if sentence]
 
 
 def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) -> tuple[float, float] | None:
@@ -121,11 +120,7 @@ def price(found: Accuracy, what: str, bias: Callable[[Row], Estimate | None]) ->
     )
 
 
-def _of_rate(found: Accuracy) -> str:
-    return price(found, "the collision rate", lambda row: row.rate)
-
-
-def _of_pressure(found: Accuracy) -> str:
+def _pressure(found: Accuracy) -> str:
     exact = found.event_driven.z_pairs
     if exact is None:
         return ""
@@ -137,23 +132,23 @@ def _of_pressure(found: Accuracy) -> str:
     return own + price(found, "the pressure of the pairs", lambda row: row.z_pairs)
 
 
-def _of_missed(found: Accuracy) -> str:
+def _missed(found: Accuracy) -> str:
     counts = [(row.case.dt or 0.0, row.missed) for row in found.steps if row.missed and row.missed.compared]
     if not counts:
         return ""
     (coarse, most), (fine, least) = counts[0], counts[-1]
-    steps, shares = np.array([(dt, m.share) for dt, m in counts if m.missed >= 10]).reshape(-1, 2).T
+    steps, shares = np.array([(dt, m.share.value) for dt, m in counts if m.missed >= 10]).reshape(-1, 2).T
     law = ""
     if len(steps) > 1:
         slope = float(np.polyfit(np.log(steps), np.log(shares), 1)[0])
         law = f", in proportion to dt^{slope:.1f} (theory for a pair alone: dt^2)"
     return (
-        f"At dt = {coarse:.2g} discs fly straight through each other in {most.share:.2%} of the collisions, at dt = "
-        f"{fine:.2g} in {least.share:.2%} ± {least.error:.2%}{law}."
+        f"At dt = {coarse:.2g} discs fly straight through each other in {most.share.value:.2%} of the collisions, at "
+        f"dt = {fine:.2g} in {least.share.value:.2%} ± {least.share.standard_error:.2%}{law}."
     )
 
 
-def _of_motion(found: Accuracy) -> list[str]:
+def _motion(found: Accuracy) -> list[str]:
     if not len(found.collisions):
         return []
     last = found.collisions[-1]
@@ -195,15 +190,10 @@ def accuracy_dict(found: Accuracy) -> dict[str, Any]:
     }
 
 
-def orbit_dict(found: OrbitStudy) -> dict[str, Any]:
-    """Plain values by name, ready for JSON."""
-    return asdict(found) | {"sentences": found.sentences()}
-
-
 def outputs(
     path: str | os.PathLike[str], name: str, pictures: Sequence[str] = ("",), force: bool = False
 ) -> list[Path]:
-    """Paths NAME.csv, NAME.json and a picture NAME….png for each ending, in a folder that is created if it is missing.
+    """Paths NAME.csv, NAME.json and a figure NAME….png for each ending, in a folder that is created if it is missing.
 
     Raises:
         OutputError: if the folder cannot be made, or one of the files not be written.

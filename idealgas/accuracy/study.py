@@ -26,7 +26,7 @@ FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 1
 """Collisions per disc at which trajectories are compared; at the last one no digit of a float64 is correct."""
 
 Progress = Callable[[str, float], None]
-"""Function that is called with the name of the work that is being done and its share that is done."""
+"""Function that is called with the name of the current work and the fraction of it that is done."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Accuracy:
 
     title: of the scene. number: of discs. until: simulated time of the runs for averages. repeats: number of timings of
     each case. collisions: (T,), collisions per disc at which trajectories were compared; empty if they were not.
-    left_out: reason why brute force in several precisions was not run; empty if it was. rows: one for each case.
+    left_out: reason why brute force in several precisions was not run; empty if it was. rows: one per case.
     """
 
     title: str
@@ -119,9 +119,8 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
     assert truth is not None
     rate = 2 * truth.rate.value / len(start.gas)
     steps = [case for case in cases if case.dt is not None]
-    missed = dict(
-        zip(steps, count_missed(start, steps, rate, lambda share: progress("missed collisions", share)), strict=True)
-    )
+    counts = count_missed(start, steps, rate, lambda share: progress("missed collisions", share))
+    missed = dict(zip(steps, counts, strict=True))
     collisions, trajectories, ways_back = _motion(start, cases, timings, rate, progress)
     rows = [
         Row(
@@ -147,15 +146,15 @@ def check(scene: Scene) -> None:
     if scene.run.method == "monte_carlo":
         raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
     if strange := scene.lacking("allows_time_steps"):
-        raise UserError(f"nothing to compare: time steps know nothing of {' and '.join(strange)}")
+        raise UserError(f"nothing to compare: time steps do not support {' and '.join(strange)}")
     if len(make_gas(scene)) < 2:
-        raise UserError("nothing to compare: one disc alone collides with none")
+        raise UserError("nothing to compare: a single disc never collides with another")
 
 
 def why_not_precise(scene: Scene, gas: Gas) -> str:
     """Reason why a gas cannot be run in all precisions; empty if it can."""
     if scene.effects:
-        return f"no other precision than float64 knows of {', '.join(scene.effects)}"
+        return f"only float64 supports {', '.join(scene.effects)}"
     if len(gas) > MOST_PRECISE:
         return f"brute force takes too long with more than {MOST_PRECISE} discs"
     return ""
@@ -222,10 +221,8 @@ def _all_averages(
         def run(scene: Scene, case: Case, window: float | None = None) -> tuple[Averages, Summary]:
             return measure_averages(scene, path, window, lambda share: progress(f"averages, {case.name}", share))
 
-        own = scene.model_copy(
-            update={"run": scene.run.model_copy(update={"method": "event_driven", "dt": None, "precision": None})}
-        )
-        first, summary = run(own, cases[0])
+        settings = scene.run.model_copy(update={"method": "event_driven", "dt": None, "precision": None})
+        first, summary = run(scene.model_copy(update={"run": settings}), cases[0])
         found.append(first)
         for case, timing in zip(cases[1:], timings[1:], strict=True):
             quick = timing.median * summary.end_time < LONGEST_RUN and case.precision != "float64"  # the same motion
@@ -236,10 +233,7 @@ def _all_averages(
 def _motion(
     start: Start, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
 ) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
-    """Errors of the motion: collisions per disc at which they are measured, and rms distances in diameters by case.
-
-    The distances are those from the double-double motion, and those from the start after reversal of all velocities.
-    """
+    """Collisions per disc, and `Row.trajectory` and `Row.way_back` of each case; the reference is double-double."""
     if cases[-1].precision is None:
         return np.empty(0), {}, {}
     reference, timing = cases[-1], timings[-1]

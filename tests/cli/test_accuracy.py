@@ -34,7 +34,7 @@ def test_it_prints_tables_and_sentences_and_nothing_else(small):
     assert (done.returncode, done.stderr) == (0, "")
     assert "Time and averages" in done.stdout
     assert "event-driven" in done.stdout
-    assert "- No trajectories were compared: no other precision than float64 knows of periodic sides." in done.stdout
+    assert "- No trajectories were compared: only float64 supports periodic sides." in done.stdout
     files = [f"out/accuracy{end}: written" for end in (".csv", ".json", ".png", "-details.png")]
     assert done.stdout.splitlines()[-4:] == files
 
@@ -71,8 +71,8 @@ def test_the_orbit_of_three_discs(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("scene", "message"), [("baffle", "nothing to compare: time steps know nothing of wall segments"),
-                           ("bounce", "nothing to compare: one disc alone collides with none"),
+    ("scene", "message"), [("baffle", "nothing to compare: time steps do not support wall segments"),
+                           ("bounce", "nothing to compare: a single disc never collides with another"),
                            ("novak-bortz", "run.method: nothing to compare")],
 )  # fmt: skip
 def test_what_cannot_be_compared_is_refused_in_a_line(scene, message, tmp_path):

@@ -1,4 +1,4 @@
-"""The parts of a study of accuracy, each beside what it must give."""
+"""The parts of a study of accuracy, each with its expected result."""
 
 import math
 
@@ -80,7 +80,7 @@ def test_what_time_steps_cannot_do_is_refused(more, message):
         check(parse_scene(SCENE + more))
     with pytest.raises(UserError, match=r"run\.method"):
         check(parse_scene(SCENE, overrides=['run.method="monte_carlo"']))
-    with pytest.raises(UserError, match="one disc"):
+    with pytest.raises(UserError, match="a single disc"):
         check(parse_scene(SCENE, overrides=["species.0.count=1", "run.until=1"]))
 
 
@@ -97,14 +97,14 @@ def test_steps_miss_less_the_shorter_they_are(start):
     cases = [Case("event_driven"), Case("time_driven", dt=0.2), Case("time_driven", dt=0.02)]
     itself, coarse, fine = count_missed(start, cases, 1.0, lambda share: None)
     assert (itself.missed, itself.compared > 100) == (0, True)
-    assert coarse.share > 0.03
-    assert coarse.share - 4 * coarse.error > fine.share
-    assert Missed(100, 0).error == 0.01
+    assert coarse.share.value > 0.03
+    assert coarse.share.value - 4 * coarse.share.standard_error > fine.share.value
+    assert Missed(100, 0).share.standard_error == 0.01
 
 
 @pytest.mark.slow
 def test_the_way_back_shows_the_digits(start):
-    """After a collision or two a disc: 7, 16 and 32 digits, and in double precision by both methods the same."""
+    """After one or two collisions per disc: 7, 16 and 32 digits; both methods agree in double precision."""
     error = {case.name: error_on_return(start, case, 1.5) for case in compared_cases(start.gas, precise=True)}
     assert error["float64"] == error["event-driven"]
     assert 1e-7 < error["float32"] < 1e-3
@@ -160,7 +160,7 @@ def test_costs_follow_a_power_law_between_steps_and_beyond():
 
 
 def test_sentences_say_what_the_numbers_say():
-    """1 % takes dt = 0.005 and 100 s a time unit, 20 times the event-driven 5."""
+    """1 % takes dt = 0.005 and 100 s per time unit, 20 times the event-driven 5."""
     said = " ".join(sentences(study(steps())))
     assert "collision rate right to 1% by time steps takes dt = 0.005 and 20 times the time of the event-driven" in said
     assert "accuracy costs a factor of 10." in said
