@@ -9,7 +9,7 @@ from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram.measure import histogram as histogram
 from idealgas.analysis.order.measure import order as order
 from idealgas.analysis.pressure.measure import pressure as pressure
-from idealgas.analysis.profile.measure import profile as profile
+from idealgas.analysis.profile import ProfileAnalysis
 from idealgas.analysis.registry import analyse as analyse
 from idealgas.analysis.relaxation.measure import relaxation as relaxation
 from idealgas.analysis.sound.measure import sound as sound
@@ -35,3 +35,4 @@ from idealgas.scene import parse_scene as parse_scene
 cooling = CoolingAnalysis.measure
 effusion = EffusionAnalysis.measure
 heat_capacity = HeatCapacityAnalysis.measure
+profile = ProfileAnalysis.measure

@@ -4,12 +4,11 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from idealgas import Log, cooling, effusion, heat_capacity
+from idealgas import Log, cooling, effusion, heat_capacity, profile
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.order.measure import order
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.relaxation.measure import relaxation
 from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature import temperature

@@ -8,11 +8,11 @@ import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, kinetic_at_even_times, of_runs
 from scipy import stats
 
+from idealgas import profile
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import estimate, mean, ratio
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.evolution.theory import expected_law, push
-from idealgas.analysis.profile.measure import profile
 from idealgas.analysis.theory import hard_discs
 
 pytestmark = pytest.mark.slow

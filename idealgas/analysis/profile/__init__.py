@@ -4,18 +4,99 @@ Theory, for a dilute gas: uniform in a closed or periodic box, barometric under 
 position between two thermal sides, with the temperature jumps at them.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any
 
-from idealgas.analysis.core.analysis import Analysis, Option, Section
-from idealgas.analysis.profile.measure import BINS, Profile, profile
-from idealgas.analysis.profile.tables import profile_summary, profile_tables
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.fields import OMITTED, OPTIONAL
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, mean, ratio
+from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
+from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import Theory
+from idealgas.errors import UserError
+from idealgas.log import Log
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from idealgas.analysis.core.style import Panel
+
+BINS = 20
+"""Number of strips unless it is given."""
+
+FEWEST_FRAMES = 32
+"""Smallest number of frames with a disc in a strip for an estimate of its temperature."""
+
+FEW = 20
+"""Number of discs of a fixed energy below which their temperature falls with height, by 5 % and more."""
+
+DILUTE = 0.02
+"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
+
+LAYERED = 0.02
+"""Part by which layers at walls may raise the density of the strips there without a caveat, about (Z - 1) R/width."""
+
+CLEAR = 5.0
+"""Difference of two strips, in standard errors, from which on the summary reports it."""
+
+
+@dataclass(frozen=True)
+class SpeciesProfile:
+    """Profiles of one species, one value for each strip.
+
+    species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, energy. spin: mean I ω² per
+    disc, energy; None for discs without spin. gradient: slope of the straight line through the temperatures, each with
+    the weight of its discs, energy/length; None where fewer than two strips have a temperature.
+    """
+
+    species: str
+    density: tuple[Estimate, ...]
+    temperature: tuple[Estimate, ...]
+    spin: Annotated[tuple[Estimate, ...] | None, OPTIONAL]
+    gradient: Estimate | None
+
+
+@dataclass(frozen=True)
+class Profile(Result):
+    """Profiles of all species in K strips along one axis.
+
+    Attributes:
+        window: the time that was used.
+        axis: "x" or "y".
+        edges: (K + 1,), edges of the strips, length.
+        strip: area of one strip, length².
+        frames: number of averaged frames.
+        law: name of the theory; None without one.
+        species: profiles of each species.
+        heat: energy per time that each wall gives to the discs, by the name of the wall.
+    """
+
+    window: Window
+    axis: str
+    edges: np.ndarray
+    strip: Annotated[float, OMITTED]
+    frames: int
+    law: str | None
+    species: tuple[SpeciesProfile, ...]
+    heat: dict[str, Estimate]
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Coordinates (K,) of the centres of the strips, length."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
 
 class ProfileAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `profile`."""
+    """Profiles of density and temperature."""
 
     position = 40
     results = (Profile,)
@@ -31,13 +112,216 @@ class ProfileAnalysis(Analysis):
     )
     reads = "frames"
 
-    measure = staticmethod(profile)
-    tables = staticmethod(profile_tables)
-    summary = staticmethod(profile_summary)
+    @staticmethod
+    def measure(
+        log: Log,
+        along: str | None = None,
+        bins: int = BINS,
+        start: float | None = None,
+        end: float | None = None,
+        progress: Progress | None = None,
+    ) -> Profile:
+        """Measure density and temperature in strips across an axis, and the heat that walls give, between two times.
+
+        Averages are taken over states at least as far apart as the events of a disc. Theory, if there is one, is a
+        uniform gas, the barometric law, or Fourier's law between two thermal walls.
+
+        Args:
+            log: log with events and positions.
+            along: "x" or "y"; by default the axis along which something changes.
+            bins: number of strips of equal width, over all that centres of discs reach.
+            start: time; by default detected equilibrium.
+            end: time; by default the end of the log.
+            progress: called as progress(done, total) while states are read.
+
+        Raises:
+            UserError: without events or positions, or if the window is empty.
+        """
+        if not log.has_positions:
+            raise UserError(f"{log.path}: discs of this method have no positions")
+        axis = natural_axis(log) if along is None else "xy".index(along)
+        reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
+        window, edges = measure(log, [], start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
+        sums = _collect(log, axis, window.edges[window.first :], edges, progress)
+        expected = expected_profile(log, axis, edges, window.start)
+        strip = float(edges[1] - edges[0]) * log.box[1 - axis]
+        spinning = log.inertia is not None
+        species = tuple(
+            _of_species(name, sums[:, s], edges, strip, expected, s, spinning)
+            for s, name in enumerate(composition(log.discs).name)
+        )
+        caveats = (*_unknown_strips(species), *_limits(log, axis, float(edges[1] - edges[0]), species, expected))
+        law = None if expected is None else expected.law
+        return Profile(window, "xy"[axis], edges, strip, len(sums), law, species, _heat(log, window), caveats=caveats)
 
     @staticmethod
-    def figure(result: Any) -> "Figure":
-        """Picture of the result; matplotlib is imported where it is drawn."""
-        from idealgas.analysis.profile.figure import profile_figure
+    def tables(result: Profile) -> list[Table]:
+        """Tables of density and temperature of each species in every strip, and of the heat given by walls."""
+        axis, edges = result.axis, result.edges
+        strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
+        tables = []
+        for entry in result.species:
+            columns = {"density (1/length²)": entry.density, "temperature, m v²/2": entry.temperature}
+            columns |= {"temperature, I ω²": entry.spin} if entry.spin is not None else {}
+            for name, column in columns.items():
+                tables.append(estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)))
+        if gradients := [(entry.species, entry.gradient) for entry in result.species if entry.gradient is not None]:
+            tables.append(estimates(f"Temperature gradient along {axis} (energy/length)", gradients))
+        if result.heat:
+            tables.append(estimates("Energy from each wall per time", result.heat.items()))
+        notes = (f"{describe(result.window)}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
+        return [replace(tables[0], notes=notes), *tables[1:]]
 
-        return profile_figure(result)
+    @staticmethod
+    def summary(result: Profile) -> list[str]:
+        """Sentences on density and temperature of the first and the last known strip, where a law has them differ."""
+        found = []
+        for entry in result.species if result.law is not None else ():
+            for name, column in (("density", entry.density), ("temperature", entry.temperature)):
+                known = [(x, e) for x, e in zip(result.middles, column, strict=True) if np.isfinite(e.standard_error)]
+                if not known:
+                    continue
+                (x0, first), (x1, last) = known[0], known[-1]
+                if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
+                    ends = f"{format_estimate(first)} at {result.axis} = {x0:.4g} to {format_estimate(last)}"
+                    found.append(f"The {name} of {entry.species} goes from {ends} at {result.axis} = {x1:.4g}.")
+        return found
+
+    @staticmethod
+    def figure(result: Profile) -> "Figure":
+        """Picture of density and temperature against position, theory dashed; spin temperature as crosses."""
+        from idealgas.analysis.core.style import BLACK, Strips, curve_style, panels
+
+        def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
+            value, error = (np.array([getattr(e, name) for e in column]) for name in ("value", "standard_error"))
+            theory = np.array([np.nan if e.theory is None else e.theory for e in column])
+            ax.plot(result.middles, theory, "--", color=BLACK, linewidth=0.9, zorder=3)
+            ax.errorbar(result.middles, value, error, ms=4, capsize=2, **style)
+
+        figure, (density, temperature) = panels(2)
+        for k, entry in enumerate(result.species):
+            colour, _, marker = curve_style(k)
+            draw(density, entry.density, fmt=marker, color=colour, label=entry.species)
+            draw(temperature, entry.temperature, fmt=marker, color=colour, label=f"{entry.species}: m v²/2")
+            if entry.spin is not None:
+                draw(temperature, entry.spin, fmt="x", color=colour, label=f"{entry.species}: I ω²")
+        if result.law is not None:
+            density.plot([], [], "--", color=BLACK, label=f"theory: {result.law}")
+            highest = [e.theory or 0.0 for entry in result.species for e in entry.density]
+            if max(highest) > 20 * min(highest) > 0:
+                density.set_yscale("log")
+        for ax in (density, temperature):
+            ax.set_xlabel(f"{result.axis} (length)")
+            ax.legend()
+        low, high, number = result.edges[0], result.edges[-1], len(result.middles)
+        density.strips = Strips("xy".index(result.axis), float(low), float(high), number, result.strip)
+        density.set_ylabel("n (1/length²)")
+        temperature.set_ylabel("temperature (energy, k_B = 1)")
+        return figure
+
+
+def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
+    """Sentence for each species that is found too rarely in some strips."""
+    for entry in species:
+        if missing := sum(np.isnan(found.value) for found in entry.temperature):
+            yield (
+                f"{missing} of {len(entry.temperature)} strips hold a disc of {entry.species} in fewer than "
+                f"{FEWEST_FRAMES} frames; they have no temperature."
+            )
+
+
+def _limits(
+    log: Log, axis: int, width: float, species: Sequence[SpeciesProfile], expected: Expected | None
+) -> Iterator[str]:
+    """Sentences where a law of dilute gases, of gases without layers at walls, or of many discs does not hold.
+
+    width: of a strip, length.
+    """
+    if expected is None:
+        return
+    density = np.array([[found.value for found in entry.density] for entry in species])
+    densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
+    if not expected.dilute:
+        crowding = float(hard_discs.compressibility_factor(min(log.discs.packing_fraction, hard_discs.HIGHEST))) - 1
+        if not log.periodic[axis] and crowding * min(log.discs.radius.max() / width, 1.0) > LAYERED:
+            yield "Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them."
+    elif densest > DILUTE:
+        yield f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}."
+    if log.gravity[axis] and log.scene.properties.isolated and len(log.discs) < FEW:
+        yield f"The barometric law is that of many discs; {len(log.discs)} of a fixed energy are colder higher up."
+
+
+def _collect(log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Progress | None) -> np.ndarray:
+    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, at F times."""
+    gas, frame = log.discs, centre_of_mass_velocity(log)
+    shape = (len(gas.species_names), len(edges) - 1)
+    sums = np.zeros((len(times), *shape, 3))
+    inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
+    for k, state in enumerate(log.frames(times)):
+        place = state.position[:, axis]
+        strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
+        cell = gas.species.astype(np.int64) * shape[1] + strip
+        spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
+        values = (np.ones(len(gas)), gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2, inertia * spin**2)
+        for c, value in enumerate(values):
+            sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
+        if progress is not None:
+            progress(k + 1, len(times))
+    return sums
+
+
+def _of_species(
+    name: str, sums: np.ndarray, edges: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
+) -> SpeciesProfile:
+    """Profiles of one species from its sums (F, K, 3); strip: area of a strip, length²."""
+    strips = range(sums.shape[1])
+
+    def per_disc(k: int, column: int) -> Estimate:
+        if np.count_nonzero(sums[:, k, 0]) < FEWEST_FRAMES:
+            return Estimate(np.nan, np.nan, 0.0)
+        return ratio(sums[:, k, column], sums[:, k, 0], expected.of_temperature(s, k) if expected else None)
+
+    return SpeciesProfile(
+        name,
+        tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None) for k in strips),
+        tuple(per_disc(k, 1) for k in strips),
+        tuple(per_disc(k, 2) for k in strips) if spinning else None,
+        _gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s),
+    )
+
+
+def _gradient(
+    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int
+) -> Estimate | None:
+    """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T.
+
+    Theory may be too high at one end and too low at the other.
+    """
+    known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
+    if np.count_nonzero(known) < 2:
+        return None
+    counts, energies, place = counts[:, known], energies[:, known], middles[known]
+    weight = counts.mean(axis=0)
+    away = place - np.average(place, weights=weight)
+    lever = weight * away / (weight @ away**2)
+    temperature = energies.mean(axis=0) / weight
+    influence = (energies - temperature * counts) / weight
+    theory = None
+    if expected is not None:
+        along = expected.temperature[s, known]
+        slope = float(lever @ along) if np.ptp(along) > 0 else 0.0
+        theory = Theory(slope, 2 * expected.error / float(np.ptp(place)), expected.law)
+    return mean(lever @ temperature + influence @ lever, theory)
+
+
+def _heat(log: Log, window: Window) -> dict[str, Estimate]:
+    """Energy per time that each wall gave to the discs, by its name, from the stored samples in the window."""
+    if "wall_energy" not in log.observables:
+        return {}
+    time, given = log.observables["wall_energy"]
+    inside = (time >= window.start) & (time <= window.end)
+    steps, gains = np.diff(time[inside]), np.diff(given[inside], axis=0)
+    some = steps > 0
+    if not some.any():
+        return {}
+    return {wall.name: ratio(gains[some, k], steps[some]) for k, wall in enumerate(log.walls) if given[:, k].any()}

@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
+from idealgas import profile
 from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.ensemble import column_temperature
-from idealgas.analysis.profile.conduction import conduct
-from idealgas.analysis.profile.measure import profile
-from idealgas.analysis.profile.theory import expected_profile, natural_axis
+from idealgas.analysis.profile.theory import JUMP, conduct, expected_profile, natural_axis
+from idealgas.analysis.theory.hard_discs import mean_free_path
 from idealgas.errors import UserError
 
 GAS = """
@@ -150,3 +150,23 @@ def test_samples_of_one_instant_have_no_heat(make):
         log.observables[name] = np.append(times, times[-1]), np.concatenate((values, values[-1:]))
     last = float(log.observables["wall_energy"][0][-1])
     assert profile(log, start=last * 0.999).heat == {}
+
+
+def test_a_small_jump_is_the_gradient_times_so_many_mean_free_paths():
+    found = conduct(1.0, 1.01, 1000.0, 1.0, 1.0)
+    jump = JUMP * mean_free_path(1.0, 1.0, 0.0) * 0.01 / 1000
+    assert found.low - 1.0 == pytest.approx(jump, rel=0.01)
+    assert 1.01 - found.high == pytest.approx(jump, rel=0.01)
+
+
+def test_the_other_way_round_it_is_the_same():
+    there, back = conduct(1.0, 2.0, 20.0, 1.0, 0.1), conduct(2.0, 1.0, 20.0, 1.0, 0.1)
+    assert (there.low, there.high, there.error) == pytest.approx((back.high, back.low, back.error))
+
+
+@pytest.mark.parametrize(("low", "high"), [(1.0, 2.0), (1.0, 100.0), (100.0, 1.0), (1.0, 1.0001)])
+def test_a_narrow_box_has_none(low, high):
+    path = mean_free_path(0.1, 1.0, 0.0)
+    assert conduct(low, high, 0.5 * path, 1.0, 0.1) is None
+    wide = conduct(low, high, 100 * path, 1.0, 0.1)
+    assert min(low, high) < min(wide.low, wide.high) < max(wide.low, wide.high) < max(low, high)
