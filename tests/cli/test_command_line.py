@@ -8,7 +8,7 @@ import sys
 import click
 import pytest
 from click.testing import CliRunner
-from helpers.support import IDEALGAS, ROOT, called, error_of, idealgas, output_of
+from helpers.support import IDEALGAS, ROOT, called, error_of, output_of
 from idealgas_cli.main import EXAMPLES, Commands, first_sentence, main
 
 from idealgas import __version__
@@ -128,7 +128,8 @@ def test_completion(shell):
     for words, answer in (("idealgas pres", "pressure"), ("idealgas pressure --pl", "--plot")):
         last = words.split()[-1]
         asked = {"COMP_WORDS": words, "COMP_CWORD": last if shell == "fish" else str(words.count(" "))}
-        assert answer in idealgas(_IDEALGAS_COMPLETE=f"{shell}_complete", **asked).stdout
+        environment = {"_IDEALGAS_COMPLETE": f"{shell}_complete", **asked}
+        assert answer in CliRunner().invoke(main, env=environment, prog_name="idealgas").stdout
 
 
 def test_every_analysis_has_json_csv_and_a_picture():

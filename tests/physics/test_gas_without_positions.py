@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 from helpers.log_compare import differences
 from helpers.support import ROOT
 
@@ -20,9 +21,6 @@ from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
-
-STANDARD_ERRORS = 4
-LEAST_P = 0.001
 
 
 def equal_speeds(method, number, seed, collisions_per_disc, packing_fraction=0.01, keys=""):

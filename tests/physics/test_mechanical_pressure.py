@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.evolution.measure import evolution
@@ -16,9 +17,6 @@ from idealgas.analysis.pressure.measure import pressure
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-
-STANDARD_ERRORS = 4
-LEAST_P = 0.001
 
 
 @pytest.fixture

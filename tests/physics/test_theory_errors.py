@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from helpers.against_theory import STANDARD_ERRORS
 from helpers.virials import mean_and_error, virials
 
 from idealgas.analysis.theory.hard_discs import finite_speed_factor
@@ -15,7 +16,6 @@ from idealgas.analysis.theory.two_discs import two_discs
 from idealgas.analysis.theory.values import FRACTIONS, NUMBERS, box_theory
 
 HARD, PERIODIC, CHANNEL = (False, False), (True, True), (True, False)
-STANDARD_ERRORS = 4
 
 
 def agree(values, expected, resolved, error=0.0):

@@ -34,36 +34,27 @@ def pair(a, b):
     return discs
 
 
-def test_head_on():
-    assert contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 0, 0.5, 1))) == 2.0
-
-
-def test_records_at_different_times_meet_at_the_same_place():
-    assert contact_of(pair((-3, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 3, 0.5, 1))) == 5.0
+@pytest.mark.parametrize(
+    ("a", "b", "time"),
+    [
+        pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 0, 0.5, 1), 2.0, id="head on"),
+        pytest.param((-3, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 3, 0.5, 1), 5.0, id="records of different times"),
+        pytest.param((0, 0, -1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1), NEVER, id="receding"),
+        pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 1.01, 0, 0, 0, 0.5, 1), NEVER, id="passing"),
+        pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1), NEVER, id="same velocity"),
+        pytest.param((0, 0, 0, 0, 0, 0.5, 1), (1, 0, 1, 0, 0, 0.5, 1), NEVER, id="touching and receding"),
+        pytest.param((0, 0, 1, 0, 7, 0.5, 1), (1, 0, 0, 0, 7, 0.5, 1), 7.0, id="touching and approaching"),
+        pytest.param((0, 0, 1, 0, 7, 0.5, 1), (1 - 1e-15, 0, 0, 0, 7, 0.5, 1), 7.0, id="overlapping by rounding"),
+        pytest.param((0, 0, 1, 0, 7, 0.5, 1), (0.9, 0, 0, 0, 7, 0.5, 1), 7.0, id="overlapping"),
+    ],
+)
+def test_contact_times(a, b, time):
+    assert contact_of(pair(a, b)) == time
 
 
 def test_oblique_contact_at_45_degrees():
     time = contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (10, math.sqrt(0.5), 0, 0, 0, 0.5, 1)))
     assert time == pytest.approx(10 - math.sqrt(0.5), rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("a", "b"),
-    [
-        ((0, 0, -1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1)),
-        ((0, 0, 1, 0, 0, 0.5, 1), (5, 1.01, 0, 0, 0, 0.5, 1)),
-        ((0, 0, 1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1)),
-        ((0, 0, 0, 0, 0, 0.5, 1), (1, 0, 1, 0, 0, 0.5, 1)),
-    ],
-    ids=["receding", "passing", "same velocity", "touching and receding"],
-)
-def test_no_contact(a, b):
-    assert contact_of(pair(a, b)) == NEVER
-
-
-@pytest.mark.parametrize("x", [1.0, 1.0 - 1e-15, 0.9], ids=["touching", "overlapping by rounding", "overlapping"])
-def test_approaching_discs_that_touch_meet_now(x):
-    assert contact_of(pair((0, 0, 1, 0, 7, 0.5, 1), (x, 0, 0, 0, 7, 0.5, 1))) == 7.0
 
 
 def test_touching_discs_whose_collision_changes_nothing_are_done():
@@ -72,17 +63,18 @@ def test_touching_discs_whose_collision_changes_nothing_are_done():
     assert contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (1e-17, 1, 0, 1, 0, 0.5, 1))) == NEVER
 
 
-def test_equal_discs_exchange_normal_velocities():
-    discs = pair((0, 0, 1, 0.25, 0, 0.5, 1), (1, 0, -2, 0.5, 0, 0.5, 1))
+@pytest.mark.parametrize(
+    ("masses", "velocities", "expected"),
+    [
+        ((1, 1), ((1, 0.25), (-2, 0.5)), [[-2, 0.25], [1, 0.5]]),
+        ((3, 1), ((1, 0), (0, 0)), [[0.5, 0], [1.5, 0]]),
+    ],
+)
+def test_collisions_along_x(masses, velocities, expected):
+    """Equal discs exchange their normal velocities."""
+    discs = pair(*((k, 0, *velocities[k], 0, 0.5, masses[k]) for k in (0, 1)))
     collide_them(discs)
-    assert discs.vx.tolist() == [-2, 1]
-    assert discs.vy.tolist() == [0.25, 0.5]
-
-
-def test_unequal_masses():
-    discs = pair((0, 0, 1, 0, 0, 0.5, 3), (1, 0, 0, 0, 0, 0.5, 1))
-    collide_them(discs)
-    assert discs.vx.tolist() == [0.5, 1.5]
+    assert [[disc.vx, disc.vy] for disc in discs] == expected
 
 
 numbers = st.floats(-10, 10).filter(lambda x: x == 0 or abs(x) > 1e-100)  # whose squares keep all their digits

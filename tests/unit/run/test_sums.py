@@ -17,7 +17,6 @@ from idealgas.scene import SceneError, parse_scene
 
 pytestmark = pytest.mark.slow
 
-PRESSURE = "log.pressure=true"
 SUMS = ("kinetic_flow", "collision_flow", "wall_virial", "face_normal_impulse", "face_tangential_impulse")
 
 GAS = """
