@@ -70,7 +70,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
 
 def _histogram(seen: "Status") -> str:
     """Text histogram of the speeds, with a mark at the Maxwell-Boltzmann density in each line."""
-    from idealgas.analysis.core.bars import bars
+    from idealgas.analysis.core.tables import bars
 
     if seen.density is None:
         return "nothing moves"

@@ -12,8 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import ensemble
+from idealgas.analysis.core.ensemble import composition, ensemble
 from idealgas.analysis.core.fields import INLINE, OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity, composition
 from idealgas.log import Log
 
 

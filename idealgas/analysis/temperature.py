@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Section
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import known_ensemble, nonequilibrium_reason, nonstationary_reason
+from idealgas.analysis.core.ensemble import composition, known_ensemble, nonequilibrium_reason, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, reported
 from idealgas.analysis.core.flights import Moments

@@ -7,8 +7,7 @@ from importlib import resources
 from pathlib import Path
 from string import Template
 
-from idealgas.analysis.core.html import escape, html_table
-from idealgas.analysis.core.tables import Number, Table
+from idealgas.analysis.core.tables import Number, Table, escape, html_table
 from idealgas.analysis.info import info
 from idealgas.errors import UserError
 from idealgas.files import check_output, written

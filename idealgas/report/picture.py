@@ -11,8 +11,8 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from idealgas.analysis.core.html import escape
 from idealgas.analysis.core.style import BLACK, COLOURS, GREY, GRID, Panel, disable_mathtext
+from idealgas.analysis.core.tables import escape
 
 POINT = 72
 """Units of an SVG on an inch."""

@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.ensemble import Ensemble
+from idealgas.analysis.core.ensemble import Composition, Ensemble
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts

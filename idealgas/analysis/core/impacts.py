@@ -6,8 +6,8 @@ What an event gives is the change of a disc's momentum there; what gravity gave 
 import numpy as np
 
 from idealgas.analysis.core.stream import add_to
-from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Kind
-from idealgas.log import Flights, Log
+from idealgas.columns import SIDES, Kind
+from idealgas.log import Flights
 from idealgas.state import Gas
 
 
@@ -103,49 +103,3 @@ def contacts(flights: Flights, box: tuple[float, float], periodic: tuple[bool, .
 def is_wall_hit(kind: np.ndarray) -> np.ndarray:
     """Whether events of these kinds are hits of walls or of the piston."""
     return (kind == Kind.WALL) | (kind == Kind.WALL_END) | (kind == Kind.PISTON)
-
-
-class WallImpulses:
-    """Momentum given to each of W walls in each of B blocks of time, mass·length/time.
-
-    normals: (W, 2), unit normals of the first face of each wall; that of a side of the box points into the box.
-    faces: (B, W, 2, 2), momentum given to the first and to the second face by discs that touch the body of the wall,
-    perpendicular to it and along it; the direction along a wall is its first normal turned by -90°, for a segment from
-    its start to its end. given: (B, W, 2), momentum along x and y, with that of discs that touch the ends of the wall.
-    hits: (B, W), numbers of hits.
-    """
-
-    columns = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity")
-    cut = False
-
-    def __init__(self, log: Log) -> None:
-        """Take the walls of a log."""
-        along = np.array([np.subtract(wall.end, wall.start) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2)
-        along /= np.hypot(*along.T)[:, None]
-        self.normals = np.concatenate((-np.array(OUTWARD), np.column_stack((-along[:, 1], along[:, 0]))))
-
-    def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
-        shape = (len(edges) - 1, len(self.normals))
-        self.faces, self.given = np.zeros((*shape, 2, 2)), np.zeros((*shape, 2))
-        self.hits = np.zeros(shape, np.int64)
-        self._mass = gas.mass
-
-    def add(self, flights: Flights) -> None:
-        """Add the hits at the ends of the next flights."""
-        some = np.flatnonzero(is_wall_hit(flights.kind))
-        wall = -1 - flights.partner[some]
-        place = flights.block[some] * len(self.normals) + wall
-        given = self._mass[flights.disc[some], None] * (flights.end_velocity[some] - flights.new_velocity[some])
-        add_to(self.hits, place)
-        for axis in range(2):
-            add_to(self.given, place * 2 + axis, given[:, axis])
-        body = np.flatnonzero(flights.kind[some] != Kind.WALL_END)
-        (px, py), (nx, ny) = given[body].T, self.normals[wall[body]].T
-        across = px * nx + py * ny
-        face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it
-        add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
-        add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
-
-    def finish(self) -> None:
-        """Do nothing: the sums are complete."""

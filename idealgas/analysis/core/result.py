@@ -67,7 +67,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Tables of the result, as notebooks show what a cell ends with."""
-        from idealgas.analysis.core.html import html_tables
+        from idealgas.analysis.core.tables import html_tables
 
         return html_tables(self.tables())
 

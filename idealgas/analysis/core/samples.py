@@ -54,28 +54,6 @@ class SampledImpacts:
         self.hits = _by_wall(found["face_hits"])
 
 
-class SampledWalls:
-    """Momentum given to W walls in B blocks of time, as that of `WallImpulses`, by sums in samples.
-
-    normals, faces, given, hits: as there, but what discs give to the ends of a segment counts for its faces.
-    """
-
-    def __init__(self, log: Log, impacts: SampledImpacts) -> None:
-        """Take a log and the sums over its blocks."""
-        into, along = face_directions(log)
-        sides = np.arange(FIRST_SEGMENT)
-        first = np.concatenate((sides, np.arange(FIRST_SEGMENT, len(into), 2)))
-        self.normals = -into[first]
-        turned = np.column_stack((self.normals[:, 1], -self.normals[:, 0]))
-        way = np.sign((along[first] * turned).sum(axis=1))
-        self.faces = np.zeros((len(impacts.edges) - 1, len(first), 2, 2))
-        for c, given in enumerate((impacts.push, impacts.drag)):
-            self.faces[:, :, 0, c] = given[:, first]
-            self.faces[:, FIRST_SEGMENT:, 1, c] = given[:, FIRST_SEGMENT + 1 :: 2]
-        self.faces[..., 1] *= way[:, None]
-        self.given, self.hits = impacts.impulse, impacts.hits
-
-
 def face_directions(log: Log) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors (F, 2) into every face and along it, in the directions in which push and drag count."""
     ends = np.array([(wall.start, wall.end) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2, 2)

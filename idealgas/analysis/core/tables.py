@@ -1,11 +1,14 @@
-"""Tables of results: the same rows for the terminal, for CSV and for the report page."""
+"""Tables of results: the same rows for the terminal, CSV, notebooks and the report page; histograms in characters."""
 
 import csv
+import html
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
+
+from idealgas.errors import plain
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.collisions import CollisionRate, FreePath
@@ -162,3 +165,58 @@ def format_estimate(found: "Estimate") -> str:
     digits = max(1 - math.floor(math.log10(error)), 0) if known else None
     text = f"{found.value:.6g}" if digits is None else f"{found.value:.{digits}f} ± {error:.{digits}f}"
     return text if found.theory is None else f"{text}, theory {found.theory:.6g}"
+
+
+def escape(text: str) -> str:
+    """A text as HTML that shows it as it is, in an element or in an attribute."""
+    return html.escape(plain(text))
+
+
+def html_table(table: Table) -> str:
+    """The rows of a table that are shown, with its title as caption; its notes are not part of it."""
+    heads = [escape(head) for head in table.heads]
+    head = f"<tr>{''.join(f'<th>{head}</th>' for head in heads)}</tr>" if any(heads) else ""
+    body = "".join(f"<tr>{''.join(_cells(heads, cells))}</tr>" for cells in table.shown)
+    return f"<table><caption>{escape(table.title)}</caption>{head}{body}</table>"
+
+
+def _cells(heads: Iterable[str], cells: Iterable[str]) -> Iterator[str]:
+    """Cells of a row; each knows the heading of its column, for pages that are too narrow for rows."""
+    for head, cell in zip(heads, cells, strict=True):
+        yield f'<td data-head="{head}">{escape(cell)}</td>' if head else f"<td>{escape(cell)}</td>"
+
+
+def html_tables(tables: Iterable[Table]) -> str:
+    """Tables one below another, each after its notes, as a notebook shows them."""
+    parts = []
+    for table in tables:
+        parts += [f"<p>{escape(note)}</p>" for note in table.notes]
+        parts += [html_table(table)] if table.rows else []
+    return f"<div>{''.join(parts)}</div>"
+
+
+BAR_WIDTH = 50
+"""Number of characters of the longest bar of a histogram."""
+
+
+def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] | None) -> str:
+    """A line for each bin: its lower edge, a bar as long as its density, and a mark at the density of a law, if any.
+
+    lows: lower edges of the bins. density: of each bin, 1/unit. law: the same by a law.
+    """
+    highest = max(*density, *(law or ())) or 1.0
+    names = _aligned([f"{low:.3g}" for low in lows])
+    widest = max(map(len, names))
+    lines = []
+    for k, name in enumerate(names):
+        bar = list(("█" * round(BAR_WIDTH * density[k] / highest)).ljust(BAR_WIDTH + 1))
+        if law is not None:
+            bar[round(BAR_WIDTH * law[k] / highest)] = "│"
+        lines.append(f"{name:>{widest}} {''.join(bar).rstrip()}")
+    return "\n".join(lines)
+
+
+def _aligned(numbers: list[str]) -> list[str]:
+    """Numbers with as many decimals as the one that has most, unless some have a power of ten."""
+    decimals = max(len(number.partition(".")[2]) for number in numbers)
+    return numbers if any("e" in number for number in numbers) else [f"{float(one):.{decimals}f}" for one in numbers]

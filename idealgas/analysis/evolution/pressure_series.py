@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.wall_pressure import WallGauge
+from idealgas.analysis.core.walls import WallGauge
 from idealgas.analysis.evolution.theory import StateLines, room, state_lines
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.log import Log

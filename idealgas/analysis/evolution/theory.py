@@ -5,10 +5,10 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.composition import composition
 from idealgas.analysis.core.ensemble import (
     centre_of_mass_velocity,
     column_temperature,
+    composition,
     conserved_momentum,
     known_ensemble,
 )

@@ -4,8 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.ensemble import Ensemble, centre_of_mass_energy, known_ensemble, nonequilibrium_reason
+from idealgas.analysis.core.ensemble import (
+    Composition,
+    Ensemble,
+    centre_of_mass_energy,
+    known_ensemble,
+    nonequilibrium_reason,
+)
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
 from idealgas.log import Log

@@ -14,8 +14,7 @@ from scipy import stats
 
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.collisions import expected_rates, theory_of
-from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.ensemble import nonstationary_reason
+from idealgas.analysis.core.ensemble import Composition, composition, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram

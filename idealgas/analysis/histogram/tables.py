@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from idealgas.analysis.core.bars import bars
-from idealgas.analysis.core.tables import Cell, Number, Table, describe, estimates
+from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates
 from idealgas.analysis.histogram.measure import Distribution, Histogram
 
 

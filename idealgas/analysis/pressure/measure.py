@@ -21,17 +21,15 @@ from idealgas.analysis.core.collisions import (
     free_paths,
     theory_of,
 )
-from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.ensemble import known_ensemble, nonstationary_reason
+from idealgas.analysis.core.ensemble import Composition, composition, known_ensemble, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import SampledImpacts, SampledWalls, sampled
+from idealgas.analysis.core.samples import SampledImpacts, sampled
 from idealgas.analysis.core.statistics import CheckResult, Estimate, check_theory, mean, mean_of_flux
-from idealgas.analysis.core.wall_pressure import WallGauge
+from idealgas.analysis.core.walls import SampledWalls, WallGauge, moving_wall
 from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs

@@ -10,7 +10,7 @@ from idealgas.analysis.core.ensemble import conserved_momentum, nonstationary_re
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import Estimate, mean_of_flux, mean_of_replicates, ratio
-from idealgas.analysis.core.wall_pressure import Face, WallGauge, wall_name
+from idealgas.analysis.core.walls import Face, WallGauge, wall_name
 from idealgas.log import Log
 
 SEGMENTS = 8

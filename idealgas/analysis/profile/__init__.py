@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, composition
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result

@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.ensemble import column_temperature, known_ensemble
+from idealgas.analysis.core.ensemble import Composition, column_temperature, composition, known_ensemble
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.columns import sides_across

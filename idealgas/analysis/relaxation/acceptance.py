@@ -6,8 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import ensemble
+from idealgas.analysis.core.ensemble import composition, ensemble
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.theory import conserved, hard_discs

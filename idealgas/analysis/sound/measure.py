@@ -8,13 +8,12 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.caveats import narrow
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import ensemble
+from idealgas.analysis.core.ensemble import composition, ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.trajectories import sample_trajectories
+from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.sound.law import Decay, fit
 from idealgas.analysis.sound.theory import Expected, expected_sound
 from idealgas.analysis.theory import hard_discs

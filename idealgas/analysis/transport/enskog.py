@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.collisions import ExpectedRates
-from idealgas.analysis.core.composition import Composition
-from idealgas.analysis.core.ensemble import Ensemble, conserved_momentum
+from idealgas.analysis.core.ensemble import Composition, Ensemble, conserved_momentum
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.log import Log

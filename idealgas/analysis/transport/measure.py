@@ -18,15 +18,14 @@ from idealgas.analysis.core.collisions import (
     free_paths,
     theory_of,
 )
-from idealgas.analysis.core.composition import Composition, composition
-from idealgas.analysis.core.ensemble import Ensemble, centre_of_mass_velocity, ensemble
+from idealgas.analysis.core.ensemble import Composition, Ensemble, centre_of_mass_velocity, composition, ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.trajectories import sample_trajectories
+from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from idealgas import heat_capacity
-from idealgas.analysis.core.composition import composition
+from idealgas.analysis.core.ensemble import composition
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, check_theory

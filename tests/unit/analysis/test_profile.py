@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from idealgas import profile
-from idealgas.analysis.core.composition import composition
-from idealgas.analysis.core.ensemble import column_temperature
+from idealgas.analysis.core.ensemble import column_temperature, composition
 from idealgas.analysis.profile.theory import JUMP, conduct, expected_profile, natural_axis
 from idealgas.analysis.theory.hard_discs import mean_free_path
 from idealgas.errors import UserError

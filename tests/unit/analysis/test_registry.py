@@ -15,10 +15,9 @@ import idealgas
 from idealgas import analysis as package
 from idealgas.analysis import registry
 from idealgas.analysis.core.analysis import Option
-from idealgas.analysis.core.html import escape, html_table
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Number, Table, as_csv, estimates
+from idealgas.analysis.core.tables import Number, Table, as_csv, escape, estimates, html_table
 from idealgas.errors import UserError
 from idealgas.report.sections import make_sections
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.impacts import Impacts, WallImpulses
+from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
+from idealgas.analysis.core.walls import WallImpulses
 from idealgas.analysis.evolution.figure import evolution_figure
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.evolution.tables import evolution_tables

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.trajectories import sample_trajectories
+from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.transport.correlations import autocorrelation, mean_square_displacement
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.pair_distribution import chance_within

@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from helpers.crafted import craft
 
-from idealgas.analysis.core.impacts import WallImpulses
-from idealgas.analysis.core.moving_wall import moving_wall
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.wall_pressure import WallGauge
+from idealgas.analysis.core.walls import WallGauge, WallImpulses, moving_wall
 from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import open_log

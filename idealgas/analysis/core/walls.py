@@ -1,0 +1,266 @@
+"""Pressure on every wall and face in blocks of time: momentum that discs give to it, per time and exposed length.
+
+This is what a gauge in the wall would show. It needs no equilibrium and no theory. Walls act on the centres of the
+discs one radius inside the box; the length is that of the wall itself.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from idealgas.analysis.core.impacts import is_wall_hit
+from idealgas.analysis.core.samples import SampledImpacts, face_directions
+from idealgas.analysis.core.stream import Tally, add_to
+from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Kind, axis_of
+from idealgas.errors import UserError
+from idealgas.log import Flights, Log
+from idealgas.scene.walls import number_walls
+from idealgas.state import Gas
+
+
+class WallImpulses:
+    """Momentum given to each of W walls in each of B blocks of time, mass·length/time.
+
+    normals: (W, 2), unit normals of the first face of each wall; that of a side of the box points into the box.
+    faces: (B, W, 2, 2), momentum given to the first and to the second face by discs that touch the body of the wall,
+    perpendicular to it and along it; the direction along a wall is its first normal turned by -90°, for a segment from
+    its start to its end. given: (B, W, 2), momentum along x and y, with that of discs that touch the ends of the wall.
+    hits: (B, W), numbers of hits.
+    """
+
+    columns = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity")
+    cut = False
+
+    def __init__(self, log: Log) -> None:
+        """Take the walls of a log."""
+        along = np.array([np.subtract(wall.end, wall.start) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2)
+        along /= np.hypot(*along.T)[:, None]
+        self.normals = np.concatenate((-np.array(OUTWARD), np.column_stack((-along[:, 1], along[:, 0]))))
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        shape = (len(edges) - 1, len(self.normals))
+        self.faces, self.given = np.zeros((*shape, 2, 2)), np.zeros((*shape, 2))
+        self.hits = np.zeros(shape, np.int64)
+        self._mass = gas.mass
+
+    def add(self, flights: Flights) -> None:
+        """Add the hits at the ends of the next flights."""
+        some = np.flatnonzero(is_wall_hit(flights.kind))
+        wall = -1 - flights.partner[some]
+        place = flights.block[some] * len(self.normals) + wall
+        given = self._mass[flights.disc[some], None] * (flights.end_velocity[some] - flights.new_velocity[some])
+        add_to(self.hits, place)
+        for axis in range(2):
+            add_to(self.given, place * 2 + axis, given[:, axis])
+        body = np.flatnonzero(flights.kind[some] != Kind.WALL_END)
+        (px, py), (nx, ny) = given[body].T, self.normals[wall[body]].T
+        across = px * nx + py * ny
+        face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it
+        add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
+        add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
+
+    def finish(self) -> None:
+        """Do nothing: the sums are complete."""
+
+
+class SampledWalls:
+    """Momentum given to W walls in B blocks of time, as that of `WallImpulses`, by sums in samples.
+
+    normals, faces, given, hits: as there, but what discs give to the ends of a segment counts for its faces.
+    """
+
+    def __init__(self, log: Log, impacts: SampledImpacts) -> None:
+        """Take a log and the sums over its blocks."""
+        into, along = face_directions(log)
+        sides = np.arange(FIRST_SEGMENT)
+        first = np.concatenate((sides, np.arange(FIRST_SEGMENT, len(into), 2)))
+        self.normals = -into[first]
+        turned = np.column_stack((self.normals[:, 1], -self.normals[:, 0]))
+        way = np.sign((along[first] * turned).sum(axis=1))
+        self.faces = np.zeros((len(impacts.edges) - 1, len(first), 2, 2))
+        for c, given in enumerate((impacts.push, impacts.drag)):
+            self.faces[:, :, 0, c] = given[:, first]
+            self.faces[:, FIRST_SEGMENT:, 1, c] = given[:, FIRST_SEGMENT + 1 :: 2]
+        self.faces[..., 1] *= way[:, None]
+        self.given, self.hits = impacts.impulse, impacts.hits
+
+
+@dataclass(frozen=True)
+class Face:
+    """One face of a wall that discs can hit, with what they gave it in each of B blocks of time.
+
+    name: of the wall, and for a wall segment of the direction in which the face looks. wall: number of the wall. push,
+    along: (B,), momentum pressed on the face and given along it, mass·length/time. exposed: (B,), length of the face
+    times the time that it was there, length·time. hits: number of hits of the wall.
+    """
+
+    name: str
+    wall: int
+    push: np.ndarray
+    along: np.ndarray
+    exposed: np.ndarray
+    hits: int
+
+
+def wall_name(wall: int, name: str) -> str:
+    """Name of a wall by its number and its own name, for tables: a side of the box is called a wall."""
+    return f"{name} wall" if wall < FIRST_SEGMENT else name
+
+
+class WallGauge:
+    """Pressure on all walls of a log: the tallies that `stream` has to fill, and what follows from them.
+
+    impulses: momentum given to walls. moving: depth of the room below a piston; None without one.
+    """
+
+    impulses: WallImpulses | SampledWalls
+
+    def __init__(self, log: Log, sampled: SampledWalls | None = None) -> None:
+        """Take the walls of a log; sampled: what they were given, if it does not come from events."""
+        self._log = log
+        self.impulses = sampled or WallImpulses(log)
+        self.moving = moving_wall(log)
+
+    @property
+    def tallies(self) -> list[Tally]:
+        """Tallies to fill from the events of the log."""
+        moving: list[Tally] = [self.moving] if self.moving else []
+        impulses: list[Tally] = [self.impulses] if isinstance(self.impulses, WallImpulses) else []
+        return [*impulses, *moving]
+
+    def area(self, edges: np.ndarray) -> np.ndarray:
+        """Area (B,) that the gas has in each block of time: the box, or the room that a piston leaves, length²."""
+        if self.moving is None:
+            return np.full(len(edges) - 1, self._log.discs.area)
+        return self.moving.depth * self.moving.across
+
+    def faces(self, edges: np.ndarray) -> list[Face]:
+        """Faces of sides that are not periodic and of wall segments; edges: (B + 1,), times between the blocks."""
+        found = []
+        for k, wall in enumerate(number_walls(self._log.scene)):
+            if k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]:
+                continue
+            exposed = self._exposed(k, wall.start, wall.end, wall.absence, edges)
+            if not exposed.any():
+                continue
+            names = [wall_name(k, wall.name)]
+            if k >= FIRST_SEGMENT:
+                names = [f"{wall.name}, {name}" for name in self._looks(k)]
+            for face, name in enumerate(names):
+                push, along = self.impulses.faces[:, k, face].T
+                found.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
+        return found
+
+    def _looks(self, wall: int) -> tuple[str, str]:
+        """Directions in which the two faces of a wall segment look."""
+        x, y = self.impulses.normals[wall]
+        names = ("right", "left") if abs(x) >= abs(y) else ("up", "down")
+        return names if (x if abs(x) >= abs(y) else y) > 0 else (names[1], names[0])
+
+    def _exposed(
+        self,
+        wall: int,
+        start: Sequence[float],
+        end: Sequence[float],
+        absence: tuple[float, float],
+        edges: np.ndarray,
+    ) -> np.ndarray:
+        """Length of a wall times the time that it is there, in each block; of a side next to a piston, in its room."""
+        width = np.diff(edges)
+        if wall < len(SIDES) and self.moving is not None and axis_of(wall) != self.moving.axis:
+            return self.moving.depth * width
+        opens, closes = absence
+        absent = np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
+        return float(np.hypot(*np.subtract(end, start))) * (width - absent)
+
+
+class MovingWall:
+    """Depth of the room between a piston and the opposite side of the box, as a tally over the flights of a log.
+
+    The piston position is known at its samples and at every hit of a disc, and lies on a parabola in between. A
+    bounce at the piston's end stop between two such times is left out.
+
+    wall: number of the side that the piston stands for. axis: along which it moves, 0 for x, 1 for y. across: its
+    length. depth: (B,), mean depth of the room in each block of time, length.
+    """
+
+    columns = ("disc", "end", "kind", "end_position")
+    cut = False
+
+    def __init__(self, log: Log, table: Any) -> None:
+        """Take a log and the table of the piston in its scene."""
+        self.wall, self.axis = SIDES.index(table.side), table.axis
+        self.across = log.box[1 - table.axis]
+        self._outward, self._far = table.outward, log.box[table.axis] - table.stop(log.box)
+        self._pull = table.acceleration(log.box, log.scene.properties.acceleration)
+        self._mass, self._stop = table.mass, table.stop(log.box)
+        self._samples = log.observables["piston_position"]
+        if not len(self._samples[0]):
+            raise UserError(f"{log.path}: has no sample of its piston")
+        self._speeds = log.observables["piston_velocity"][1]
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start at time edges[0]; edges: (B + 1,), times between the blocks."""
+        self._edges, self._radius = edges, gas.radius
+        self._sums = np.zeros(len(edges))  # integral of the place from the first known time to each edge
+        time, place = self._samples
+        k = max(int(time.searchsorted(edges[0], "right")) - 1, 0)
+        self._known = np.array([[time[k], place[k]]])
+        self._total, self._done = 0.0, 0
+
+    def add(self, flights: Flights) -> None:
+        """Add the next flights."""
+        assert flights.end_position is not None
+        hits = flights.kind == Kind.PISTON
+        place = flights.end_position[hits, self.axis] + self._outward * self._radius[flights.disc[hits]]
+        self._follow(np.column_stack((flights.end[hits], place)), float(flights.end[-1]))
+
+    def finish(self) -> None:
+        """Go on to the last edge, and turn the integrals into mean depths."""
+        self._follow(np.empty((0, 2)), np.inf)
+        self.depth = np.abs(np.diff(self._sums) / np.diff(self._edges) - self._far)
+
+    def _follow(self, hits: np.ndarray, until: float) -> None:
+        """Integrate over the places (K, 2) at hits and those of the samples up to a time; at infinity to all edges."""
+        time, place = self._samples
+        some = (time > self._known[-1, 0]) & (time <= until)
+        known = np.concatenate((self._known, np.column_stack((time[some], place[some])), hits))
+        t, x = known[np.unique(known[:, 0], return_index=True)[1]].T
+        step = np.diff(t)
+        total = self._total + np.append(0.0, np.cumsum(step * (x[1:] + x[:-1]) / 2 - self._pull * step**3 / 12))
+        reached = len(self._edges) if until == np.inf else int(self._edges.searchsorted(t[-1], "right"))
+        edges = self._edges[self._done : reached]
+        k = np.clip(t.searchsorted(edges, "right") - 1, 0, max(len(t) - 2, 0))
+        self._sums[self._done : reached] = total[k] + self._within(t, x, k, edges)
+        self._known, self._total, self._done = np.array([[t[-1], x[-1]]]), total[-1], reached
+
+    def _within(self, t: np.ndarray, x: np.ndarray, k: np.ndarray, edges: np.ndarray) -> np.ndarray:
+        """Integral of the place from the known times t[k] to edges, on the parabola to the next known time."""
+        since = edges - t[k]
+        if len(t) == 1:
+            return x[k] * since
+        step = t[k + 1] - t[k]
+        speed = (x[k + 1] - x[k]) / step - self._pull * step / 2
+        return since * (x[k] + since * (speed / 2 + since * self._pull / 6))
+
+    def balance(self, start: float, end: float) -> float | None:
+        """Pressure (force/length) that holds the piston against the gas between two times, beside its inertia.
+
+        None for a piston of a given velocity, and if it came near its end stop, which holds it too.
+        """
+        time, place = self._samples
+        inside = (time >= start) & (time <= end)
+        if not self._mass or not inside.any():
+            return None
+        reach = self._outward * place[inside] + self._speeds[inside] ** 2 / (2 * abs(self._pull))
+        if (reach >= self._outward * self._stop).any():
+            return None
+        return -self._outward * self._pull * self._mass / self.across
+
+
+def moving_wall(log: Log) -> MovingWall | None:
+    """Tally of the piston of a log; None without one."""
+    return MovingWall(log, log.scene.piston) if log.scene.piston else None
