@@ -4,21 +4,19 @@ An event row says what a disc is like after an event. A flight says what it was 
 event left it in, when that was, and what the event at the end made of it. One pass over the rows joins the two.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
-from pathlib import Path
-from typing import Any, NamedTuple, Protocol, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from idealgas.columns import BLOCK, Column
 from idealgas.log.errors import LogError
+from idealgas.log.history import LogHistory
 from idealgas.log.join import Arrays, Join, whole_pairs
-from idealgas.log.replay import LogState
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
-from idealgas.state import Gas
 
 BATCH = 2 * BLOCK
 """Number of flights in a batch, at most, unless a single flight is cut into more pieces."""
@@ -139,38 +137,6 @@ def _read_for(made: set[str]) -> set[str]:
     return {_READ[name] for name in made if name in _READ}
 
 
-class EventLog(Protocol):
-    """What flights need of a `Log`."""
-
-    path: Path
-    has_events: bool
-    start_time: float
-    box: tuple[float, float]
-    gravity: tuple[float, float]
-    periodic: tuple[bool, ...]
-
-    @property
-    def discs(self) -> Gas:
-        """The discs at the start."""
-
-    @property
-    def end_time(self) -> float:
-        """Time up to which the log has events."""
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Names of the event columns."""
-
-    def state_at(self, time: float) -> LogState:
-        """All discs at one time."""
-
-    def row_at(self, time: float, side: str = "left") -> int:
-        """Number of the first event row at a time or later; with side "right" later than it."""
-
-    def chunks(self, columns: Sequence[str], start: int = 0, stop: int | None = None) -> Iterator[Any]:
-        """Event rows in blocks, as named tuples of these columns."""
-
-
 class FlightReader:
     """Flights of a log between the first and the last of some edges, cut at those in between.
 
@@ -180,7 +146,7 @@ class FlightReader:
 
     def __init__(
         self,
-        log: EventLog,
+        log: LogHistory,
         edges: ArrayLike | None = None,
         discs: ArrayLike | None = None,
         columns: Collection[str] | None = None,

@@ -1,14 +1,11 @@
 """Logs read: rows by number, time and disc, and the state at any time."""
 
-import re
-
 import h5py
 import numpy as np
 import pytest
 from helpers.log_compare import scene_of
 from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
 
-import idealgas.log.reader as log_reader
 from idealgas.columns import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
 from idealgas.log.hdf5 import chunks
@@ -165,16 +162,6 @@ def test_a_log_is_followed(tmp_path):
         writer.close({"end_time": 1.0})
         log.refresh()
         assert (len(log), log.end_time, log.complete) == (10, 1.0, True)
-
-
-def test_the_reading_example_works(tmp_path, monkeypatch, capsys):
-    write_log(tmp_path / "run.h5", BLOCK + 10)
-    monkeypatch.chdir(tmp_path)
-    examples = re.findall(r"(?:^    .*\n(?:\n(?=    ))?)+", log_reader.__doc__, re.MULTILINE)
-    assert len(examples) == 2
-    for example in examples:
-        exec("\n".join(line[4:] for line in example.splitlines()), {"open_log": open_log, "np": np})
-        assert f"'rows': {BLOCK + 10}" in (printed := capsys.readouterr().out) or "b'rows'" in printed
 
 
 # ── files that are not logs ──

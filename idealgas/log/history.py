@@ -1,0 +1,243 @@
+"""Event rows of a log in blocks, and the state of the gas at any time."""
+
+from bisect import bisect_left, bisect_right
+from collections import namedtuple
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache, cached_property, partial
+from typing import Any, Literal, Self, overload
+
+import numpy as np
+
+from idealgas.columns import EventBatch
+from idealgas.files import is_locked
+from idealgas.log.errors import DamageError, LogError
+from idealgas.log.header import LogHeader
+from idealgas.log.log_file import LogFile, Table
+from idealgas.log.pairs import check_pairs
+from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
+from idealgas.log.schema import SUMMARY_COLUMNS
+from idealgas.log.summary import parse_summary
+
+
+@cache
+def _rows(columns: tuple[str, ...]) -> Any:
+    """Type of blocks of rows with these columns, cached, as creating it takes longer than reading a short block."""
+    return namedtuple("Rows", columns)
+
+
+class LogHistory(LogHeader):
+    """The part of a `Log` that its run writes, except samples; the attributes are described there."""
+
+    start_time = 0.0
+
+    def __init__(self, file: LogFile) -> None:
+        try:
+            super().__init__(file)
+            self._update()
+        except LogError:
+            file.close()
+            raise
+
+    @property
+    def live(self) -> bool:
+        """Whether another process is writing this log now."""
+        return self.unclosed and is_locked(self.path)
+
+    def refresh(self) -> None:
+        """Read what the run has stored since the log was opened or last refreshed."""
+        self._file.refresh()
+        self._update()
+
+    def _update(self) -> None:
+        self.commit = self._file.commit
+        self.complete = self.commit.complete
+        self.has_events = "events" in self.commit.rows
+        self._rows = self.commit.rows.get("events", 0)
+        self._block = self._file.chunk_rows("events/time") if self.has_events else 1
+        if self._rows:
+            start = (self._rows - 1) // self._block * self._block
+            last = {name: self._file.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
+            self._file.checked(partial(check_pairs, last, start))
+            if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair whose second is not committed
+                self._rows -= 1
+        self._first_times: dict[int, float] = {}
+        for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time"):
+            self.__dict__.pop(name, None)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __len__(self) -> int:
+        return self._rows
+
+    @cached_property
+    def checkpoints(self) -> Checkpoints:
+        """States at the starts of epochs, from which the run can be resumed; each is read when it is indexed."""
+        found = Checkpoints(self._file, len(self), self._check_checkpoint)
+        if self.complete and len(found) < self._file.rows("checkpoints"):
+            row = self._file.column("checkpoints/row")[-1]
+            raise DamageError(self.path, f"checkpoints/row: {row} (allowed up to {len(self)}, all events)")
+        return found
+
+    def _check_checkpoint(self, time: float, row: int) -> None:
+        """Raise DamageError unless the event rows before a checkpoint are those before its time."""
+        if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
+            raise DamageError(self.path, f"checkpoints/row: {row} at t = {time:g} (got other events before it)")
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """Fields of the run's `Summary` by name; empty if the run has not reached its end."""
+        names, values = (self._file.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
+        found = self._file.checked(lambda: parse_summary(names, values), "summary/value")
+        if self.has_events and found.get("rows", len(self)) != len(self):
+            raise DamageError(self.path, f"summary/value: {found['rows']} rows (events: {len(self)})")
+        return Table(self.path, "summary", found)
+
+    @cached_property
+    def end_time(self) -> float:
+        """Time up to which the log covers the motion of the gas."""
+        last = [self.start_time]
+        if len(self.checkpoints):
+            last.append(self.checkpoints.times[-1].item())
+        if len(self):
+            last.append(self._times((len(self) - 1) // self._block * self._block)[-1].item())
+        end = self.summary.get("end_time", max(last))
+        if end < max(last):
+            raise DamageError(self.path, f"summary/value: end_time {end:g} (allowed from {max(last):g} on)")
+        return end
+
+    @property
+    def has_positions(self) -> bool:
+        """Whether the discs have positions; in the Monte Carlo method they are nan."""
+        return "position" in self._file.names("checkpoints")
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the event columns, those of `EventBatch` that this log has; empty without events."""
+        return tuple(self._file.names("events"))
+
+    @overload
+    def chunks(self, columns: None = None, start: int = 0, stop: int | None = None) -> Iterator[EventBatch]: ...
+    @overload
+    def chunks(self, columns: Sequence[str], start: int = 0, stop: int | None = None) -> Iterator[Any]: ...
+    def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
+        """Event rows in blocks of at most 65 536 rows.
+
+        Args:
+            columns: names of the columns to read; each block is then a named tuple of arrays, (n,) or (n, 2). By
+                default it is an `EventBatch`, which describes the columns.
+            start: number of the first row.
+            stop: number after the last row; by default the end of the log.
+
+        Raises:
+            LogError: if the log lacks a column.
+        """
+        block: Any = partial(EventBatch, position=None) if columns is None else _rows(tuple(columns))
+        names = self.columns if columns is None else columns
+        if self.has_events and (missing := [name for name in names if name not in self.columns]):
+            raise LogError(f"{self.path}: events of method {self.scene.run.method} have no {' and no '.join(missing)}")
+        stop = len(self) if stop is None else min(stop, len(self))
+        for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
+            rows = {name: self._file.chunk(f"events/{name}", first) for name in names}
+            self._file.checked(partial(check_pairs, rows, first))
+            some = slice(max(start - first, 0), stop - first)
+            yield block(**{name: column[some] for name, column in rows.items()})
+
+    def row_at(self, time: float, side: Literal["left", "right"] = "left") -> int:
+        """Number of the first event row at `time` or later; with side "right" of the first one after `time`."""
+        if not len(self):
+            return 0
+        find = bisect_left if side == "left" else bisect_right
+        blocks = range(-(-len(self) // self._block))
+        first = max(find(blocks, time, key=self._first_time) - 1, 0) * self._block
+        return first + int(self._times(first).searchsorted(time, side))
+
+    def _first_time(self, block: int) -> float:
+        if block not in self._first_times:
+            self._first_times[block] = self._times(block * self._block)[0].item()
+        return self._first_times[block]
+
+    def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[EventBatch]:
+        """Event rows at times t0 ≤ t < t1, in blocks (`EventBatch`) of any length.
+
+        Args:
+            disc: id of the disc; all by default.
+            t0: start of the window; by default that of the log.
+            t1: end of the window; by default that of the log.
+        """
+        start = 0 if t0 is None else self.row_at(t0)
+        stop = len(self) if t1 is None else self.row_at(t1)
+        if disc is None:
+            yield from self.chunks(None, start, stop)
+            return
+        row = start
+        for ids in self.chunks(("disc",), start, stop):
+            own = np.flatnonzero(ids.disc == disc)
+            for block in self.chunks(None, row, row + len(ids.disc)) if len(own) else ():
+                yield EventBatch._make(None if column is None else column[own] for column in block)
+            row += len(ids.disc)
+
+    def state_at(self, time: float) -> LogState:
+        """All discs at one time, exactly; at the time of an event after the event. Raises LogError as `frames` does."""
+        return next(self.frames([time]))
+
+    def frames(self, times: Iterable[float]) -> Iterator[LogState]:
+        """All discs at each of several times, in one pass over the log.
+
+        The states are exact: every disc is in free flight after its last event. A log without events has states only
+        at its checkpoints.
+
+        Args:
+            times: times in increasing order.
+
+        Raises:
+            LogError: at a time that the log does not cover, or that is out of order.
+        """
+        replay: Replay | None = None
+        base = -1
+        earliest = self.start_time
+        for time in times:
+            if not earliest <= time <= self.end_time:
+                raise LogError(
+                    f"{self.path}: no state at time {time:g} (got up to {self.end_time:g}, in increasing order)"
+                )
+            earliest = time
+            nearest = int(self.checkpoints.times.searchsorted(time, "right")) - 1
+            if not self.has_events and (nearest < 0 or self.checkpoints.times[nearest] != time):
+                raise LogError(
+                    f"{self.path}: no state at time {time:g}: a log without events has states only at its checkpoints"
+                )
+            if replay is None or nearest > base:
+                replay, base = self._replay(nearest), nearest
+            for block in self.chunks(("time", "disc", *replay.state), replay.row, self.row_at(time, "right")):
+                replay.follow(block)
+            yield self._file.checked(partial(replay.at, time), f"the state at time {time:g}")
+
+    def _replay(self, checkpoint: int) -> Replay:
+        if checkpoint >= 0:
+            start = self.checkpoints[checkpoint]
+        else:
+            start = Checkpoint(self.start_time, 0, 0, self._start_arrays(), {})
+        return Replay(start, self.columns, self.box, self.periodic, self.gravity)
+
+    def _start_arrays(self) -> dict[str, np.ndarray]:
+        """Discs at the start, as in a checkpoint."""
+        names = self._file.names("checkpoints")
+        arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
+        if not self.has_positions:
+            arrays["position"] = np.full_like(self.discs.position, np.nan)
+        if "image" in names:
+            arrays["image"] = np.zeros((len(self.discs), 2), np.int32)
+        if "angular_velocity" in names:
+            arrays["angular_velocity"] = self._file.fixed("discs/angular_velocity")
+        return arrays
+
+    def _times(self, first: int) -> np.ndarray:
+        return self._file.chunk("events/time", first)[: len(self) - first]
