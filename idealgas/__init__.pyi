@@ -6,7 +6,7 @@ from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.evolution.measure import evolution as evolution
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
-from idealgas.analysis.histogram.measure import histogram as histogram
+from idealgas.analysis.histogram import HistogramAnalysis
 from idealgas.analysis.order.measure import order as order
 from idealgas.analysis.pressure.measure import pressure as pressure
 from idealgas.analysis.profile import ProfileAnalysis
@@ -35,4 +35,5 @@ from idealgas.scene import parse_scene as parse_scene
 cooling = CoolingAnalysis.measure
 effusion = EffusionAnalysis.measure
 heat_capacity = HeatCapacityAnalysis.measure
+histogram = HistogramAnalysis.measure
 profile = ProfileAnalysis.measure

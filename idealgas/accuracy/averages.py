@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.histogram.measure import histogram
+from idealgas.analysis.histogram import HistogramAnalysis
 from idealgas.analysis.pressure.measure import PAIRS, WALLS, Pressure, pressure
 from idealgas.errors import UserError
 from idealgas.log import Log, open_log
@@ -53,7 +53,9 @@ def measure_averages(
 def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
     distance = noise = None
     with suppress(UserError):
-        worst = max(histogram(log, "speed", window).distributions, key=lambda found: found.tests[-1].distance)
+        worst = max(
+            HistogramAnalysis.measure(log, "speed", window).distributions, key=lambda found: found.tests[-1].distance
+        )
         distance, noise = worst.tests[-1].distance, 0.87 / math.sqrt(worst.samples)  # mean of Kolmogorov's distribution
     try:
         found = pressure(log, window)

@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from idealgas import Log, cooling, effusion, heat_capacity, profile
+from idealgas import Log, cooling, effusion, heat_capacity, histogram, profile
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.order.measure import order
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.relaxation.measure import relaxation

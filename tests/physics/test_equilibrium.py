@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 
+from idealgas import histogram
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
-from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature import temperature
 from idealgas.analysis.theory import hard_discs

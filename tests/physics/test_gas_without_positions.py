@@ -11,7 +11,7 @@ from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 from helpers.log_compare import differences
 from helpers.support import ROOT
 
-from idealgas.analysis.histogram.measure import histogram
+from idealgas import histogram
 from idealgas.analysis.info import info
 from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.measure import relaxation

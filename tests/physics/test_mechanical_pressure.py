@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 
+from idealgas import histogram
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.evolution.measure import evolution
-from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate

@@ -4,45 +4,345 @@ Velocities and energies are weighted with the time that discs spend at them. A w
 events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
-from idealgas.analysis.core.analysis import Analysis, Option, Section
-from idealgas.analysis.histogram.measure import QUANTITIES, Histogram, histogram
-from idealgas.analysis.histogram.tables import histogram_tables, histogram_text
+import numpy as np
+from scipy import stats
+
+from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.autoregression import inefficiency
+from idealgas.analysis.core.ensemble import composition, nonstationary_reason
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.fields import OMITTED, Key, reported
+from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
+from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
+from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates
+from idealgas.analysis.histogram.laws import FEW, expectation, free_flight_rates
+from idealgas.analysis.theory import distributions
+from idealgas.errors import UserError
+from idealgas.log import Log
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+QUANTITIES = {
+    "speed": "length/time",
+    "vx": "length/time",
+    "vy": "length/time",
+    "energy": "energy",
+    "free-path": "length",
+    "free-time": "time",
+    "waiting-time": "time",
+}
+"""Quantities whose distribution can be measured, with their units."""
 
-def _section(title: str, quantity: str) -> Section:
-    caption = f"Density of {title.lower()}: measured with its standard errors, and its laws as lines"
-    return Section(title, caption, {"quantity": quantity})
+BINS = 120
+LINES = 24  # of the histogram in characters; bins are put together
+SAMPLED = 256  # largest number of discs of a species whose velocities are tested
+INTERVALS = 10_000  # approximate number of intervals that are tested
+FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
+STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
+TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
+
+
+@dataclass(frozen=True)
+class Test:
+    """Kolmogorov-Smirnov test of samples against a law.
+
+    law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
+    unit). p_value: probability of at least this distance by chance.
+    """
+
+    law_name: Annotated[str, Key("law")]
+    law: Annotated[distributions.Law, OMITTED]
+    distance: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Distribution of one quantity for one species, or for the whole gas.
+
+    name: of the species. edges: (bins + 1,), edges of the bins, in the unit of the quantity. density, error: (bins,),
+    probability density and its standard error, 1/unit. mean: of the quantity. samples: number of decorrelated samples.
+    correlation_time: time between independent samples of one disc; None for intervals. tests: one for each law.
+    """
+
+    name: str
+    edges: np.ndarray
+    density: np.ndarray
+    error: np.ndarray
+    mean: Estimate
+    samples: int
+    correlation_time: float | None
+    tests: tuple[Test, ...]
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Middles (bins,) of the bins, in the unit of the quantity."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
+    @property
+    @reported
+    def laws(self) -> dict[str, np.ndarray]:
+        """Probability density (bins,) by each law in the middle of the bins, 1/unit."""
+        return {test.law_name: test.law.pdf(self.middles) for test in self.tests}
+
+
+@dataclass(frozen=True)
+class Histogram(Result):
+    """Distributions of one quantity (with its unit) in a window of time, one for each species.
+
+    no_law: why no law holds, as part of a sentence; None if one does.
+    """
+
+    quantity: str
+    unit: str
+    window: Window
+    distributions: tuple[Distribution, ...]
+    no_law: str | None = None
 
 
 class HistogramAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `histogram`."""
+    """Distributions of speeds, energies, free flights and waiting times."""
 
     position = 50
     results = (Histogram,)
-    sections = (
-        _section("Speeds", "speed"),
-        _section("Velocities along x", "vx"),
-        _section("Energies", "energy"),
-        _section("Free paths", "free-path"),
-        _section("Free times", "free-time"),
-        _section("Waiting times between events", "waiting-time"),
+    sections = tuple(
+        Section(
+            title,
+            f"Density of {title.lower()}: measured with its standard errors, and its laws as lines",
+            {"quantity": quantity},
+        )
+        for title, quantity in (
+            ("Speeds", "speed"),
+            ("Velocities along x", "vx"),
+            ("Energies", "energy"),
+            ("Free paths", "free-path"),
+            ("Free times", "free-time"),
+            ("Waiting times between events", "waiting-time"),
+        )
     )
     options = (
         Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),
     )
 
-    measure = staticmethod(histogram)
-    tables = staticmethod(histogram_tables)
-    text = staticmethod(histogram_text)
+    @staticmethod
+    def measure(
+        log: Log,
+        quantity: str = "speed",
+        start: float | None = None,
+        end: float | None = None,
+        progress: Progress | None = None,
+    ) -> Histogram:
+        """Measure a distribution between two times of a log, species by species, and test it against its laws.
+
+        Velocities are compared with the Maxwell-Boltzmann distribution and that of N discs at fixed energy, free
+        flights with a dilute gas, and waiting times with an exponential distribution. The p-values are those of the
+        Kolmogorov-Smirnov test of decorrelated samples. Under gravity or a piston the temperature of the law is the
+        measured one. A gas that never reaches equilibrium has no law, and its window is the whole log by default.
+
+        Args:
+            log: log with events.
+            quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with
+                discs; or waiting-time, the time between two successive events of the gas.
+            start: time; by default detected equilibrium.
+            end: time; by default the end of the log.
+            progress: called as progress(done, total) while events are read.
+
+        Raises:
+            UserError: if no disc moves, or if the window has too few events.
+        """
+        if start is None and nonstationary_reason(log):
+            start = log.start_time
+        if quantity in VELOCITY_QUANTITIES:
+            window, found, no_law = _velocities(log, quantity, start, end, progress)
+        elif quantity == "waiting-time":
+            window, found, no_law = _waiting_times(log, start, end, progress)
+        else:
+            window, found, no_law = _flights(log, quantity, start, end, progress)
+        few = [
+            f"The tests of {each.name} have {each.samples} decorrelated samples; with fewer than {FEWEST_SAMPLES} they "
+            "can hardly fail."
+            for each in found
+            if each.tests and each.samples < FEWEST_SAMPLES
+        ]
+        return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law or None, caveats=tuple(few))
 
     @staticmethod
-    def figure(result: Any) -> "Figure":
-        """Picture of the result; matplotlib is imported where it is drawn."""
-        from idealgas.analysis.histogram.figure import histogram_figure
+    def tables(result: Histogram) -> list[Table]:
+        """Tables of the means, of Kolmogorov-Smirnov distances between samples and laws, and of densities in bins."""
+        tests: list[tuple[Cell, ...]] = []
+        bins: list[tuple[Cell, ...]] = []
+        for found in result.distributions:
+            low, high, spacing = found.edges[:-1], found.edges[1:], Number(found.correlation_time, ".4g")
+            for test in found.tests:
+                distance, p = Number(test.distance, ".4f"), Number(test.p_value, ".3g")
+                tests.append((found.name, test.law_name, distance, p, Number(found.samples, "d"), spacing))
+            law = [None] * len(low)
+            if found.tests:  # the first of the laws as theory, as its mean over a bin
+                law = (np.diff(found.tests[0].law.cdf(found.edges)) / (high - low)).tolist()
+            columns = (low.tolist(), high.tolist(), found.density.tolist(), found.error.tolist(), law)
+            bins += ((found.name, *map(Number, row)) for row in zip(*columns, strict=True))
+        means = [(found.name, found.mean) for found in result.distributions]
+        notes = (describe(result.window), *([f"No law here: {result.no_law}."] if result.no_law else []))
+        tables = [estimates(f"Mean {result.quantity} ({result.unit})", means, notes)]
+        if tests:
+            heads = ("", "law", "distance", "p", "samples", "spacing (time)")
+            tables.append(Table("Kolmogorov-Smirnov tests (no unit)", heads, tests))
+        heads = ("", "from", "to", "value", "± s.e.", "theory")
+        return [*tables, Table(f"Density of {result.quantity} (per {result.unit})", heads, bins, most=0)]
 
-        return histogram_figure(result)
+    @staticmethod
+    def text(result: Histogram) -> str:
+        """Histogram of each species in characters, with the first of its laws."""
+        lines = []
+        for found in result.distributions:
+            groups, widths = np.array_split(np.arange(BINS), LINES), np.diff(found.edges)
+            curves = [found.density, *(test.law.pdf(found.middles) for test in found.tests[:1])]
+            measured, *law = [
+                [float(np.average(curve[group], weights=widths[group])) for group in groups] for curve in curves
+            ]
+            mark = f"; │ {found.tests[0].law_name}" if found.tests else ""
+            lows = [float(found.edges[group[0]]) for group in groups]
+            lines += [
+                f"{found.name}: {result.quantity} ({result.unit}){mark}",
+                bars(lows, measured, law[0] if law else None),
+            ]
+        return "\n".join(lines)
+
+    @staticmethod
+    def figure(result: Histogram) -> "Figure":
+        """Picture of the measured density with its error band and of the laws; one panel for each species."""
+        from idealgas.analysis.core.style import COLOURS, GREY, panels
+
+        figure, axes = panels(len(result.distributions))
+        for ax, found in zip(axes, result.distributions, strict=True):
+            name = f"{found.name} (no law)" if result.no_law else found.name
+            ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=name)
+            ax.errorbar(found.middles, found.density, found.error, fmt="none", ecolor=GREY, elinewidth=0.8)
+            x = np.linspace(found.edges[0], found.edges[-1], 600)
+            for test, colour, style in zip(found.tests, COLOURS, ("-", "--"), strict=False):
+                ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
+            last = np.flatnonzero(found.density > 1e-3 * found.density.max())[-1]
+            ax.set_xlim(found.edges[0], found.edges[last + 1])
+            ax.set_xlabel(f"{result.quantity} ({result.unit})")
+            ax.set_ylabel(f"density ({'time/length' if result.unit == 'length/time' else f'1/{result.unit}'})")
+            ax.legend()
+        return figure
+
+
+Found = tuple[Window, list[Distribution], str]  # the text is why no law holds, empty if one does
+
+
+def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    gas, discs, known = log.discs, composition(log.discs), expectation(log, start, end)
+    thermal = np.sqrt(known.scale / discs.mass)
+    high = np.full(len(thermal), 12 * known.scale) if quantity == "energy" else 5 * thermal
+    low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
+    members = [np.flatnonzero(gas.species == s) for s in range(len(thermal))]
+    members = [ids[:: max(4, -(-len(ids) // SAMPLED))] for ids in members]  # the energy of all correlates velocities
+    tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members), log.gravity)
+    moments = [Moments(log.gravity)] if known.needs_temperature else []
+    window = measure(log, [tally, *moments], start, end, progress)
+    measured = None
+    if moments:
+        measured = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean()) / (2 * len(gas))
+    parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
+    confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
+    found = []
+    for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
+        possible = known.laws(quantity, discs, s, measured)
+        # A light disc among heavy ones keeps its speed for longer than its direction.
+        spacing = int(np.ceil(max(inefficiency(snapshots), inefficiency(snapshots**2))))
+        expected = list(possible.values())[-1].mean if possible and measured is None else None
+        average = _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], expected, confined)
+        edges, counts = np.linspace(low[s], high[s], BINS + 1), window.of(tally.counts)[:, s]
+        samples = snapshots[::spacing].ravel()
+        found.append(_distribution(name, edges, counts, average, samples, spacing * window.width, possible))
+    return window, found, known.why_not
+
+
+def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:
+    """Mean of a series of values of magnitude `scale`; confined: of velocities between walls."""
+    if np.ptp(series) < 1e-12 * scale:  # conserved but for rounding
+        return Estimate(float(series.mean()), 0.0, 1.0, expected)
+    if confined:
+        return mean_of_flux(series, np.zeros(len(series)), expected)
+    return mean(series, theory=expected)
+
+
+def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    discs, path = composition(log.discs), quantity == "free-path"
+    temperature, rates, speed, why_not = free_flight_rates(log, discs, start, end)
+    rate = rates.sum(axis=1)
+    average = speed / rate if path else 1 / rate
+    high = 10 * average
+    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
+    window = measure(log, [tally], start, end, progress)
+    last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
+    blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
+    law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
+    found = []
+    for s, name in enumerate(discs.name):
+        dilute = law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
+        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
+        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected))
+    return window, found, why_not
+
+
+def _waiting_times(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
+    tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
+    window = measure(log, [tally], start, end, progress)
+    blocks = slice(window.first, len(tally.counts))
+    why_not = nonstationary_reason(log)
+    if log.has_positions and len(log.discs) < FEW:
+        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
+    possible = {} if why_not else {"exponential": law}
+    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None)], why_not
+
+
+def _intervals(
+    name: str,
+    tally: FreeFlights | WaitingTimes,
+    s: int,
+    blocks: slice,
+    high: float,
+    possible: Mapping[str, distributions.Law],
+    expected: float | None,
+) -> Distribution:
+    """Distribution of the intervals of species s in some blocks of time."""
+    counts = tally.counts[blocks, s].astype(float)
+    chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
+    average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
+    return _distribution(name, np.linspace(0, high, BINS + 1), counts, average, tally.sample[chosen], None, possible)
+
+
+def _distribution(
+    name: str,
+    edges: np.ndarray,
+    counts: np.ndarray,
+    average: Estimate,
+    samples: np.ndarray,
+    correlation_time: float | None,
+    possible: Mapping[str, distributions.Law],
+) -> Distribution:
+    """Distribution from counts (B, bins + 2) of B blocks; the first and last bin count values outside the edges."""
+    if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
+        raise UserError(f"too few events in the window for a distribution of {name}")
+    share = counts[:, 1:-1].sum(axis=0) / total.sum()
+    spread = counts[:, 1:-1] - share * total[:, None]
+    error = np.sqrt(len(total) * spread.var(axis=0)) / total.sum()
+    tests = []
+    for law_name, law in possible.items():
+        result = stats.kstest(samples, law.cdf)
+        tests.append(Test(law_name, law, float(result.statistic), float(result.pvalue)))
+    width, number = np.diff(edges), len(samples)
+    return Distribution(name, edges, share / width, error / width, average, number, correlation_time, tuple(tests))

@@ -1,9 +1,10 @@
-"""Laws of velocities and energies that a gas has to follow, and why there are none for others."""
+"""Laws of velocities, energies and free flights that a gas has to follow, and why others have none."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.ensemble import (
     Composition,
     Ensemble,
@@ -12,6 +13,7 @@ from idealgas.analysis.core.ensemble import (
     nonequilibrium_reason,
 )
 from idealgas.analysis.theory import distributions
+from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -20,10 +22,13 @@ MAXWELL = "Maxwell-Boltzmann"
 FEWEST_DOF = 3
 """Degrees of freedom of a gas of fixed energy up to which its velocities have no density that is bounded."""
 
+FEW = 30
+"""Number of discs below which free paths and waiting times do not follow the law of many."""
+
 
 @dataclass(frozen=True)
 class Expectation:
-    """What is known before the events of a log are read: its ensemble, or whether it comes to an equilibrium.
+    """What is known before the events of a log are read: its ensemble, or whether it reaches an equilibrium.
 
     ensemble: of a gas whose energy of motion is conserved or set by walls; None for others. temperature: of the walls
     that set it, energy; None if it must be measured. scale: temperature that sets the range of histograms, energy.
@@ -101,3 +106,33 @@ def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) ->
 
     finite = {f"fixed energy, D = {dof}": law(dof)} if FEWEST_DOF < dof < np.inf else {}
     return {MAXWELL: law(np.inf), **finite}
+
+
+def free_flight_rates(
+    log: Log, discs: Composition, start: float | None, end: float | None
+) -> tuple[float, np.ndarray, np.ndarray, str]:
+    """Temperature, collision rates (S, S) and mean speeds (S,) of free flights; why no law holds, empty if one does.
+
+    Without a law they are means over the gas that only set the range of the histogram.
+    """
+    known = expectation(log, start, end)
+    why_not = known.why_not
+    if uneven := log.scene.lacking("uniform"):
+        why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"
+    if log.scene.properties.thermostat_rate:
+        why_not = why_not or "a heat bath changes velocities in flight"
+    if known.ensemble and known.ensemble.dof < 2 * FEW:
+        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
+    if known.ensemble and not why_not:
+        gas = known.ensemble
+        theory = theory_of(log, discs) if log.has_positions else None
+        rates = expected_rates(discs, log.box, gas, theory).rate
+        share = discs.mass * gas.temperature / gas.of_species
+        if (rates.sum(axis=1) > 0).all():
+            return gas.temperature, rates, mean_speed(gas.temperature, share, gas.dof), ""
+        why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
+    time, collisions = log.observables["disc_collisions"]
+    if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
+        raise UserError(f"{log.path}: too few collisions of discs for a distribution")
+    rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
+    return known.scale, np.diag(np.full(len(discs.name), rate)), mean_speed(known.scale, discs.mass), why_not

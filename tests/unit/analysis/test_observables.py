@@ -7,15 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas import heat_capacity
+from idealgas import heat_capacity, histogram
 from idealgas.analysis.core.ensemble import composition
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate, check_theory
 from idealgas.analysis.core.style import save
 from idealgas.analysis.heat_capacity import CLOSED, HeatCapacityAnalysis
-from idealgas.analysis.histogram.figure import histogram_figure
-from idealgas.analysis.histogram.measure import QUANTITIES, histogram
+from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.info import info
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
@@ -238,7 +237,7 @@ def test_every_axis_has_a_name(log, hotter):
         pressure_figure(pressure(log)),
         temperature_figure(temperature(log)),
         HeatCapacityAnalysis.combine([heat_capacity(log), heat_capacity(hotter)]).plot(),
-        *(histogram_figure(histogram(log, quantity)) for quantity in ("speed", "waiting-time")),
+        *(histogram(log, quantity).plot() for quantity in ("speed", "waiting-time")),
     ):
         for ax in figure.axes:
             assert ax.get_xlabel()

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from idealgas import histogram
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
@@ -10,7 +11,6 @@ from idealgas.analysis.core.walls import WallImpulses
 from idealgas.analysis.evolution.figure import evolution_figure
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.evolution.tables import evolution_tables
-from idealgas.analysis.histogram.measure import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.transport.measure import transport
 from idealgas.columns import BATH, Kind

@@ -5,9 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from idealgas.analysis.histogram.figure import histogram_figure
-from idealgas.analysis.histogram.measure import histogram
-from idealgas.analysis.histogram.tables import histogram_tables
+from idealgas import histogram
 from idealgas.errors import UserError
 
 GAS = """
@@ -33,10 +31,10 @@ def test_no_law_and_why(override, make):
     assert gas.mean.theory is None
     assert (gas.density * np.diff(gas.edges)).sum() == pytest.approx(1, abs=0.02)  # nothing to speak of is beyond
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["no_law"] == found.no_law
-    table, bins = histogram_tables(found)
+    table, bins = found.analysis.tables(found)
     assert (len(bins.rows), bins.shown) == (len(gas.density), [])
     assert f"No law here: {found.no_law}." in table.notes
-    assert histogram_figure(found).axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
+    assert found.plot().axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
 
 
 def test_without_a_stationary_state_the_window_is_the_whole_log(make):
