@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +12,9 @@ from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
 from ._options import force_option, json_option, plot_option, quiet_option
+from ._progress import progress_bar
 from ._tables import print_tables
-from ._terminal import data, echo, terminal, written
+from ._terminal import data, echo, written
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.analysis import Analysis, Option
@@ -35,17 +35,6 @@ def open_log(path: str) -> "Log":
         state = "is being written" if opened.live else "was not closed (crash?); continue it with `idealgas resume`"
         echo(f"{path}: {state}; read up to t = {opened.end_time:g}, {len(opened):,} event rows", err=True)
     return opened
-
-
-@contextmanager
-def reading(what: str = "events") -> Iterator[Callable[[int, int], None]]:
-    """Yield progress(done, total), which shows a progress bar on a terminal; what: what is counted."""
-    from rich.progress import Progress
-
-    console = terminal(err=True)
-    with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task(f"reading {what}", total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def print_json(result: dict[str, Any]) -> None:
@@ -150,7 +139,7 @@ def _analyse(
     if plot:
         check_output(plot, Path(plot).suffix.lower(), force, paths)
     try:
-        with reading(analysis.reads) as progress:
+        with progress_bar(f"reading {analysis.reads}") as progress:
             results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
         result = analysis.combined(results)
     except NotApplicableError as error:

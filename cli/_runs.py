@@ -4,15 +4,18 @@ import json
 import os
 import shlex
 import sys
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from ._progress import progress_bar
 from ._tables import facts, print_tables
 from ._terminal import data, echo
 
 if TYPE_CHECKING:
     from idealgas.log.summary import Summary
+    from idealgas.run.simulate import Progress
 
 
 def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
@@ -25,12 +28,21 @@ def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bo
         from_start: whether this run wrote all events of the log.
     """
     from ._interrupt import EXIT_CODE, ctrl_c
-    from ._progress import progress_bar
 
     with ctrl_c(raises=False) as interrupted:
-        with progress_bar() as show:
+        with progress_bar("loading machine code, or compiling it once for these effects") as show:
             command = shlex.join(["idealgas", *sys.argv[1:]])
-            summary = simulate(command=command, on_progress=show, interrupted=interrupted)
+            started = time.perf_counter()
+            first: list[int] = []  # number of events at the first call, not 0 for a resumed run
+
+            def on_progress(progress: "Progress") -> None:
+                if not first:
+                    first.append(progress.events)
+                rate = (progress.events - first[0]) / (time.perf_counter() - started)
+                doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}"
+                show(progress.share, description=doing, notice=progress.notice)
+
+            summary = simulate(command=command, on_progress=on_progress, interrupted=interrupted)
         if as_json:
             data(json.dumps(summary.as_dict(), indent=2))
         else:

@@ -1,15 +1,15 @@
 """Command `idealgas accuracy`: errors and CPU time of the methods for a scene."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ._analysis import print_json
 from ._options import force_option, json_option, quiet_option, scene_argument
+from ._progress import progress_bar
 from ._tables import print_tables, shown
-from ._terminal import echo, terminal, written
+from ._terminal import echo, written
 
 if TYPE_CHECKING:
     from idealgas.accuracy.orbit import OrbitStudy, Survival
@@ -44,15 +44,20 @@ def accuracy(
     name = "orbit" if on_orbit else "accuracy"
     pictures = ("",) if on_orbit else ("", "-details")
     paths = [] if output is None else accuracy_report.outputs(output, name, pictures, force)
-    if on_orbit:
-        with _progress_bar() as progress:
+    with progress_bar("starting") as show_progress:
+
+        def progress(what: str, fraction: float) -> None:
+            show_progress(min(fraction, 1.0), description=what)
+
+        if on_orbit:
             orbit = study_orbit(gas, seed=scene.scene.seed, progress=progress)
+        else:
+            found = study_accuracy(scene, repeats, progress)
+    if on_orbit:
         result = orbit.as_dict()
         rows = [{key: value for key, value in row.items() if key != "times"} for row in result["survivals"]]
         figures, show = [accuracy_figure.orbit_figure(orbit)], lambda: _print_orbit(orbit)
     else:
-        with _progress_bar() as progress:
-            found = study_accuracy(scene, repeats, progress)
         result = accuracy_report.accuracy_dict(found)
         rows = [accuracy_report.flat_row(row, found) for row in found.rows]
         figures = [accuracy_figure.accuracy_figure(found), accuracy_figure.details_figure(found)]
@@ -67,18 +72,6 @@ def accuracy(
             echo(f"- {sentence}")
     for made in paths:
         written(made, err=as_json)
-
-
-@contextmanager
-def _progress_bar() -> Iterator[Callable[[str, float], None]]:
-    """Yield a function that shows on a terminal the current work and the fraction done."""
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
-
-    console = terminal(err=True)
-    columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}, elapsed"), TimeElapsedColumn())
-    with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task("starting", total=1.0)
-        yield lambda what, share: bar.update(task, description=what, completed=min(share, 1.0))
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:

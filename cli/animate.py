@@ -6,8 +6,9 @@ from typing import Any
 
 import click
 
-from ._analysis import log_argument, open_log, reading
+from ._analysis import log_argument, open_log
 from ._options import force_option, quiet_option
+from ._progress import progress_bar
 from ._terminal import echo
 
 
@@ -74,7 +75,7 @@ def animate(
         with open_log(path) as log:
             echo(f"{paint_frame(log, output, frame, **look)}: t = {frame:.6g}")
         return
-    with open_log(path) as log, reading("frames") as progress:
+    with open_log(path) as log, progress_bar("reading frames") as progress:
         film = make(
             log,
             output,

@@ -2,8 +2,9 @@
 
 import click
 
-from ._analysis import log_argument, open_log, reading
+from ._analysis import log_argument, open_log
 from ._options import force_option, quiet_option
+from ._progress import progress_bar
 from ._terminal import written
 
 
@@ -26,6 +27,6 @@ def report(path: str, output: str, start: float | None, force: bool) -> None:
     """
     from idealgas.report.page import write_report
 
-    with open_log(path) as log, reading("analyses") as progress:
+    with open_log(path) as log, progress_bar("reading analyses") as progress:
         write_report(log, output, start=start, force=force, on_step=progress)
     written(output)

@@ -1,8 +1,7 @@
 """Command `idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,8 +13,9 @@ from idealgas.files import check_output
 
 from ._analysis import print_json
 from ._options import force_option, json_option, plot_option, quiet_option
+from ._progress import progress_bar
 from ._tables import print_tables, shown
-from ._terminal import echo, terminal, written
+from ._terminal import echo, written
 
 if TYPE_CHECKING:
     from idealgas.sweep.plan import Sweep
@@ -100,10 +100,11 @@ def _run(
     from idealgas.sweep.results import result_rows, write_tables
     from idealgas.sweep.run import run_sweep
 
-    with _progress_bar() as show:
+    with progress_bar("sweep") as show:
 
         def on_progress(progress: "Progress") -> None:
-            show(progress)
+            done = progress.done + progress.failed
+            show(done, progress.total, f"{done}/{progress.total} points, {progress.failed} failed")
             if interrupted():  # a library may have swallowed the exception
                 raise KeyboardInterrupt
 
@@ -121,27 +122,6 @@ def _run(
         if outcome.ran:
             echo(f"time: {outcome.seconds:.3g} s{estimate}")
     return bool(outcome.failures)
-
-
-@contextmanager
-def _progress_bar() -> Iterator[Callable[["Progress"], None]]:
-    """Yield a function that shows on a terminal how many points have finished and failed."""
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
-
-    columns = (
-        BarColumn(), MofNCompleteColumn(), TextColumn("points, {task.fields[failed]} failed, remaining"),
-        TimeRemainingColumn(),
-    )  # fmt: skip
-    console = terminal(err=True)
-    with Bar(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task("sweep", total=None, failed=0)
-
-        def show(progress: "Progress") -> None:
-            done = progress.done + progress.failed
-            bar.update(task, total=progress.total, completed=done, failed=progress.failed)
-
-        yield show
 
 
 def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
