@@ -1,4 +1,4 @@
-"""Runs of shipped scenes."""
+"""Runs of scenes."""
 
 import pytest
 from helpers.support import ROOT
@@ -10,13 +10,15 @@ from idealgas.scene import load_scene
 
 @pytest.fixture
 def run(tmp_path):
-    """Run a shipped scene with overrides; its log, open until the test ends or the next run."""
+    """Run a scene, or a shipped one by its name, with overrides; its log, open until the test ends or the next run."""
     logs = []
 
-    def make(name, *overrides):
+    def make(scene, *overrides):
         for log in logs:
             log.close()
-        simulate(load_scene(ROOT / "configs" / f"{name}.toml", overrides), tmp_path / "run.h5", force=True)
+        if isinstance(scene, str):
+            scene = load_scene(ROOT / "configs" / f"{scene}.toml", overrides)
+        simulate(scene, tmp_path / "run.h5", force=True)
         logs.append(open_log(tmp_path / "run.h5"))
         return logs[-1]
 

@@ -9,8 +9,6 @@ import math
 import pytest
 
 from idealgas.analysis import registry
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 GAS = """
@@ -31,10 +29,9 @@ OWN = "[[1.1, 0.2], [-0.3, 1.6]]"
     ],
     ids=["two", "three", "two with momentum"],
 )
-def test_both_directions_have_one_pressure(tmp_path, overrides, reached):
-    simulate(parse_scene(GAS, overrides=overrides), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = registry.analyse(log, "pressure", start=1.0)
+def test_both_directions_have_one_pressure(run, overrides, reached):
+    log = run(parse_scene(GAS, overrides=overrides))
+    found = registry.analyse(log, "pressure", start=1.0)
     z = {route.name: route.compressibility_factor for route in found.routes}
     left, bottom = z["left wall"], z["bottom wall"]
     deviation = abs(left.value - bottom.value) / math.hypot(left.standard_error, bottom.standard_error)

@@ -92,20 +92,17 @@ def test_free_flights_and_waits(million, quantity):
         assert test.distance < 0.006 + 1.95 / math.sqrt(found.samples)  # 1.95/√n is Kolmogorov's bound for p = 0.001
 
 
-def test_small_gas_tells_fixed_energy_from_maxwell(tmp_path):
+def test_small_gas_tells_fixed_energy_from_maxwell(run):
     """Four discs have eight degrees of freedom, and no speed beyond √(2E/m)."""
-    path = tmp_path / "four.h5"
-    simulate(scene(4, 0.05, 40_000, seed=2), path)
-    with open_log(path) as log:
-        (found,) = histogram(log, "speed").distributions
+    log = run(scene(4, 0.05, 40_000, seed=2))
+    (found,) = histogram(log, "speed").distributions
     maxwell, finite = found.tests
     assert maxwell.p_value < 1e-6
     assert finite.p_value > LEAST_P
 
 
-def test_mixture(tmp_path):
+def test_mixture(run):
     """Equipartition from unequal temperatures, and the rates at which two masses and radii meet."""
-    path = tmp_path / "mixture.h5"
     text = """
         scene.seed = 3
         box.size = [10, 10]
@@ -122,9 +119,8 @@ def test_mixture(tmp_path):
         mass = 4.0
         temperature = 0.2
     """
-    simulate(parse_scene(text), path)
-    with open_log(path) as log:
-        temperatures, pressures = temperature(log), pressure(log)
+    log = run(parse_scene(text))
+    temperatures, pressures = temperature(log), pressure(log)
     for entry in temperatures.species[:-1]:
         for estimate in (entry.x, entry.y, entry.both):
             assert abs(estimate.deviation) < STANDARD_ERRORS, entry.species

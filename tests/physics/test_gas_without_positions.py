@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 from helpers.log_compare import differences
-from helpers.support import ROOT
 
 from idealgas import histogram
 from idealgas.analysis.info import info
@@ -20,7 +19,7 @@ from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
-from idealgas.scene import load_scene, parse_scene
+from idealgas.scene import parse_scene
 
 
 def equal_speeds(method, number, seed, collisions_per_disc, packing_fraction=0.01, keys=""):
@@ -92,8 +91,7 @@ def test_acceptance(log):
     assert found.acceptance.standard_error < 3e-3 * found.acceptance.value
 
 
-def test_equipartition_in_a_mixture(tmp_path):
-    path = tmp_path / "mixture.h5"
+def test_equipartition_in_a_mixture(run):
     text = """
         scene.seed = 3
         box.size = [10, 10]
@@ -113,9 +111,8 @@ def test_equipartition_in_a_mixture(tmp_path):
         mass = 4.0
         temperature = 0.2
     """
-    simulate(parse_scene(text), path)
-    with open_log(path) as log:
-        found, free_times = temperature(log), histogram(log, "free-time")
+    log = run(parse_scene(text))
+    found, free_times = temperature(log), histogram(log, "free-time")
     for entry in found.species[:-1]:
         for estimate in (entry.x, entry.y, entry.both):
             assert abs(estimate.deviation) < STANDARD_ERRORS, entry.species
@@ -125,14 +122,11 @@ def test_equipartition_in_a_mixture(tmp_path):
         assert entry.mean.standard_error < 0.01 * entry.mean.value
 
 
-def test_relaxation_agrees_with_the_event_driven_gas(tmp_path):
+def test_relaxation_agrees_with_the_event_driven_gas(run):
     """The fourth moment at φ = 0.01, against collisions and against time."""
     found = {}
     for method, keys in (("event_driven", ""), ("monte_carlo", "run.v_ref = 9.0")):
-        path = tmp_path / f"{method}.h5"
-        simulate(equal_speeds(method, 4000, 12, 20, keys=keys), path)
-        with open_log(path) as log:
-            found[method] = relaxation(log)
+        found[method] = relaxation(run(equal_speeds(method, 4000, 12, 20, keys=keys)))
     exact, random = found["event_driven"], found["monte_carlo"]
     for name in ("in_collisions", "in_time"):
         a, b = getattr(exact, name), getattr(random, name)
@@ -146,11 +140,10 @@ def test_relaxation_agrees_with_the_event_driven_gas(tmp_path):
     assert curves[0][0] < 1.2 < 1.5 < curves[0][3]
 
 
-def test_the_classic_run(tmp_path):
+def test_the_classic_run(run):
     """28 000 trials of 200 equal speeds: about 7 020 collisions, and speeds that nobody can tell from Maxwell's."""
-    simulate(load_scene(ROOT / "configs" / "novak-bortz.toml"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        tried, found = acceptance(log), relaxation(log)
+    log = run("novak-bortz")
+    tried, found = acceptance(log), relaxation(log)
     assert tried.number == 28_000
     assert tried.published == 6_552
     assert tried.at_start == pytest.approx(4 / math.pi / 5, rel=0.02)
@@ -168,17 +161,15 @@ def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
         assert not log.complete
 
 
-def test_a_default_reference_speed_is_enough_for_every_run(tmp_path):
+def test_a_default_reference_speed_is_enough_for_every_run(run, tmp_path):
     """It rises in all of these runs; the shares accepted are right together, and any break leaves the log as it is."""
     deviations = []
     for seed in range(40):
         path, part = tmp_path / "run.h5", tmp_path / "part.h5"
-        scene = equal_speeds("monte_carlo", 300, seed, 60)
-        simulate(scene, path, force=True)
-        with open_log(path) as log:
-            found = acceptance(log)
-            values = log.observables["v_ref"][1]
-            told = info(log)["run"]["v_ref"]
+        log = run(equal_speeds("monte_carlo", 300, seed, 60))
+        found = acceptance(log)
+        values = log.observables["v_ref"][1]
+        told = info(log)["run"]["v_ref"]
         assert told == {"start": values[0], "end": values[-1], "raises": len(found.raises) - 1}
         deviations.append(found.acceptance.deviation)
         assert values[0] == pytest.approx(5)
@@ -201,11 +192,9 @@ def test_a_large_gas_of_equal_speeds(tmp_path):
 
 
 @pytest.mark.parametrize(("number", "settled"), [(500, 5.0), (100, 25.0)])
-def test_the_time_to_settle_goes_with_the_density(number, settled, tmp_path):
+def test_the_time_to_settle_goes_with_the_density(number, settled, run):
     """About 5 units for 500 discs, about 25 for a fifth of them, within three standard errors of a single run."""
-    simulate(load_scene(ROOT / "configs" / f"relaxation-{number}.toml"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = relaxation(log)
+    found = relaxation(run(f"relaxation-{number}"))
     assert found.number == number
     assert abs(3 * found.in_time.value - settled) < 3 * 3 * found.in_time.standard_error
     assert found.in_time.standard_error < (0.2 if number == 500 else 0.4) * found.in_time.value

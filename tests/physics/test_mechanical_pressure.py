@@ -14,26 +14,15 @@ from idealgas import histogram
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
+
+SCENE = "scene.seed = 11\nbox.size = [10, 10]\nrun.until = 1"
 
 
 @pytest.fixture
-def run(tmp_path):
+def run_with(run):
     """The log of a scene with these overrides."""
-    logs = []
-
-    def make(*overrides):
-        simulate(
-            parse_scene("scene.seed = 11\nbox.size = [10, 10]\nrun.until = 1", overrides=overrides), tmp_path / "run.h5"
-        )
-        logs.append(open_log(tmp_path / "run.h5"))
-        return logs[-1]
-
-    yield make
-    for log in logs:
-        log.close()
+    return lambda *overrides: run(parse_scene(SCENE, overrides=overrides))
 
 
 def species(count, radius, more=""):
@@ -50,12 +39,12 @@ def agrees(found, expected, resolution):
     return abs(found.value - expected) < STANDARD_ERRORS * found.standard_error
 
 
-def test_between_walls_of_one_temperature(run):
+def test_between_walls_of_one_temperature(run_with):
     """P on each wall is N T Z/A with A the area that centres reach, within 4 s.e. of 3 %."""
     sides = "box={ size = [10, 10], " + ", ".join(
         f"{s} = {{ thermal = 1.5 }}" for s in ("left", "right", "bottom", "top")
     )
-    log = run(sides + " }", species(100, 0.02), "run.until=1200")
+    log = run_with(sides + " }", species(100, 0.02), "run.until=1200")
     result = pressure(log)
     assert result.temperature == 1.5
     z = 1 + 2 * math.pi * 0.02**2  # B2 of 100 discs in 100
@@ -63,9 +52,9 @@ def test_between_walls_of_one_temperature(run):
         assert agrees(route.pressure, 100 * 1.5 * z / (10 * 9.96), 0.03), route.name
 
 
-def test_the_floor_carries_the_column(run):
+def test_the_floor_carries_the_column(run_with):
     """P_bottom - P_top = N m g/L, and left and right are alike: momentum balance, whatever the density profile."""
-    log = run("box.size=[10, 15]", species(200, 0.1), "gravity.acceleration=[0, -0.3]", "run.until=1500")
+    log = run_with("box.size=[10, 15]", species(200, 0.1), "gravity.acceleration=[0, -0.3]", "run.until=1500")
     result = pressure(log)
     found, forces = walls(result), result.mechanical.forces[-1]
     below, above = found["bottom wall"], found["top wall"]
@@ -79,9 +68,9 @@ def test_the_floor_carries_the_column(run):
     assert agrees(found["left wall"], found["right wall"].value, 0.03)
 
 
-def test_a_piston_is_held_by_the_gas(run):
+def test_a_piston_is_held_by_the_gas(run_with):
     """Its mean force is P L, and in a dilute gas all other walls have the same pressure (Pascal)."""
-    log = run(
+    log = run_with(
         "box.size=[40, 10]", species(100, 0.005), "run.until=8000", "piston={ position = 10, mass = 5, pressure = 1 }"
     )
     found = walls(pressure(log))
@@ -92,9 +81,9 @@ def test_a_piston_is_held_by_the_gas(run):
     assert agrees(found["left wall"], 1.0, 0.003)  # it takes what the piston does not, and both are held together
 
 
-def test_a_gas_of_unknown_temperature_forgets_its_start(run):
+def test_a_gas_of_unknown_temperature_forgets_its_start(run_with):
     """It cools from 1 to what the floor gives and losses take; the force on all walls is its weight from then on."""
-    log = run(
+    log = run_with(
         "box={ size = [10, 10], bottom = { thermal = 1 } }",
         species(60, 0.3),
         "gravity.acceleration=[0, -0.3]",
@@ -107,9 +96,9 @@ def test_a_gas_of_unknown_temperature_forgets_its_start(run):
     assert agrees(force, -18, 0.01)
 
 
-def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run):
+def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run_with):
     """A plate in an ideal gas: N T/A on each face, with A the area that centres reach; no net force."""
-    log = run("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=1000")
+    log = run_with("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=1000")
     result = pressure(log)
     found = walls(result)
     assert set(found) > {"plate, left", "plate, right"}
@@ -121,20 +110,20 @@ def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run):
         assert abs(component.value) < STANDARD_ERRORS * component.standard_error
 
 
-def test_a_gate_counts_while_it_is_there(run):
+def test_a_gate_counts_while_it_is_there(run_with):
     """Gas on the left alone: the gate has N T/A of that side while it is there, and nothing on its right."""
     gate = "wall=[{ from = [5, 0], to = [5, 10], opens_at = 200, name = 'gate' }]"
-    log = run(gate, species(200, 0.002, ", region = [0, 0, 5, 10]"), "run.until=260")
+    log = run_with(gate, species(200, 0.002, ", region = [0, 0, 5, 10]"), "run.until=260")
     found = walls(pressure(log, start=10.0))
     assert agrees(found["gate, left"], 4.0 / (0.9996 * 0.9992), 0.03)
     assert found["gate, right"].value == 0.0
 
 
 @pytest.mark.slow
-def test_heat_flows_but_forces_balance(run):
+def test_heat_flows_but_forces_balance(run_with):
     """Between walls of two temperatures the steady gas presses alike on both."""
     sides = "left = { thermal = 2 }, right = { thermal = 1 }, top = 'periodic', bottom = 'periodic'"
-    log = run(f"box={{ size = [10, 10], {sides} }}", species(200, 0.05), "run.until=1500")
+    log = run_with(f"box={{ size = [10, 10], {sides} }}", species(200, 0.05), "run.until=1500")
     result = pressure(log, start=50.0)
     found = walls(result)
     assert set(found) == {"left wall", "right wall"}
@@ -142,13 +131,13 @@ def test_heat_flows_but_forces_balance(run):
     assert abs(result.mechanical.forces[-1].x.deviation) < STANDARD_ERRORS
 
 
-def test_a_slow_compression_follows_the_adiabat(run):
+def test_a_slow_compression_follows_the_adiabat(run_with):
     """P(A) of 200 nearly pointlike discs: N T₀ A₀/A² within 4 s.e. in 95 % of 64 bins, and chi² within its 4 s.d.
 
     The error of a bin has some five degrees of freedom; Student's t is then beyond 4 in 1 % of all bins, and 5 % are
     four standard deviations more.
     """
-    log = run("box.size=[20, 10]", species(200, 0.02), "piston={ velocity = -0.0125 }", "run.until=800")
+    log = run_with("box.size=[20, 10]", species(200, 0.02), "piston={ velocity = -0.0125 }", "run.until=800")
     course = evolution(log).pressure
     assert course.shown == ("right wall",)
     p, error = course.pressure["right wall"], course.error["right wall"]
@@ -171,13 +160,13 @@ def test_a_slow_compression_follows_the_adiabat(run):
     ],
     ids=["box", "piston"],
 )
-def test_error_bars_of_bins(overrides, wall, run):
+def test_error_bars_of_bins(overrides, wall, run_with):
     """Bins of a stationary gas scatter about their mean by their error bars: rms 0.8 to 1.2 of 64 bins.
 
     By chance alone the rms of 64 bins is within 1 ± 0.09 (one s.d.). On a piston bins are anticorrelated, as its
     momentum is bounded, and the error bars 6 % too large.
     """
-    course = evolution(run(species(100, 0.02), *overrides)).pressure
+    course = evolution(run_with(species(100, 0.02), *overrides)).pressure
     p, error = course.pressure[wall], course.error[wall]
     assert len(p) == 64
     some = slice(8, None)  # from equilibrium on
@@ -186,18 +175,18 @@ def test_error_bars_of_bins(overrides, wall, run):
 
 
 @pytest.mark.parametrize("quantity", ["speed", "vx", "vy", "energy"])
-def test_maxwell_holds_at_all_heights(quantity, run):
+def test_maxwell_holds_at_all_heights(quantity, run_with):
     """Under gravity velocities follow Maxwell and Boltzmann's law: Kolmogorov-Smirnov, p > 0.001."""
-    log = run("box.size=[10, 30]", species(400, 0.05), "gravity.acceleration=[0, -0.2]", "run.until=150")
+    log = run_with("box.size=[10, 30]", species(400, 0.05), "gravity.acceleration=[0, -0.2]", "run.until=150")
     (gas,) = histogram(log, quantity, start=30.0).distributions
     assert gas.samples > 3000
     assert [test.p_value > LEAST_P for test in gas.tests] == [True]
 
 
 @pytest.mark.slow
-def test_a_cooling_gas_has_no_law_and_would_fail_one(run):
+def test_a_cooling_gas_has_no_law_and_would_fail_one(run_with):
     """What would be tested: speeds of the whole cooling are not Maxwell's at any one temperature."""
-    log = run(species(200, 0.1), "restitution.normal=0.9", "run.until=60")
+    log = run_with(species(200, 0.1), "restitution.normal=0.9", "run.until=60")
     found = histogram(log)
     assert "loses energy" in found.no_law
     speeds = found.distributions[0]

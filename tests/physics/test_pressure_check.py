@@ -12,9 +12,7 @@ from helpers.support import ROOT
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.pressure.measure import PAIRS, WALLS, pressure
 from idealgas.errors import NotApplicableError
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import load_scene, parse_scene
+from idealgas.scene import parse_scene
 
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 LARGEST_ERROR = 0.004
@@ -22,15 +20,9 @@ LARGEST_ERROR = 0.004
 
 
 @pytest.fixture
-def measured(tmp_path):
+def measured(run):
     """Pressure of a run of a scene, given as text."""
-
-    def run(text, start=None):
-        simulate(parse_scene(text), tmp_path / "run.h5", force=True)
-        with open_log(tmp_path / "run.h5") as log:
-            return pressure(log, start)
-
-    return run
+    return lambda text: pressure(run(parse_scene(text)))
 
 
 def few(radius, sides="", events=60_000, velocities=((1.0, 0.3), (-0.4, 0.7))):
@@ -143,20 +135,19 @@ NO_THEORY = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").glob("*.toml")), ids=lambda path: path.stem)
-def test_shipped_scenes_pass_or_have_no_theory(path, tmp_path):
-    simulate(load_scene(path), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        if not log.has_events:
-            pytest.skip("has no events")
-        try:
-            agrees = pressure(log).check().agrees
-        except NotApplicableError:
-            agrees = None
+def test_shipped_scenes_pass_or_have_no_theory(path, run):
+    log = run(path.stem)
+    if not log.has_events:
+        pytest.skip("has no events")
+    try:
+        agrees = pressure(log).check().agrees
+    except NotApplicableError:
+        agrees = None
     assert agrees is (None if path.stem in NO_THEORY else True)
 
 
 @pytest.mark.parametrize(("collisions", "most"), [(1, 1.5), (5, 1.25), (20, 1.15)])
-def test_walls_in_short_windows(collisions, most, tmp_path):
+def test_walls_in_short_windows(collisions, most, run):
     """Windows of a few collisions a disc, of one run of 100 thin discs: hits of walls are few, and those of one disc.
 
     Deviations from theory of all walls in 80 windows scatter by their errors: an rms of 400 deviations, a quarter of
@@ -164,11 +155,10 @@ def test_walls_in_short_windows(collisions, most, tmp_path):
     a wall as fast as before make it larger: up to 1.5 in one, 1.25 in five.
     """
     text = gas(100, 0.05, 22 + 80 * collisions).replace(PERIODIC, "")
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        width = log.end_time * collisions / (22 + 80 * collisions)
-        start = 20 * log.end_time / (22 + 80 * collisions)
-        found = [pressure(log, start + k * width, start + (k + 1) * width).routes[:5] for k in range(80)]
+    log = run(parse_scene(text))
+    width = log.end_time * collisions / (22 + 80 * collisions)
+    start = 20 * log.end_time / (22 + 80 * collisions)
+    found = [pressure(log, start + k * width, start + (k + 1) * width).routes[:5] for k in range(80)]
     off = [route.compressibility_factor.deviation for routes in found for route in routes]
     known = np.array([one for one in off if one is not None])
     assert len(known) > 380
@@ -180,7 +170,7 @@ def test_walls_in_short_windows(collisions, most, tmp_path):
 @pytest.mark.parametrize(
     "log", ["", "events = false\npressure = true\nsnapshot_every = 0.1\n"], ids=["events", "samples"]
 )
-def test_thermostat_collisions_are_momentum_from_outside(log, tmp_path):
+def test_thermostat_collisions_are_momentum_from_outside(log, run):
     """What a heat bath gives makes the momentum of the gas no bounded store: 120 windows of one run of thin discs.
 
     The rms of deviation/error of the virial is within four times 1/√240, that of single walls, two and two alike,
@@ -188,9 +178,8 @@ def test_thermostat_collisions_are_momentum_from_outside(log, tmp_path):
     """
     gas = 'name = "gas"\ncount = 40\nradius = 0.005\ntemperature = 1\n[thermostat]\ntemperature = 1\nrate = 5\n'
     scene = f"[scene]\nseed = 7\n[box]\nsize = [1, 1]\n[[species]]\n{gas}[run]\nuntil = 1210\n[log]\n{log}"
-    simulate(parse_scene(scene), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as found:
-        windows = [pressure(found, 10 + 10.0 * k, 20 + 10.0 * k).routes for k in range(120)]
+    found = run(parse_scene(scene))
+    windows = [pressure(found, 10 + 10.0 * k, 20 + 10.0 * k).routes for k in range(120)]
     off = {route.name: [] for route in windows[0]}
     for routes in windows:
         for route in routes:

@@ -6,8 +6,6 @@ import pytest
 from idealgas.analysis.core.statistics import mean_of_replicates
 from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.transport.measure import transport
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 SIDE, NUMBER, SEEDS = 80.0, 2400, range(1, 7)
@@ -20,15 +18,14 @@ log.compression = "none"
 
 
 @pytest.mark.long
-def test_the_chain_agrees_with_itself(tmp_path):
+def test_the_chain_agrees_with_itself(run):
     """Speed within 2 % of the equation of state's, damping within 10 % of what the coefficients give, and 4 s.e."""
     waves, chain = [], []
     density = NUMBER / SIDE**2
     for seed in SEEDS:
-        simulate(parse_scene(GAS, overrides=[f"scene.seed={seed}"]), tmp_path / "run.h5", force=True)
-        with open_log(tmp_path / "run.h5") as log:
-            waves.append(sound(log).waves[0])
-            currents = transport(log, end=1500.0).collective.coefficients
+        log = run(parse_scene(GAS, overrides=[f"scene.seed={seed}"]))
+        waves.append(sound(log).waves[0])
+        currents = transport(log, end=1500.0).collective.coefficients
         found = {name: current.value.value for name, current in currents.items()}
         gamma = waves[-1].exponent.theory
         heat = found["thermal_conductivity"] / (density * gamma)

@@ -71,7 +71,7 @@ def test_enskog(tmp_path, phi, number, seeds, within):
 
 @pytest.mark.long
 @pytest.mark.parametrize(("mass", "radius"), [(1.0, 0.2), (4.0, 0.2), (10.0, 0.4)])
-def test_two_species_in_each_other(tmp_path, mass, radius):
+def test_two_species_in_each_other(run, mass, radius):
     """Two halves of 200 discs diffuse in each other as Enskog has it, at φ = 0.02 to 0.05; three standard errors."""
     sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
     found = []
@@ -86,9 +86,8 @@ def test_two_species_in_each_other(tmp_path, mass, radius):
             log.compression = "none"
             run.collisions_per_disc = 10_000
         """
-        simulate(parse_scene(scene), tmp_path / "run.h5", force=True)
-        with open_log(tmp_path / "run.h5") as log:
-            found.append(transport(log).collective.coefficients["mutual_diffusion"])
+        log = run(parse_scene(scene))
+        found.append(transport(log).collective.coefficients["mutual_diffusion"])
     ratio = over_theory([one.value for one in found])
     print(
         f"masses 1 : {mass:g}, radii 0.2 : {radius}: D₁₂ over Enskog's {ratio.value:.4f} ± {ratio.standard_error:.4f}"
