@@ -138,17 +138,14 @@ def test_ctrl_c_ends_the_run_with_a_readable_log(tmp_path):
         assert log.summary == {}
         assert sum(len(block.time) for block in log.chunks()) == len(log) > 0
         assert log.state_at(log.end_time).time == log.end_time
-    described = idealgas("info", "run.h5", folder=tmp_path)
-    assert (described.returncode, described.stderr) == (0, "")
-    assert "interrupted" in described.stdout
+    assert "interrupted" in output_of("info", "run.h5", folder=tmp_path)
 
 
 @pytest.mark.parametrize("arguments", [[], [CORNER], [CORNER, "-o"], [CORNER, "--fast", "-o", "x"]])
 def test_wrong_usage(arguments, tmp_path):
-    result = idealgas("run", *arguments, folder=tmp_path)
+    result = called("run", *arguments, folder=tmp_path)
     assert (result.returncode, result.stdout) == (2, "")
     assert "Error: " in result.stderr
-    assert "Traceback" not in result.stderr
     assert not list(tmp_path.iterdir())
 
 
@@ -165,7 +162,7 @@ run = { until = 3, method = "brute_force" }
     result = idealgas("run", "scene.toml", "-o", "run.h5", folder=tmp_path)
     assert result.returncode == 2
     assert result.stderr.splitlines()[-1].startswith("after t = 0.1: the clock stands still: a disc collides without")
-    assert idealgas("info", "run.h5", folder=tmp_path).returncode == 0
+    output_of("info", "run.h5", folder=tmp_path)
 
 
 WIDE = "box.size = [1, 10]\ndisc = [{ position = [0.5, 5], velocity = [1, 0.5], radius = 0.5 }]"

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from helpers.support import idealgas
+from helpers.support import called
 
 from idealgas import open_log, parse_scene, simulate
 
@@ -86,7 +86,7 @@ def test_a_pressed_piston_comes_to_rest_on_discs(tmp_path):
 @pytest.mark.parametrize("wall", ["restitution.wall=0", "restitution={ normal = 0, wall = 0 }"])
 def test_a_disc_that_sticks_ends_the_run_with_one_line(wall, tmp_path):
     (tmp_path / "scene.toml").write_text(FIVE)
-    done = idealgas("run", "scene.toml", "-o", "run.h5", "--set", wall, folder=tmp_path)
+    done = called("run", "scene.toml", "-o", "run.h5", "--set", wall, folder=tmp_path)
     assert done.returncode == 2
     assert "the clock stands still" in done.stderr.splitlines()[-1]
     with open_log(tmp_path / "run.h5") as log:
