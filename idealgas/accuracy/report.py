@@ -129,7 +129,7 @@ def _pressure(found: Accuracy) -> str:
         if exact.standard_error > 0
         else ""
     )
-    return own + price(found, "the pressure of the pairs", lambda row: row.z_pairs)
+    return (own + price(found, "the pressure of the pairs", lambda row: row.z_pairs)).rstrip()
 
 
 def _missed(found: Accuracy) -> str:

@@ -7,10 +7,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from idealgas.columns import Arrays, Column, Values
-from idealgas.effects.properties import ActiveEffect
+from idealgas.columns import SIDES, Arrays, Column, Values
+from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.state import Gas
-from idealgas.toml.issues import Issue
+from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Table
 
 State = TypeVar("State")
@@ -91,15 +91,16 @@ class EffectSpec(Generic[State]):
     Attributes:
         name: for people.
         field: of the bundle of all effects (`idealgas.effects.bundle`).
-        find: how the effect changes the gas; None if the scene does not have the effect.
-        make: the state at time 0; None if the gas does not need it.
+        properties: how its tables, or sides of the box, change the gas; None if they change nothing.
+        make: the state at time 0; called if the scene has the effect.
+        make_always: whether `make` is called for every scene; it then may return None.
         key: of its table in a scene; empty if it is only a kind of side, or a key of other tables.
         table: its table, a Pydantic model.
         many: whether the scene has an array of such tables.
         description: of the table, for the JSON Schema.
         side: a kind of side of the box: a word, or a table with one key.
         side_text: how such a side is written.
-        check: issues of its table that need the box or the walls; called if the box is valid.
+        check: issues of its table that need the box or the walls; called if the scene has the effect and a valid box.
         disc_state: the arrays of the state, one entry per disc, that a checkpoint stores; those that are columns of
             events are in event rows and snapshots too.
         constants: values per disc that the log stores once, at the start.
@@ -107,7 +108,6 @@ class EffectSpec(Generic[State]):
         restore: set the state to the values of a checkpoint, by name, except for arrays per disc.
         energy: the part of the energy that it adds.
         gives_energy: whether walls give energy to discs, or take some.
-        loses_energy: whether collisions lose energy.
         own_wall: number of a wall whose energy is part of the energy account, so that it gives none from outside.
         counted: total number of its own events.
         begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run.
@@ -119,10 +119,11 @@ class EffectSpec(Generic[State]):
 
     name: str
     field: str
-    find: Callable[[Tables], ActiveEffect | None]
+    properties: Callable[[Tables], Properties | None]
     make: Callable[[Tables, Start], State | None]
     samples: tuple[Sample, ...]
     sample_together: Sample | None = None
+    make_always: bool = False
     key: str = ""
     table: type[Table] | None = None
     many: bool = False
@@ -136,9 +137,21 @@ class EffectSpec(Generic[State]):
     restore: Callable[[State, Mapping[str, Any]], None] = lambda state, values: None
     energy: EnergyPart[State] | None = None
     gives_energy: Callable[[State], bool] = lambda state: False
-    loses_energy: Callable[[State], bool] = lambda state: False
     own_wall: Callable[[State], int | None] = lambda state: None
     counted: Column | None = None
     begin_epoch: Callable[[State, float], None] = lambda state, time: None
     end_epoch: Callable[[State, float], None] = lambda state, length: None
     next_change: Callable[[State, float], float] = lambda state, time: math.inf
+
+    def find(self, tables: Tables) -> ActiveEffect | None:
+        """The keys that turn the effect on and what it changes; None if the scene does not have it."""
+        keys: tuple[Key, ...]
+        if self.many:
+            keys = tuple((self.key, i) for i, table in enumerate(tables.own) if table is not None)
+        elif self.key:
+            keys = ((self.key,),) if tables.own is not None else ()
+        else:
+            sides = zip(SIDES, tables.sides, strict=False)
+            keys = tuple(("box", name) for name, side in sides if side == self.side or type(side) is self.side)
+        properties = self.properties(tables) if keys or not self.key else None
+        return None if properties is None else ActiveEffect(self.name, keys, properties)

@@ -7,13 +7,11 @@ from pydantic import Field
 
 from idealgas.columns import SIDES, Column, sides_across
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.physics import gravity as law
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Table, Vector
-
-NAME = "gravity"
 
 
 class Gravity(Table):
@@ -22,23 +20,18 @@ class Gravity(Table):
     acceleration: Vector = Field(description="[gx, gy], length/time²")
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
-    if tables.own is None:
-        return None
-    properties = Properties(
+def _properties(tables: Tables) -> Properties:
+    return Properties(
         uniform=False,
         straight_flight=False,
         allows_monte_carlo=False,
         drives_discs=True,
         acceleration=tables.own.acceleration,
     )
-    return ActiveEffect(NAME, (("gravity",),), properties)
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
     """Gravity without acceleration, or along periodic sides, where discs would accelerate indefinitely."""
-    if tables.own is None:
-        return
     key: Key = ("gravity", "acceleration")
     acceleration = tables.own.acceleration
     if not any(acceleration):
@@ -61,14 +54,15 @@ def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="gravity",
     field="gravity",
     key="gravity",
     table=Gravity,
     description="[gravity]: acceleration",
-    find=_find,
+    properties=_properties,
     check=_check,
     make=_make,
+    make_always=True,
     energy=EnergyPart("potential", _energy, Column("potential_energy", "f8", (), "energy")),
     samples=(Sample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),),
 )

@@ -6,23 +6,19 @@ import numpy as np
 
 from idealgas.columns import IMAGE, SIDES, sides_across
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.physics import periodic as law
 from idealgas.toml.issues import Issue, Key
-
-NAME = "periodic sides"
 
 PERIODIC = "periodic"
 """Word for a periodic side of the box."""
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
+def _properties(tables: Tables) -> Properties | None:
     sides = tables.sides
-    keys: tuple[Key, ...] = tuple(("box", name) for name, side in zip(SIDES, sides, strict=False) if side == PERIODIC)
-    if not keys:
+    if PERIODIC not in sides:
         return None
-    properties = Properties(allows_monte_carlo=False, periodic=(sides[0] == PERIODIC, sides[2] == PERIODIC))
-    return ActiveEffect(NAME, keys, properties)
+    return Properties(allows_monte_carlo=False, periodic=(sides[0] == PERIODIC, sides[2] == PERIODIC))
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
@@ -36,9 +32,7 @@ def _check(tables: Tables) -> Iterator[Issue]:
             yield Issue(keys, "periodic on one side only", f"{other} not periodic", f"{this} and {other} periodic")
 
 
-def _make(tables: Tables, start: Start) -> law.Periodic | None:
-    if PERIODIC not in tables.sides:
-        return None
+def _make(tables: Tables, start: Start) -> law.Periodic:
     crossings, image = (np.zeros((len(start.gas), *IMAGE.shape), IMAGE.dtype) for _ in range(2))
     return law.Periodic(tables.sides[0] == PERIODIC, tables.sides[2] == PERIODIC, *tables.size, crossings, image)
 
@@ -48,11 +42,11 @@ def _joined(*names: str) -> str:
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="periodic sides",
     field="periodic",
     side=PERIODIC,
     side_text=f'"{PERIODIC}"',
-    find=_find,
+    properties=_properties,
     check=_check,
     make=_make,
     disc_state=lambda periodic: {IMAGE: periodic.image},

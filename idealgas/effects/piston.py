@@ -8,13 +8,11 @@ from pydantic import Field
 
 from idealgas.columns import OUTWARD, SIDES, Column, Values, axis_of
 from idealgas.effects.effect import SAMPLE_DISCS, EffectSpec, EnergyPart, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.jit import aligned
 from idealgas.physics import piston as law
 from idealgas.state import Gas
 from idealgas.toml.table import NotNegative, Number, Positive, Rectangle, Table
-
-NAME = "piston"
 
 POSITION = Column("piston_position", "f8", (), "length")
 VELOCITY = Column("piston_velocity", "f8", (), "length/time")
@@ -72,11 +70,9 @@ class Piston(Table):
         return gravity[self.axis] - self.outward * (self.pressure or 0.0) * size[1 - self.axis] / self.mass
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
+def _properties(tables: Tables) -> Properties:
     piston = tables.own
-    if piston is None:
-        return None
-    properties = Properties(
+    return Properties(
         uniform=False,
         fixed_walls=False,
         allows_monte_carlo=False,
@@ -86,20 +82,14 @@ def _find(tables: Tables) -> ActiveEffect | None:
         driven=piston.mass is None and bool(piston.velocity),
         drives_discs=True,
     )
-    return ActiveEffect(NAME, (("piston",),), properties)
 
 
-def _make(tables: Tables, start: Start) -> np.ndarray | None:
+def _make(tables: Tables, start: Start) -> np.ndarray:
     table, size = tables.own, tables.size
-    if table is None:
-        return None
     piston = aligned(1, law.PISTON)
     record = piston[0]
-    record.x, record.v, record.a = (
-        table.start(size),
-        table.velocity or 0.0,
-        table.acceleration(size, start.acceleration),
-    )
+    record.x, record.v = table.start(size), table.velocity or 0.0
+    record.a = table.acceleration(size, start.acceleration)
     record.m, record.stop, record.side = table.mass or 0.0, table.stop(size), SIDES.index(table.side)
     return piston
 
@@ -130,12 +120,12 @@ def _sample(side: float) -> str:
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="piston",
     field="piston",
     key="piston",
     table=Piston,
     description="[piston]: side, position, velocity or mass and pressure",
-    find=_find,
+    properties=_properties,
     make=_make,
     values=_values,
     restore=_restore,

@@ -7,11 +7,9 @@ from pydantic import Field
 
 from idealgas.columns import Column
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.physics import restitution as law
 from idealgas.toml.table import Positive, Real, Table
-
-NAME = "restitution"
 
 LAST_COLLISION = Column("last_collision", "f8", (), "time")
 """Counted from the checkpoint."""
@@ -36,31 +34,27 @@ class Restitution(Table):
         return self.normal == 1 and self.wall == 1
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
-    if tables.own is None or tables.own.elastic:
+def _properties(tables: Tables) -> Properties | None:
+    if tables.own.elastic:
         return None
-    properties = Properties(uniform=False, elastic=False, dissipative=True)
-    return ActiveEffect(NAME, (("restitution",),), properties)
+    return Properties(uniform=False, elastic=False, dissipative=True)
 
 
-def _make(tables: Tables, start: Start) -> law.Restitution | None:
+def _make(tables: Tables, start: Start) -> law.Restitution:
     table = tables.own
-    if table is None or table.elastic:
-        return None
     return law.Restitution(table.normal, table.wall, table.contact_duration, np.full(len(start.gas), -math.inf))
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="restitution",
     field="restitution",
     key="restitution",
     table=Restitution,
     description="[restitution]: normal, wall, contact_duration",
-    find=_find,
+    properties=_properties,
     make=_make,
     disc_state=lambda restitution: {LAST_COLLISION: restitution.last},
     gives_energy=lambda restitution: restitution.wall < 1,
-    loses_energy=lambda restitution: True,
     end_epoch=law.end_epoch,
     samples=(Sample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),),
 )

@@ -7,12 +7,10 @@ from pydantic import Field
 
 from idealgas.columns import ANGULAR_VELOCITY, Arrays, Column
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.physics import rotation as law
 from idealgas.state import Gas, rng
 from idealgas.toml.table import Real, Table
-
-NAME = "rotation"
 
 INERTIA = Column("inertia", "f8", (), "mass length^2")
 
@@ -35,20 +33,15 @@ def loses(rotation: Rotation | None) -> bool:
     return rotation is not None and any(-1 < r < 1 for r in (rotation.roughness, rotation.wall_roughness))
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
+def _properties(tables: Tables) -> Properties:
     rotation = tables.own
-    if rotation is None:
-        return None
-    properties = Properties(
+    return Properties(
         dissipative=loses(rotation), inertia=rotation.inertia, has_rough_walls=rotation.wall_roughness > -1
     )
-    return ActiveEffect(NAME, (("rotation",),), properties)
 
 
-def _make(tables: Tables, start: Start) -> law.Rotation | None:
+def _make(tables: Tables, start: Start) -> law.Rotation:
     table, gas = tables.own, start.gas
-    if table is None:
-        return None
     omega = start.angular_velocity.copy()
     for k, name in enumerate(gas.species_names):
         ids = np.flatnonzero(gas.species == k)
@@ -69,17 +62,16 @@ def _energy(rotation: law.Rotation, _: Gas, __: float) -> float:
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="rotation",
     field="rotation",
     key="rotation",
     table=Rotation,
     description="[rotation]: inertia, roughness, wall_roughness",
-    find=_find,
+    properties=_properties,
     make=_make,
     disc_state=lambda rotation: {ANGULAR_VELOCITY: rotation.omega},
     constants=_constants,
     energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy"), inner=True),
     gives_energy=lambda rotation: abs(rotation.wall_roughness) < 1,
-    loses_energy=lambda rotation: abs(rotation.roughness) < 1 or abs(rotation.wall_roughness) < 1,
     samples=(Sample(tables=lambda side: "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"),),
 )

@@ -5,12 +5,9 @@ from pydantic import Field
 
 from idealgas.columns import SIDES, Column
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.physics import thermal as law
-from idealgas.toml.issues import Key
 from idealgas.toml.table import Positive, Table
-
-NAME = "thermal walls"
 
 EMISSIONS = Column("emissions", "u8")
 
@@ -27,21 +24,15 @@ def _temperatures(tables: Tables) -> tuple[float | None, ...]:
     return *of_sides, *(None if wall is None else wall.temperature for wall in tables.walls)
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
-    """Thermal walls, if there are any; segments stand for themselves among the keys of a scene."""
+def _properties(tables: Tables) -> Properties | None:
     temperatures = _temperatures(tables)
     if not any(temperatures):
         return None
-    of_sides = temperatures[: len(tables.sides)]
-    keys: tuple[Key, ...] = tuple(("box", name) for name, there in zip(SIDES, of_sides, strict=False) if there)
-    properties = Properties(allows_monte_carlo=False, has_rough_walls=True, emits=temperatures)
-    return ActiveEffect(NAME, keys, properties)
+    return Properties(allows_monte_carlo=False, has_rough_walls=True, emits=temperatures)
 
 
-def _make(tables: Tables, start: Start) -> law.Thermal | None:
+def _make(tables: Tables, start: Start) -> law.Thermal:
     temperature = np.array([-1.0 if t is None else t for t in _temperatures(tables)])
-    if not (temperature >= 0).any():
-        return None
     return law.Thermal(temperature, np.uint64(start.seed), np.zeros(len(start.gas), np.uint64))
 
 
@@ -50,11 +41,11 @@ def _hot(*names: str) -> str:
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="thermal walls",
     field="thermal",
     side=ThermalSide,
     side_text="{ thermal = T }",
-    find=_find,
+    properties=_properties,
     make=_make,
     disc_state=lambda thermal: {EMISSIONS: thermal.emissions},
     gives_energy=lambda thermal: True,

@@ -5,11 +5,9 @@ from pydantic import Field
 
 from idealgas.columns import Column
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.physics import thermostat as law
 from idealgas.toml.table import Positive, Table
-
-NAME = "thermostat"
 
 THERMOSTAT_COLLISIONS = Column("thermostat_collisions", "i8")
 NEXT_THERMOSTAT_COLLISION = Column("next_thermostat_collision", "f8", (), "time")
@@ -29,24 +27,18 @@ class Thermostat(Table):
     rate: Positive = Field(description="thermostat collisions of each disc per time > 0, 1/time")
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
-    thermostat = tables.own
-    if thermostat is None:
-        return None
-    properties = Properties(
+def _properties(tables: Tables) -> Properties:
+    return Properties(
         allows_monte_carlo=False,
         allows_time_steps=False,
         drives_discs=True,
-        bath=thermostat.temperature,
-        thermostat_rate=thermostat.rate,
+        bath=tables.own.temperature,
+        thermostat_rate=tables.own.rate,
     )
-    return ActiveEffect(NAME, (("thermostat",),), properties)
 
 
-def _make(tables: Tables, start: Start) -> law.Thermostat | None:
-    if (table := tables.own) is None:
-        return None
-    n = len(start.gas)
+def _make(tables: Tables, start: Start) -> law.Thermostat:
+    table, n = tables.own, len(start.gas)
     thermostat = law.Thermostat(
         table.temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64)
     )
@@ -55,12 +47,12 @@ def _make(tables: Tables, start: Start) -> law.Thermostat | None:
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="thermostat",
     field="thermostat",
     key="thermostat",
     table=Thermostat,
     description="[thermostat]: temperature, rate",
-    find=_find,
+    properties=_properties,
     make=_make,
     disc_state=lambda thermostat: {
         NEXT_THERMOSTAT_COLLISION: thermostat.time,

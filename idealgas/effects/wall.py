@@ -9,13 +9,11 @@ from pydantic import Field
 
 from idealgas.columns import SIDES
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
-from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.properties import Properties
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
 from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Positive, Table, Vector, Word
-
-NAME = "wall segments"
 
 SHORTEST = 1e-9
 """Length of a wall in units of the box's longer side: below, a double cannot tell its ends apart."""
@@ -60,19 +58,16 @@ class Wall(Table):
         return self.absence[0] > 0
 
 
-def _find(tables: Tables) -> ActiveEffect | None:
-    present = [(i, wall) for i, wall in enumerate(tables.own) if wall is not None]
-    if not present:
-        return None
-    removed = (opens if math.isinf(closes) else math.inf for opens, closes in (wall.absence for _, wall in present))
-    properties = Properties(
+def _properties(tables: Tables) -> Properties:
+    absences = (wall.absence for wall in tables.own if wall is not None)
+    removed = (opens if math.isinf(closes) else math.inf for opens, closes in absences)
+    return Properties(
         uniform=False,
         allows_monte_carlo=False,
         allows_time_steps=False,
         is_scalable=False,
         last_wall_removed_at=max(removed),
     )
-    return ActiveEffect(NAME, tuple(("wall", i) for i, _ in present), properties)
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
@@ -118,9 +113,7 @@ def make_segments(
     return segments
 
 
-def _make(tables: Tables, _: Start) -> np.recarray | None:
-    if not tables.own:
-        return None
+def _make(tables: Tables, _: Start) -> np.recarray:
     start, end, absence = (
         np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end", "absence")
     )
@@ -135,13 +128,13 @@ def _polygon(side: float, corners: int, height: float, radius: float = 4.0) -> s
 
 
 EFFECT = EffectSpec(
-    name=NAME,
+    name="wall segments",
     field="segments",
     key="wall",
     table=Wall,
     many=True,
     description="[[wall]] tables",
-    find=_find,
+    properties=_properties,
     check=_check,
     make=_make,
     begin_epoch=law.begin_epoch,

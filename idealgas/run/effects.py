@@ -26,10 +26,11 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     """Effects of a scene at time 0, with all sums; gas: its discs at time 0."""
     scene = scene.resolved()
     start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene))
-    effects = Effects(**{effect.field: effect.make(scene.tables_of(effect), start) for effect in EFFECTS})
+    tables = ((effect, scene.tables_of(effect)) for effect in EFFECTS)
+    states = {e.field: e.make(own, start) for e, own in tables if e.make_always or e.find(own) is not None}
+    effects = Effects(**states)
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
-    loses = any(effect.loses_energy(state) for effect, state in present(effects))
-    inner = inner_energy(effects, gas)
+    loses, inner = scene.properties.dissipative, inner_energy(effects, gas)
     return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
 
 

@@ -31,7 +31,7 @@ EFFECT = '''
     from pydantic import Field
 
     from idealgas.effects.effect import EffectSpec, Sample
-    from idealgas.effects.properties import ActiveEffect, Properties
+    from idealgas.effects.properties import Properties
     from idealgas.physics.tilt import tilted
     from idealgas.toml.issues import Issue
     from idealgas.toml.table import Number, Positive, Table
@@ -44,21 +44,18 @@ EFFECT = '''
         angle: Number = Field(default=0.0, description="radians")
 
 
-    def find(tables):
-        if tables.own is None:
-            return None
-        properties = Properties(
+    def properties(tables):
+        return Properties(
             uniform=False,
             straight_flight=False,
             allows_monte_carlo=False,
             drives_discs=True,
             acceleration=tilted(tables.own.strength, tables.own.angle),
         )
-        return ActiveEffect("tilt", (("tilt",),), properties)
 
 
     def check(tables):
-        if tables.own is not None and tables.own.strength > max(tables.size):
+        if tables.own.strength > max(tables.size):
             yield Issue((("tilt", "strength"),), "too strong", str(tables.own.strength), "at most the size of the box")
 
 
@@ -68,9 +65,9 @@ EFFECT = '''
         key="tilt",
         table=Tilt,
         description="[tilt]: strength, angle",
-        find=find,
+        properties=properties,
         check=check,
-        make=lambda tables, start: None if tables.own is None else tables.own.strength,
+        make=lambda tables, start: tables.own.strength,
         samples=(Sample(tables=lambda side: "[tilt]\\nstrength = 0.01\\n"),),
     )
 '''

@@ -48,7 +48,8 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from _contact_issues(scene)
     if box is not None:
         for effect in EFFECTS:
-            yield from effect.check(scene.tables_of(effect))
+            if effect.find(tables := scene.tables_of(effect)) is not None:
+                yield from effect.check(tables)
         yield from _discs_in_walls(scene)
     yield from piston.issues(scene, invalid)
     if not invalid:
