@@ -19,20 +19,20 @@ class Format(NamedTuple):
 
     Attributes:
         ending: file name extension.
-        write_frames: function that writes frames at some times and returns their number.
-        write_events: function that writes all events and returns the number of rows; None without events.
-        streams: whether these functions write to an open binary file from start to end; otherwise they take a path.
+        write: function that writes frames at some times, or with None all event rows, and returns their number.
+        has_events: whether the format has event rows.
+        streams: whether `write` takes an open binary file, which it writes from start to end, instead of a path.
     """
 
     ending: str
-    write_frames: Callable[[Log, Sequence[float], Any], int]
-    write_events: Callable[[Log, Any], int] | None = None
+    write: Callable[[Log, Any, Any], int]
+    has_events: bool = False
     streams: bool = False
 
 
 FORMATS = {
-    "csv": Format(".csv", tables.write_csv_frames, tables.write_csv_events, streams=True),
-    "parquet": Format(".parquet", tables.write_parquet_frames, tables.write_parquet_events),
+    "csv": Format(".csv", tables.write_csv, has_events=True, streams=True),
+    "parquet": Format(".parquet", tables.write_parquet, has_events=True),
     "gsd": Format(".gsd", frames.write_gsd),
     "extxyz": Format(".extxyz", frames.write_extxyz, streams=True),
     "h5md3d": Format(".h5md", frames.write_h5md3d),
@@ -64,18 +64,15 @@ def export(
         OutputError: if the file cannot be written.
     """
     made = FORMATS[kind]
-    if times is None and made.write_events is None:
+    if times is None and not made.has_events:
         raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
     if times is None and not log.has_events:
         raise LogError(f"{log.path}: has no events (made with log.events = false)")
-    if times is not None and kind not in ("csv", "parquet") and not log.has_positions:
+    if times is not None and not made.has_events and not log.has_positions:
         raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
     with _target(made, kind, output, force, log) as target:
         try:
-            if times is not None:
-                return made.write_frames(log, times, target)
-            assert made.write_events is not None
-            return made.write_events(log, target)
+            return made.write(log, times, target)
         except ModuleNotFoundError as error:
             raise LogError(f"{kind} needs {error.name}: pip install 'idealgas[export]'") from error
 

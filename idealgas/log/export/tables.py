@@ -1,7 +1,7 @@
 """CSV and Parquet, written block by block with pyarrow."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -11,56 +11,36 @@ from idealgas.log.dataframes import KIND_NAMES, Columns, flat_events, flat_state
 from idealgas.log.reader import Log
 
 
-def write_csv_events(log: Log, file: BinaryIO) -> int:
-    """Write CSV with a row for each event row."""
-    return _write(file, _event_columns(log), _csv_writer)
-
-
-def write_csv_frames(log: Log, times: Sequence[float], file: BinaryIO) -> int:
-    """Write CSV with a row for each disc and time."""
-    _write(file, _frame_columns(log, times), _csv_writer)
-    return len(times)
-
-
-def write_parquet_events(log: Log, path: Path) -> int:
-    """Write Parquet with a row for each event row."""
-    return _write(path, _event_columns(log), _parquet_writer)
-
-
-def write_parquet_frames(log: Log, times: Sequence[float], path: Path) -> int:
-    """Write Parquet with a row for each disc and time."""
-    _write(path, _frame_columns(log, times), _parquet_writer)
-    return len(times)
-
-
-def _csv_writer(file: BinaryIO, schema: Any) -> AbstractContextManager[Any]:
+def write_csv(log: Log, times: Sequence[float] | None, file: BinaryIO) -> int:
+    """Write CSV with a row for each disc and time, or for each event row."""
     from pyarrow import csv
 
-    return csv.CSVWriter(file, schema)
+    return _write(log, times, partial(csv.CSVWriter, file))
 
 
-def _parquet_writer(path: Path, schema: Any) -> AbstractContextManager[Any]:
+def write_parquet(log: Log, times: Sequence[float] | None, path: Path) -> int:
+    """Write Parquet with a row for each disc and time, or for each event row."""
     from pyarrow import parquet
 
-    return parquet.ParquetWriter(str(path), schema)
+    return _write(log, times, partial(parquet.ParquetWriter, str(path)))
 
 
-def _write(target: Path | BinaryIO, blocks: Iterable[Columns], make_writer: Callable[[Any, Any], Any]) -> int:
-    """Write blocks of rows, of which the first one, which may be empty, has the columns. Returns the number of rows."""
+def _write(log: Log, times: Sequence[float] | None, make_writer: Callable[[Any], Any]) -> int:
+    """Write blocks of rows, of which the first one, which may be empty, has the columns."""
     import pyarrow
 
     writer, rows = None, 0
     try:
-        for columns in blocks:
+        for columns in _event_columns(log) if times is None else _frame_columns(log, times):
             table = pyarrow.table(columns)
-            writer = writer or make_writer(target, table.schema)
+            writer = writer or make_writer(table.schema)
             if len(table):
                 writer.write_table(table)
             rows += len(table)
     finally:
         if writer is not None:
             writer.close()
-    return rows
+    return rows if times is None else len(times)
 
 
 def _event_columns(log: Log) -> Iterator[Columns]:

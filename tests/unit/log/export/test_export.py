@@ -225,7 +225,7 @@ def test_a_full_disk_leaves_nothing(log, kind, made, share, tmp_path):
 @pytest.mark.parametrize(("kind", "made"), FORMATS.items())
 def test_a_file_of_the_same_kind_is_replaced(log, kind, made, tmp_path):
     path = tmp_path / f"out{made.ending}"
-    for events in [False] * 2 + [True] * (2 * bool(made.write_events)):
+    for events in [False] * 2 + [True] * (2 * made.has_events):
         try:
             export(log, kind, path, None if events else [0.0], force=True)
         except LogError as error:
