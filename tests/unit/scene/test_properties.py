@@ -7,7 +7,6 @@ from itertools import combinations
 import pytest
 
 from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, axis_of, is_upper, opposite, side_ends, sides_across
-from idealgas.effects import EFFECT_NAMES
 from idealgas.effects.properties import Properties
 from idealgas.physics.disc_wall import inward_normal
 from idealgas.scene import parse_scene
@@ -28,6 +27,7 @@ TABLES = {
     "thermostat": ["thermostat={temperature=3, rate=0.5}"],
 }
 """Each effect alone, in a form that goes with the others."""
+NAMES = tuple(TABLES)
 
 
 def scene(*overrides, text=PLAIN):
@@ -46,11 +46,6 @@ def test_a_plain_box_has_all_defaults():
     assert properties() == Properties()
     assert scene().active_effects == ()
     assert scene().lacking("uniform", "isolated", "conserves_motion") == ()
-
-
-@pytest.mark.parametrize("name", EFFECT_NAMES)
-def test_an_effect_is_called_for_by_its_table(name):
-    assert scene(*TABLES[name]).effects == (name,)
 
 
 LACKING = {
@@ -79,24 +74,24 @@ BRINGING = {
 
 @pytest.mark.parametrize("name", LACKING)
 def test_what_effects_take_away(name):
-    """From a scene with all of them, each alone, and in the order of EFFECT_NAMES."""
-    everything = scene(*together(*EFFECT_NAMES))
-    assert everything.effects == EFFECT_NAMES
-    assert everything.lacking(name) == tuple(effect for effect in EFFECT_NAMES if effect in LACKING[name])
+    """From a scene with all of them, each alone, and in the order of NAMES."""
+    everything = scene(*together(*NAMES))
+    assert everything.effects == NAMES
+    assert everything.lacking(name) == tuple(effect for effect in NAMES if effect in LACKING[name])
     assert not getattr(everything.properties, name)
-    for effect in EFFECT_NAMES:
+    for effect in NAMES:
         assert getattr(properties(*TABLES[effect]), name) == (effect not in LACKING[name])
 
 
 @pytest.mark.parametrize("name", BRINGING)
 def test_what_effects_bring(name):
-    for effect in EFFECT_NAMES:
+    for effect in NAMES:
         assert getattr(properties(*TABLES[effect]), name) == (effect in BRINGING[name])
 
 
 def test_several_properties_at_once():
-    everything = scene(*together(*EFFECT_NAMES))
-    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in EFFECT_NAMES if e != "periodic sides")
+    everything = scene(*together(*NAMES))
+    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in NAMES if e != "periodic sides")
     assert everything.lacking() == ()
 
 
@@ -170,7 +165,7 @@ def test_along_which_axes_momentum_is_kept(overrides, kept):
     assert properties(*overrides).conserves_momentum == kept
 
 
-@pytest.mark.parametrize("names", list(combinations(EFFECT_NAMES, 2)))
+@pytest.mark.parametrize("names", list(combinations(NAMES, 2)))
 def test_effects_come_together(names):
     """Whichever comes first; the plain box adds nothing."""
     one, other = (properties(*TABLES[name]) for name in names)
