@@ -1,4 +1,4 @@
-"""Files of the program: where one may be written, how a whole one gets its name, who holds one, what may be read."""
+"""Output files: checks before writing, complete files appear under their names at once, one writer per file."""
 
 import errno
 import fcntl
@@ -17,7 +17,7 @@ from idealgas.errors import OutputError
 LOG = "log"
 """Kind of a log; the other kinds are the endings of their files."""
 
-HEAD = 4096  # bytes of a file that tell its kind
+HEAD = 4096  # bytes at the start of a file from which its type is recognised
 
 _HTML = rb'<!doctype html>.*<meta name="generator" content="idealgas'
 _HDF5 = rb"\x89HDF\r\n\x1a\n"
@@ -40,19 +40,19 @@ _BEGINNINGS = {
     "scene": rb"#:schema scene",
     "scene.schema.json": rb'\{\s*"\$defs"',
 }
-"""How files of each kind begin that this program has written."""
+"""First bytes of the files of each kind that this program writes."""
 
-PATIENCE = 0.5
-"""Seconds for which a reader that asks may be in a writer's way."""
+TIMEOUT = 0.5
+"""Time for which a writer waits for a lock, as readers hold it for a moment in `is_locked`, s."""
 
 Name = str | os.PathLike[str]
 
 
 def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> None:
-    """Raise OutputError where a file of a kind cannot be written.
+    """Raise OutputError if a file of a kind cannot be written.
 
-    A file that is there is replaced only with `force`, and only if it is empty or of the same kind, so that a slip of
-    the hand destroys nothing else. inputs: files that the output must not replace, by whatever name.
+    An existing file is only overwritten with `force`, and only if it is empty or of the same kind, so that a typing
+    error does not destroy other files. inputs: files that must not be overwritten.
     """
     path = Path(path)
     try:
@@ -86,7 +86,7 @@ def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool
 
 
 def is_of_kind(path: Path, kind: str) -> bool:
-    """Whether a file begins as those of a kind do that this program has written."""
+    """Whether a file begins like those of a kind that this program writes."""
     with open_regular(path) as file:
         return bool(re.match(_BEGINNINGS[kind], file.read(HEAD), re.DOTALL))
 
@@ -108,7 +108,7 @@ def _stat(path: Name) -> os.stat_result | None:
 
 @contextmanager
 def written(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> Iterator[Path]:
-    """As `replacing`, where `check_output` has nothing against it; it raises OutputError."""
+    """Check an output with `check_output`, then write it as in `replacing`. Raises OutputError."""
     check_output(path, kind, force, inputs)
     with replacing(Path(path), force) as part:
         yield part
@@ -116,9 +116,9 @@ def written(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] =
 
 @contextmanager
 def replacing(path: Path, force: bool = True) -> Iterator[Path]:
-    """Yield a path beside another: what is written there gets the other's name once it is whole.
+    """Yield a temporary path for writing; the complete file is then moved to `path`.
 
-    Raises OutputError where that fails; then nothing is left of it.
+    Raises OutputError on failure, after which no temporary file is left.
     """
     part = beside(path)
     try:
@@ -132,19 +132,19 @@ def replacing(path: Path, force: bool = True) -> Iterator[Path]:
 
 
 def beside(path: Path) -> Path:
-    """A hidden name in the folder where the file is, or that a link leads to, which no other process uses."""
+    """Unique hidden path in the folder of a file; of a symbolic link, in the folder of its target."""
     place = path.resolve()
     return place.with_name(f".{place.name}.{secrets.token_hex(4)}")
 
 
 def give_name(part: Path, path: Path, force: bool, fsync: bool = False) -> None:
-    """Let a file that is whole appear under its name, in one step.
+    """Move a complete file to its final path, atomically.
 
-    Without `force` never in place of another, and never in place of one that another process holds.
+    Existing files are only overwritten with `force`, and never if another process is writing them.
     """
     place = path.resolve()
     while not _named(part, place, force):
-        pass  # the file that was to be replaced has gone, or been replaced, in between
+        pass  # the existing file was removed or replaced meanwhile
     if fsync:
         folder = os.open(place.parent, os.O_RDONLY)
         os.fsync(folder)
@@ -180,7 +180,7 @@ def _named(part: Path, place: Path, force: bool) -> bool:
 
 
 def storage_error(path: Path, error: Exception) -> OutputError:
-    """Why a file could not be written; HDF5 tells the system's reason only within its text."""
+    """Error for a file that could not be written; HDF5 has the number of the system's error only in its text."""
     number = error.errno if isinstance(error, OSError) else None
     if number is None and (found := re.search(r"errno = (\d+)", str(error))):
         number = int(found[1])
@@ -193,11 +193,11 @@ def storage_error(path: Path, error: Exception) -> OutputError:
 
 
 def lock(file: int | IO) -> None:
-    """Hold a file open for writing as its only writer, as long as the process lives. Raises OSError if another does.
+    """Lock a file as its only writer until it is closed. Raises OSError if another process has locked it.
 
-    HDF5 gives up its own lock in SWMR mode. This one is advisory; readers only ask for a moment whether it is held.
+    HDF5 releases its own lock in SWMR mode. This one is advisory.
     """
-    deadline = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + TIMEOUT
     while True:
         try:
             return fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -208,7 +208,7 @@ def lock(file: int | IO) -> None:
 
 
 def is_locked(path: Path) -> bool:
-    """Whether another process holds the file with `lock`."""
+    """Whether another process has locked a file with `lock`."""
     try:
         with open_regular(path) as file:
             fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

@@ -1,4 +1,4 @@
-"""Scenes: the TOML model, its loader and its resolved dump."""
+"""Scenes: their tables, checks and loader."""
 
 from idealgas.effects.gravity import Gravity
 from idealgas.effects.piston import Piston

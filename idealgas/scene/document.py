@@ -64,7 +64,7 @@ class Document(_DiscsAndEffects):
     log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
 
     def tables_of(self, effect: EffectSpec[Any]) -> Tables:
-        """The part of the scene that an effect sees; of a scene that is being checked, the box may be missing."""
+        """Part of the scene for an effect; while a scene is checked, its box may be missing."""
         own = getattr(self, effect.key) if effect.key else None
         size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())
         return Tables(own, size, sides, self.wall)
@@ -91,7 +91,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def room(self) -> Rectangle:
-        """What the gas has at the start."""
+        """Space of the gas at the start, x0, y0, x1, y1, length."""
         return self.piston.room(self.box.size) if self.piston else (0.0, 0.0, *self.box.size)
 
     @property
@@ -126,7 +126,13 @@ class Document(_DiscsAndEffects):
         return [(s.radius, s.count) for s in self.species] + [(d.radius, 1) for d in self.disc]
 
     @property
-    def _covered_area(self) -> float:
+    def largest_radius(self) -> float:
+        """Largest radius of the discs, length; 0 without discs."""
+        return max((radius for radius, _ in self._radii), default=0.0)
+
+    @property
+    def covered_area(self) -> float:
+        """Area of all discs, length²."""
         return math.pi * math.fsum(r * r * count for r, count in self._radii)
 
     @property
@@ -137,8 +143,8 @@ class Document(_DiscsAndEffects):
         """
         n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
         size = right - left, top - bottom
-        phi = self._covered_area / (size[0] * size[1])
-        diameter, largest = self._sum_of_diameters / n, max(self._radii)[0]
+        phi = self.covered_area / (size[0] * size[1])
+        diameter, largest = self._sum_of_diameters / n, self.largest_radius
         encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n
         path = 1.0 / max(encounters, 1.0 / sum(size))
         speed = math.sqrt(self.mean_speed**2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
@@ -151,7 +157,7 @@ class Document(_DiscsAndEffects):
         if n < 2 or speed == 0:
             return math.inf
         area = self.box.size[0] * self.box.size[1]
-        return mean_trial_time(n, area, min(self._covered_area / area, DENSEST), 2 * max(self._radii)[0], speed)
+        return mean_trial_time(n, area, min(self.covered_area / area, DENSEST), 2 * self.largest_radius, speed)
 
     @property
     def expected_end(self) -> float:
@@ -190,7 +196,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def rest(self) -> RestingDisc | None:
-        """What discs do that have come to rest; None if no constant force presses them, or nothing is lost."""
+        """Motion of discs that have come to rest; None without a constant force or without energy loss."""
         force = math.hypot(*self.body_force)
         if self.restitution is None or self.restitution.elastic or force == 0:
             return None
@@ -201,5 +207,5 @@ class Document(_DiscsAndEffects):
 
     @property
     def collapse_risk(self) -> bool:
-        """Whether a constant force presses discs that roughness slows down, without bounds for their collisions."""
+        """Whether roughness slows discs down under a constant force, so that their collision rate may diverge."""
         return any(self.body_force) and loses(self.rotation) and self.thermostat is None

@@ -1,4 +1,4 @@
-"""Triangular lattices that go on through the periodic sides of a box, and how much the box strains them."""
+"""Triangular lattices in periodic boxes, and their strain."""
 
 from __future__ import annotations
 
@@ -6,15 +6,18 @@ import math
 from dataclasses import dataclass
 
 UNSTRAINED = math.sqrt(3) / 2
-"""Distance of rows over distance of neighbours in a row, in a lattice without strain."""
+"""Ratio of the distance of rows to that of neighbours in a row, without strain."""
 
 
 @dataclass(frozen=True)
 class TriangularLattice:
     """Triangular lattice in a periodic box; every other row is shifted by half a spacing, so their number is even.
 
-    size: width and height of the box, length. axis: along which the rows lie, 0 for x or 1 for y. columns: sites in a
-    row. rows: number of rows.
+    Attributes:
+        size: width and height of the box, length.
+        axis: direction of the rows, 0 for x or 1 for y.
+        columns: number of sites per row.
+        rows: number of rows.
     """
 
     size: tuple[float, float]
@@ -34,7 +37,7 @@ class TriangularLattice:
 
     @property
     def strain(self) -> float:
-        """Part by which the distance of rows is larger than in a lattice of equal sides; negative if it is smaller."""
+        """Relative excess of the distance of rows over that of an equilateral lattice."""
         return self.height / (UNSTRAINED * self.spacing) - 1
 
     @property
@@ -44,14 +47,14 @@ class TriangularLattice:
 
     @property
     def unstrained(self) -> tuple[float, float]:
-        """Width and height of the box of the same area and as many rows and columns in which there is no strain."""
+        """Width and height of the box of the same area in which the lattice has no strain."""
         along = math.sqrt(self.size[0] * self.size[1] * self.columns / (UNSTRAINED * self.rows))
         sides = along, UNSTRAINED * along * self.rows / self.columns
         return sides if self.axis == 0 else sides[::-1]
 
 
 def triangular_lattice(number: int, size: tuple[float, float]) -> TriangularLattice | None:
-    """Lattice with so many sites in a periodic box that is strained least; None if the number is odd.
+    """Lattice with a number of sites and the smallest strain in a periodic box; None if the number is odd.
 
     size: width and height of the box, length.
     """

@@ -1,4 +1,4 @@
-"""From TOML text to a checked `Scene`; everything that is wrong with a text is reported at once."""
+"""Loading of scenes from TOML; all errors of a file are reported together."""
 
 from collections.abc import Sequence
 from os import PathLike
@@ -16,22 +16,24 @@ from idealgas.toml.text import Origin, parse_document, read_text
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
     """Read a scene from a TOML file and check all of it.
 
-    overrides: values to put in place of those of the file, each as "table.key=value", such as "run.until=100" or
-    "species.0.count=500"; the value is written as in TOML, and nothing after the `=` takes the key away.
+    Args:
+        path: path of the file.
+        overrides: changes, each as "table.key=value" with a TOML value, such as "run.until=100" or
+            "species.0.count=500"; without a value, the key is removed.
 
-    Raises SceneError, with one line for everything that is wrong, if the file cannot be read or the scene cannot be
-    simulated.
+    Raises:
+        SceneError: with one line per error, if the file cannot be read or the scene is invalid.
     """
     return parse_scene(read_text(path), str(path), overrides)
 
 
 def parse_scene(text: str, name: str = "<scene>", overrides: Sequence[str] = ()) -> Scene:
-    """Make a scene from TOML text and check all of it, as `load_scene` does. name: stands for the file in messages."""
+    """Make a scene from TOML text and check all of it, as `load_scene` does. name: file name in messages."""
     text = text.replace("\r\n", "\n")
     document = parse_document(text, name)
     overridden: dict[Key, str] = {}
     errors = []
-    for override in [overrides] if isinstance(overrides, str) else overrides:  # a text is a sequence of texts too
+    for override in [overrides] if isinstance(overrides, str) else overrides:  # a single string
         try:
             overridden[apply(override, document)] = f"--set {override}"
         except OverrideError as error:
@@ -40,7 +42,7 @@ def parse_scene(text: str, name: str = "<scene>", overrides: Sequence[str] = ())
 
 
 def make_scene(document: dict[str, Any], origin: Origin, errors: Sequence[str] = ()) -> Scene:
-    """The scene of a document; SceneError if there is anything wrong with it, after `errors` found before."""
+    """Scene of a document. Raises SceneError for its errors and the given ones."""
     try:
         scene = Scene.model_validate(document).resolved().from_origin(origin)
     except ValidationError as error:
@@ -51,7 +53,7 @@ def make_scene(document: dict[str, Any], origin: Origin, errors: Sequence[str] =
 
 
 def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]:
-    """Faults inside tables and, over those tables that have none, between tables."""
+    """Errors in tables and, between the valid ones, of several tables."""
     findings = error.errors(include_url=False)
     if findings[0]["type"] == "issues":
         return findings[0]["ctx"]["issues"]
@@ -60,7 +62,7 @@ def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]
 
 
 def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
-    """The valid tables of a document, None for each of the others, and the names of the invalid ones."""
+    """Valid tables of a document, None for each invalid one, and the names of the invalid ones."""
     parts: dict[str, Any] = {}
     invalid = set()
     for name, field in Scene.model_fields.items():

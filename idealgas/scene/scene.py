@@ -1,4 +1,4 @@
-"""A scene: tables that go together, checked; and whether two scenes are one run, or one gas in different states."""
+"""Checked scenes, and digests by which equal runs and equal gases are recognised."""
 
 import hashlib
 import json
@@ -17,7 +17,7 @@ from idealgas.toml.text import Origin
 
 
 class Scene(Document):
-    """A whole scene, checked: its numbers are in range, its discs fit, its run has an end."""
+    """A checked scene: its numbers are in range, its discs fit into the box, and its run ends."""
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
@@ -28,7 +28,7 @@ class Scene(Document):
         return self
 
     def resolved(self) -> Self:
-        """This scene with all defaults filled in that follow from other tables."""
+        """This scene with the defaults that follow from other tables."""
         update: dict[str, Table] = {}
         if self.piston:
             update["piston"] = self.piston.model_copy(update={"position": self.piston.start(self.box.size)})
@@ -37,28 +37,28 @@ class Scene(Document):
         return self.model_copy(update=update)
 
     def from_origin(self, origin: Origin) -> Self:
-        """This scene, knowing where it was written."""
+        """This scene with its origin."""
         self._origin = origin
         return self
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """One line for each issue found after the scene was checked, with file and line of the key that it is about."""
+        """One line per issue that was found after the check of the scene, with file and line."""
         return self._origin.report(issues)
 
 
 STATE = ("temperature", "position", "velocity")
-"""Keys of tables other than those of discs that say how a gas starts or how hot it is, not which gas it is."""
+"""Keys, outside the tables of discs, of the initial state and temperature of a gas, which are not in `gas_digest`."""
 
 
 def draws_random_numbers(scene: Scene) -> bool:
-    """Whether the seed of a scene matters: to place its discs, to set them in motion, or during the run."""
+    """Whether a scene depends on its seed, in its initial state or during the run."""
     return bool(scene.species) or not scene.properties.isolated or scene.run.method == "monte_carlo"
 
 
 def run_digest(scene: Scene) -> str:
-    """Digest of all that determines the motion: two logs with the same digest hold the same run, or a part of it.
+    """Digest of everything that determines the motion: logs with the same digest have the same run, or parts of it.
 
-    The title, the way the run is computed, where it ends, and what it writes are left out.
+    The title, and the tables `run` and `log`, are left out.
     """
     tables = _tables(scene)
     seed = scene.scene.seed if draws_random_numbers(scene) else None
@@ -66,7 +66,7 @@ def run_digest(scene: Scene) -> str:
 
 
 def gas_digest(scene: Scene) -> str:
-    """Digest of the discs, the box and the effects of a scene, at whatever temperature and from whatever start."""
+    """Digest of the discs, the box and the effects of a scene, without its initial state and temperature."""
     left_out = ("scene", "run", "log", "species", "disc")
     rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
     box = {side: list(value) if isinstance(value, dict) else value for side, value in rest["box"].items()}
@@ -74,7 +74,7 @@ def gas_digest(scene: Scene) -> str:
 
 
 def gas_kind(scene: Scene) -> str:
-    """Kind of gas in words: sizes of discs, and effects, whatever the number of discs and the size of the box."""
+    """Description of a gas by the sizes of its discs and its effects, without their number and the size of the box."""
     sizes = _sizes(scene)
     smallest, number = min(sizes), sizes.total()
     parts = [f"{count / number:.3g} of radius {radius / smallest:.3g}" for radius, count in sorted(sizes.items())]
@@ -88,7 +88,7 @@ def is_mixture(scene: Scene) -> bool:
 
 
 def describe_gas(scene: Scene) -> str:
-    """Gas of a scene in words: number of discs, box and effects."""
+    """Description of the gas of a scene: number of discs, box, and kind of gas."""
     width, height = scene.box.size
     number = _discs(scene).total()
     return f"N = {number} in {width:.6g} × {height:.6g}, {gas_kind(scene)}"

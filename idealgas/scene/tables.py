@@ -1,4 +1,4 @@
-"""The tables of a scene that are not of an effect: box, discs, run and log."""
+"""Tables of a scene, except those of effects: box, discs, run and log."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -20,7 +20,7 @@ def _key_of(table: type[Table]) -> str:
 
 
 def _tag(side: Any) -> str:
-    """Which kind of side it is; a table without the key of any kind counts as the first, which then names all keys."""
+    """Kind of a side; a table without a known key counts as the first kind, whose error then lists all keys."""
     if not isinstance(side, (dict, *TABLES)):
         return "(word)"
     kinds = (
@@ -52,7 +52,7 @@ _SIDE = _description()
 
 
 class Box(Table):
-    """`[box]`: the corner at the lower left is the origin."""
+    """`[box]`: size and sides; the origin is the lower left corner."""
 
     size: Annotated[tuple[Positive, Positive], Field(strict=False)] = Field(description="[width, height], length")
     left: Side = Field(default="reflecting", description=_SIDE)
@@ -67,12 +67,12 @@ class Box(Table):
 
     @property
     def periodic(self) -> tuple[bool, bool]:
-        """Whether the sides across x, and across y, are periodic."""
+        """Whether the box is periodic along x, and along y."""
         return self.left == PERIODIC, self.bottom == PERIODIC
 
 
 class Species(Table):
-    """`[[species]]`: discs of one kind. Exactly one of temperature, speed and velocities says how they move."""
+    """`[[species]]`: discs of one kind, with exactly one of temperature, speed and velocities."""
 
     name: Word = Field(description="a word, its own for each species")
     count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1")
@@ -115,7 +115,7 @@ Threads = Annotated[
 
 
 class Header(Table):
-    """`[scene]`: what the scene is called, and the seed of its random numbers."""
+    """`[scene]`: title, and seed of the random numbers."""
 
     title: str = Field(default="", description="one line for people")
     seed: Whole = Field(
@@ -124,7 +124,7 @@ class Header(Table):
 
 
 class Run(Table):
-    """`[run]`: the method and when to stop, whichever of the stop rules comes first; at least one is given."""
+    """`[run]`: method, and stop rules, at least one; the run ends at the first that is met."""
 
     method: Literal["event_driven", "brute_force", "time_driven", "monte_carlo"] = Field(
         default="event_driven", description="how events are found"

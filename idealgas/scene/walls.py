@@ -1,4 +1,4 @@
-"""The walls of a scene by their numbers: 0 to 3 are the sides of the box, the segments follow."""
+"""Walls of a scene by number: the sides of the box are walls 0 to 3, the segments follow."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class NumberedWall(NamedTuple):
-    """name; start, end: length; action: what it does, in words; absence: times from and until which it is absent."""
+    """Wall with name, ends (length), description of its action, and times at which it opens and closes."""
 
     name: str
     start: Point
@@ -22,17 +22,17 @@ class NumberedWall(NamedTuple):
 
     @property
     def is_gate(self) -> bool:
-        """Whether it is absent at some time."""
+        """Whether the wall opens at some time."""
         return math.isfinite(self.absence[0])
 
     def is_there(self, time: float) -> bool:
-        """Whether it is there at a time."""
+        """Whether the wall is present at a time."""
         opens, closes = self.absence
         return not opens <= time < closes
 
 
 def number_walls(scene: Scene) -> list[NumberedWall]:
-    """All walls by number: the sides of the box are walls 0 to 3, the segments follow."""
+    """All walls in the order of their numbers."""
     emits = scene.properties.emits
     walls = []
     for name, ends, side, temperature in zip(SIDES, side_ends(scene.box.size), scene.box.sides, emits, strict=False):
@@ -46,5 +46,5 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
 
 
 def walls_inside(scene: Scene) -> list[NumberedWall]:
-    """The walls inside the box, in the order of the scene."""
+    """Walls inside the box, in the order of the scene."""
     return number_walls(scene)[FIRST_SEGMENT:]

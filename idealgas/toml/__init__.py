@@ -1,1 +1,1 @@
-"""A TOML text with its line numbers: reading, overrides, messages about what is wrong; it knows no gas."""
+"""Reading of TOML files with line numbers, overrides, and error messages; independent of scenes."""

@@ -1,4 +1,4 @@
-"""Values and whole scenes as TOML text."""
+"""Writing of values and scenes as TOML."""
 
 import json
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 
 def dump_document(document: BaseModel) -> str:
-    """The resolved scene, all defaults shown: TOML that loads back to an equal scene, every float to the last bit."""
+    """TOML text of a scene with all defaults. Loading it gives an equal scene, with the same bits of every float."""
     tables = []
     for name, value in document.model_dump(by_alias=True, exclude_none=True).items():
         if isinstance(value, Mapping):
@@ -19,7 +19,7 @@ def dump_document(document: BaseModel) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """One value on one line."""
+    """TOML text of a value, on one line."""
     match value:
         case bool():
             return str(value).lower()

@@ -1,4 +1,4 @@
-"""What is wrong with a document: issues and pydantic's errors, as `table.key: what is wrong (got …; allowed …)`."""
+"""Errors of a document, also those of pydantic, as `table.key: what is wrong (got …; allowed …)`."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
@@ -33,7 +33,7 @@ _WORDS = {
 
 
 class Issue(NamedTuple):
-    """Something wrong: the key to show first, then the others that have a part in it."""
+    """An error of a document: the key to show, then the other keys that are involved."""
 
     keys: tuple[Key, ...]
     wrong: str
@@ -45,12 +45,12 @@ class Issue(NamedTuple):
 
 
 def dotted(key: Key) -> str:
-    """A key as it is written in messages and in --set."""
+    """Key as in messages and `--set`."""
     return ".".join(map(str, key))
 
 
 class SceneError(UserError, ValueError):
-    """A scene that cannot be simulated; `errors` holds one line for each thing that is wrong."""
+    """A scene is invalid; `errors` has one line per error."""
 
     def __init__(self, errors: Sequence[str]) -> None:
         super().__init__("\n".join(errors))
@@ -58,7 +58,7 @@ class SceneError(UserError, ValueError):
 
 
 def as_issues(findings: Iterable[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
-    """Pydantic's findings about a document of a model in the project's words."""
+    """Issues from the errors that pydantic found in a document of a model."""
     return [_issue(finding, model) for finding in findings]
 
 
@@ -88,24 +88,24 @@ def _shown(value: Any, longest: int = 60) -> str:
 
 
 def _described(key: Key, model: type[BaseModel]) -> str:
-    """What the model says of a key, or of the array that the key is an element of."""
+    """Description of a key in the model, or of the array that contains it."""
     while isinstance(key[-1], int):
         key = key[:-1]
     return _keys(table_at(key[:-1], model))[str(key[-1])].description or ""
 
 
 def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
-    """Fields of a table by the keys that set them."""
+    """Fields of a table by key."""
     return {field.alias or name: field for name, field in table.model_fields.items()}
 
 
 def table_at(key: Key, model: type[BaseModel]) -> type[BaseModel]:
-    """The model of the table at a key; the first where there are several kinds."""
+    """Model of the table at a key; the first of several kinds."""
     return _tables_at(key, model)[0]
 
 
 def _tables_at(key: Key, model: type[BaseModel]) -> list[type[BaseModel]]:
-    """The models of all kinds of tables that may stand at a key."""
+    """Models of all kinds of tables that are allowed at a key."""
     models = [model]
     for name in key:
         if isinstance(name, str):

@@ -7,14 +7,14 @@ from idealgas.toml.issues import Key
 
 
 class OverrideError(ValueError):
-    """An override that names nothing in the document."""
+    """An override does not fit the document."""
 
 
 def apply(override: str, document: dict[str, Any]) -> Key:
-    """Set, or with an empty value take away, one key of the document; return the key.
+    """Set one key of a document, or remove it if the value is empty; return the key.
 
-    A table of an array is named by index or name (`species.0.count=10`, `species.argon.count=10`), or left unnamed if
-    it is the only one (`species.count=10`).
+    A table in an array is chosen by index or name (`species.0.count=10`, `species.argon.count=10`), which may be left
+    out if it is the only one (`species.count=10`).
     """
     path, equals, text = override.partition("=")
     names = [name.strip() for name in path.split(".")]
@@ -61,7 +61,7 @@ def _choices(node: Any) -> str:
 
 
 def _value(text: str) -> Any:
-    """A TOML value, or else the bare text."""
+    """Value of a TOML text; the text itself if it is not TOML."""
     try:
         document = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

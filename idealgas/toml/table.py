@@ -1,4 +1,4 @@
-"""What all tables of a scene share: how strict they are, the kinds of numbers in them, and their JSON Schema."""
+"""Base class of all tables of a scene, types of their numbers, and their JSON Schema."""
 
 import json
 from typing import Annotated, Any
@@ -10,11 +10,11 @@ SMALLEST, LARGEST = 1e-60, 1e30
 """Bounds on the size of every number but 0, so that no product of a few of them underflows or overflows."""
 
 SCHEMA_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
-"""Keywords of JSON Schema for the bounds that pydantic writes under its own names behind a validator."""
+"""JSON Schema keywords for bounds, which pydantic writes under its own names if the type has a validator."""
 
 
 def _not_tiny(number: float) -> float:
-    """The number, if it is 0 or not too small."""
+    """Refuse a number that is too close to 0."""
     if 0 < abs(number) < SMALLEST:
         raise PydanticCustomError("too_close_to_0", "", {"smallest": SMALLEST})
     return number
@@ -24,7 +24,7 @@ Real = Annotated[float, AfterValidator(_not_tiny)]
 
 
 def _whole(number: object) -> object:
-    """A number without a fraction as a whole one, however it is written, as 1e6 is; anything else as it is."""
+    """Convert a float without a fraction, such as 1e6, to an int; other values are returned unchanged."""
     return int(number) if isinstance(number, float) and number.is_integer() else number
 
 
@@ -39,13 +39,13 @@ Rectangle = tuple[float, float, float, float]
 
 
 class Table(BaseModel):
-    """A TOML table: no key beyond its own, no value of another type, nothing changed later."""
+    """A TOML table: immutable, without unknown keys, with strict types."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 def schema_text(model: type[BaseModel]) -> str:
-    """JSON Schema of the documents of a model, as text; what is asked across tables is not in it."""
+    """JSON Schema of the documents of a model, as text, without the rules between tables."""
     return json.dumps(_standard(model.model_json_schema(by_alias=True)), indent=1, ensure_ascii=False) + "\n"
 
 

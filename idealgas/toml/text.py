@@ -1,4 +1,4 @@
-"""A TOML text: reading it, and the line of each of its keys, which `tomllib` does not report."""
+"""Reading of TOML files, and the line number of each key, which `tomllib` does not report."""
 
 import re
 import tomllib
@@ -16,7 +16,7 @@ from idealgas.toml.issues import Issue, Key, SceneError
 
 
 def read_text(path: str | PathLike[str]) -> str:
-    """Text of a TOML file. SceneError if there is none."""
+    """Text of a TOML file. Raises SceneError if it cannot be read."""
     try:
         raw = Path(path).read_bytes()
         return raw.decode()
@@ -31,7 +31,7 @@ def read_text(path: str | PathLike[str]) -> str:
 
 
 def parse_document(text: str, name: str) -> dict[str, Any]:
-    """A TOML text as plain values. SceneError if it is not TOML."""
+    """Values of a TOML text. Raises SceneError if it is not TOML."""
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -49,12 +49,12 @@ _VALUE = re.compile(r'''"""(?:[^\\]|\\.)*?"{3,5}|\'{3}.*?\'{3,5}|"(?:[^"\\]|\\.)
 
 
 def key_lines(text: str) -> dict[Key, int]:
-    """Line of every table, key and array element of a text that `tomllib` accepts."""
+    """Line number of every table, key and array element of a valid TOML text."""
     return _Scanner(text).lines
 
 
 class _Scanner:
-    """Walks over valid TOML; what values mean is left to `tomllib`."""
+    """Finds the keys of a valid TOML text; values are only skipped."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -141,9 +141,13 @@ class _Scanner:
 
 @dataclass
 class Origin:
-    """A text, its file's name, the places of overrides by the key they set, and the key of the scene in the text.
+    """Where a document was written. All origins are equal, so that they do not matter when scenes are compared.
 
-    All origins are equal, as they are no part of a scene.
+    Attributes:
+        text: TOML text.
+        name: name of its file.
+        overridden: overrides as written, by the key that they set.
+        above: key of the scene within the text.
     """
 
     text: str = field(default="", compare=False)
@@ -152,7 +156,7 @@ class Origin:
     above: Key = field(default=(), compare=False)
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """One line for each issue, in the order of the file's lines; issues of overrides come last."""
+        """One line per issue, in the order of the file; issues of overrides come last."""
         lines = []
         for issue in issues:
             blamed = next((o for key in issue.keys if (o := self._override(key)) is not None), None)
@@ -162,7 +166,7 @@ class Origin:
         return [text for *_, text in sorted(lines, key=lambda item: item[:2])]
 
     def _override(self, key: Key) -> str | None:
-        """Place of the override that sets the key, or something in a table around it that the text does not have."""
+        """Override that sets the key, or another key of a table that is missing in the text."""
         tables = [key[:n] for n in range(1, len(key) + 1)]
         absent = [table for table in tables if (*self.above, *table) not in self._lines][:1]
         set_by = self.overridden.items()
@@ -171,7 +175,7 @@ class Origin:
         return next(chain(exact, around), None)
 
     def line(self, key: Key) -> int:
-        """Line of the key or of the closest table above it; the first line if there is none."""
+        """Line number of the key or of the closest table above it, by default the first line."""
         key = (*self.above, *key)
         return next((self._lines[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self._lines), 1)
 

@@ -1,4 +1,4 @@
-"""Everything that is wrong between the tables of a scene."""
+"""Checks between the tables of a scene."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 
 MAX_THERMOSTAT_COLLISIONS = 1e10
-"""Bound on the thermostat collisions of a run: hours."""
+"""Largest number of thermostat collisions of a run, which takes hours."""
 
 
 def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator[Issue]:
-    """Faults between the tables of a scene, and between the keys of one.
+    """Errors between the tables of a scene, and between the keys of a table.
 
-    Tables named in `invalid`, and None in an array of tables, have issues of their own and are left out.
+    Tables in `invalid`, and None in an array of tables, have other errors and are left out.
     """
     kinds, discs = _valid(scene.species), _valid(scene.disc)
     box = None if "box" in invalid else scene.box
@@ -66,12 +66,12 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
 
 
 def _valid(items: Sequence[Item | None]) -> list[tuple[int, Item]]:
-    """The valid tables of an array, with their numbers; None stands in the place of the others."""
+    """Valid tables of an array with their indices; None marks the others."""
     return [(i, item) for i, item in enumerate(items) if item is not None]
 
 
 def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Spins without rotation, and rotation without effect on any spin."""
+    """Check spins without rotation, and rotation without effect on any spin."""
     rotation = scene.rotation
     for table, items in (("species", scene.species), ("disc", scene.disc)):
         for i, item in _valid(items):
@@ -89,14 +89,14 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 
 def _contact_issues(scene: Document) -> Iterator[Issue]:
-    """A contact duration that has no default."""
+    """Check for a contact duration without default."""
     if (scene.species or scene.disc) and math.isinf(scene.contact_duration):
         keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
         yield Issue(keys, "no default where nothing moves at the start", "nothing", "a time > 0")
 
 
 def _discs_in_walls(scene: Document) -> Iterator[Issue]:
-    """Explicit discs that overlap a wall that is present at the start."""
+    """Check explicit discs that overlap a wall present at the start."""
     box = scene.box
     walls = [(i, wall) for i, wall in _valid(scene.wall) if not list(wall_issues(box.size, i, wall))]
     for k, d in _valid(scene.disc):
@@ -108,7 +108,7 @@ def _discs_in_walls(scene: Document) -> Iterator[Issue]:
 
 
 def _thermostat_issues(scene: Document) -> Iterator[Issue]:
-    """A thermostat whose collisions take too long, in a run with an end in time."""
+    """Check the number of thermostat collisions."""
     thermostat, until = scene.thermostat, scene.run.until
     if thermostat is None or until is None:
         return

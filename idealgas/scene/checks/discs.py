@@ -1,4 +1,4 @@
-"""Whether the discs fit into the box, and on their lattices, and move; nothing here makes an array."""
+"""Checks of the discs: their motion, overlaps, and room in the box and on lattices."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ if TYPE_CHECKING:
 
 
 RANDOM_PACKING = 0.65
-"""Packing fraction up to which discs are placed at random; see `idealgas.initial.placement`."""
+"""Largest packing fraction of random placement; see `idealgas.initial.placement`."""
 
 RESOLUTION = 1e-9
-"""Smallest radius in units of the box's longer side: below, a double cannot tell contact from gap."""
+"""Smallest radius in units of the longer side of the box, so that floats distinguish contact from gap."""
 
 MOST_OVERLAPS = 1_000
-"""Number of overlaps that are reported."""
+"""Largest number of overlaps that are reported."""
 
 PERIODIC_ONLY = ("triangular", "compressed")
-"""Placements that take the whole of a periodic box."""
+"""Placements that need a whole periodic box."""
 
 NARROWEST = 5.0
-"""Smallest width of a box in which discs are compressed, in radii: a disc must not meet two images of another one."""
+"""Smallest width of a box for compression, in radii, so that no disc meets two images of another one."""
 
 Point = tuple[float, float]
 
 
 def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
-    """Species whose names are taken, or that do not say in exactly one way how their discs move."""
+    """Check that the names of species are unique, and that each has exactly one way of motion."""
     first: dict[str, int] = {}
     for i, s in kinds:
         if s.name == "disc":
@@ -57,7 +57,7 @@ def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
 
 
 def overlap_issues(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Issue]:
-    """Explicit discs that overlap an earlier one, be it through periodic sides; the first MOST_OVERLAPS of them."""
+    """Report explicit discs that overlap, also through periodic sides, at most MOST_OVERLAPS pairs."""
     placed = [(i, d.radius, centre) for i, d in discs for centre in images(d.position, d.radius, box)]
     found: dict[tuple[int, int], float] = {}
     for a, b, distance in overlaps([(centre, radius) for _, radius, centre in placed]):
@@ -80,7 +80,7 @@ def room_issues(
     discs: list[tuple[int, Disc]],
     invalid: AbstractSet[str],
 ) -> Iterator[Issue]:
-    """Discs that are outside the space the gas has, too large or too small for it, or too many."""
+    """Check that the discs lie in the space of the gas, and are not too large, too small or too many."""
     outside = [*_regions_outside(box, space, kinds), *_discs_outside(box, space, discs)]
     yield from outside
     smallest = RESOLUTION * max(box.size)
@@ -141,7 +141,7 @@ def _name_of(box: Box, space: Rectangle) -> str:
 def _crowding(
     whole: Rectangle, name: str, kinds: list[tuple[int, Species]], discs: list[tuple[int, Disc]]
 ) -> Iterator[Issue]:
-    """More discs than a region, or the whole space of that name, can hold."""
+    """Check the packing fractions of the regions and of the whole space."""
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
         covered = math.pi * sum(s.count * s.radius**2 for _, s in here)
@@ -163,7 +163,7 @@ def _crowding(
 
 
 def placement_issues(scene: Document, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
-    """Species on a triangular lattice or compressed whose box does not suit, and lattices without room."""
+    """Check the boxes of compressed discs and of triangular lattices."""
     some = [(i, s) for i, s in kinds if s.placement in PERIODIC_ONLY]
     for i, s in some:
         keys: tuple[Key, ...] = (("species", i, "placement"),)
@@ -182,7 +182,7 @@ def placement_issues(scene: Document, kinds: list[tuple[int, Species]]) -> Itera
 
 
 def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> Iterator[Issue]:
-    """Compression of a species beside what does not move, or in a box that is too narrow."""
+    """Check for compression in a narrow box, or next to discs and walls that are not compressed."""
     key: Key = ("species", i, "placement")
     others = [f"species.{k}.placement = {s.placement}" for k, s in kinds if s.placement != "compressed"]
     others += ["[[disc]]"] if scene.disc else []
@@ -197,7 +197,7 @@ def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> It
 
 
 def _on_lattice(size: tuple[float, float], kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
-    """Discs that do not fit on their triangular lattice."""
+    """Check that all discs fit on their triangular lattice."""
     number, first = sum(s.count for _, s in kinds), kinds[0][0]
     keys: tuple[Key, ...] = (("species", first, "count"), ("species", first, "placement"), ("box", "size"))
     lattice = triangular_lattice(number, size)
@@ -212,7 +212,7 @@ def _on_lattice(size: tuple[float, float], kinds: list[tuple[int, Species]]) -> 
 
 
 def images(centre: Point, radius: float, box: Box | None) -> Iterator[Point]:
-    """A disc's centre, and those of its images that reach into the box through periodic sides."""
+    """Centre of a disc, and those of its images that reach into a periodic box."""
     shifts = []
     for axis in range(2):
         here = [0.0]
@@ -257,7 +257,7 @@ def _cell(centre: Point, size: int) -> tuple[int, int]:
 
 
 def distance_to_wall(point: Point, wall: Wall) -> float:
-    """Distance of a point from the nearest point of a wall of some length."""
+    """Distance of a point from a wall."""
     along = (wall.end[0] - wall.start[0], wall.end[1] - wall.start[1])
     x, y = point[0] - wall.start[0], point[1] - wall.start[1]
     share = min(max((x * along[0] + y * along[1]) / (along[0] ** 2 + along[1] ** 2), 0.0), 1.0)

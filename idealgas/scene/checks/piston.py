@@ -1,4 +1,4 @@
-"""Pistons that go where they must not, or crush the gas."""
+"""Checks of the piston: its sides, position and motion, and walls in its range."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Faults of a piston in a scene whose tables are valid."""
+    """Check the piston of a scene whose tables are valid."""
     piston = scene.piston
     if piston is None or invalid:
         return
@@ -49,7 +49,7 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 
 def _facing(piston: Piston) -> str:
-    """Name of the side of the box that it faces."""
+    """Name of the side opposite the piston."""
     return SIDES[opposite(SIDES.index(piston.side))]
 
 
@@ -62,19 +62,17 @@ def _motion_issues(piston: Piston) -> Iterator[Issue]:
 
 
 def _depth(scene: Document, piston: Piston, position: float) -> float:
-    """Length that a position leaves to the gas."""
+    """Length of the gas at a piston position."""
     return position if piston.outward > 0 else scene.box.size[piston.axis] - position
 
 
 def _least_depth(scene: Document, piston: Piston) -> float:
-    """No piston can come closer to the opposite side, as the discs are in between."""
-    radii = [s.radius for s in scene.species] + [d.radius for d in scene.disc]
-    covered = math.pi * (sum(s.count * s.radius**2 for s in scene.species) + sum(d.radius**2 for d in scene.disc))
-    return max(covered / CLOSE_PACKING / scene.box.size[1 - piston.axis], 2 * max(radii, default=0.0))
+    """Smallest distance of a piston from the opposite side, with all discs in between."""
+    return max(scene.covered_area / CLOSE_PACKING / scene.box.size[1 - piston.axis], 2 * scene.largest_radius)
 
 
 def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Pistons that nothing stops."""
+    """Check pistons of given velocity, which nothing stops."""
     velocity = piston.velocity or 0.0
     if velocity == 0:
         return
@@ -97,7 +95,7 @@ def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
 
 
 def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Pistons with a mass that nothing presses on the gas."""
+    """Check that a piston with a mass is pressed on the gas."""
     acceleration = piston.acceleration(scene.box.size, scene.properties.acceleration)
     if acceleration * piston.outward >= 0:
         keys: tuple[Key, ...] = (("piston", "pressure"), ("piston", "mass"), ("gravity", "acceleration"))
@@ -106,7 +104,7 @@ def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
 
 
 def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Walls where the piston may come."""
+    """Check walls that the piston may reach."""
     position = piston.start(scene.box.size)
     if piston.mass is not None:
         depth = _least_depth(scene, piston)

@@ -1,4 +1,4 @@
-"""What only one of the methods has, and what it cannot have."""
+"""Checks of the method and the stop rules of a run."""
 
 from __future__ import annotations
 
@@ -21,21 +21,20 @@ OWNERS = {
     "dt": (TIME_DRIVEN, "steps"),
     "precision": (BRUTE_FORCE, "choice of precision"),
 }
-"""The one method that each of these keys belongs to, and what the others have none of."""
+"""Method to which each of these keys belongs, and what other methods lack."""
 
 PLAIN = "float64"
-"""The precision that everything else has too."""
-
+"""Precision of all methods by default."""
 
 MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e10, 1e10
-"""Bounds on what a run makes for its own sake, however few events it has: hours of a few discs."""
+"""Largest numbers of snapshots, steps and trials of a run, which take hours even for a few discs."""
 
 LONGEST = 2.0**52
-"""Mean free times after which a float no longer tells the times of two collisions apart."""
+"""Number of mean free times after which a float cannot distinguish the times of two collisions."""
 
 
 def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Keys of another method, what the method needs, and what it cannot have."""
+    """Check keys of other methods, and what the method needs and excludes."""
     run = scene.run
     for key, (owner, thing) in OWNERS.items():
         if run.method != owner and (value := getattr(run, key)) is not None:
@@ -62,14 +61,14 @@ def _step_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _precision_issues(scene: Document) -> Iterator[Issue]:
-    """Effects: other precisions know of none."""
+    """Check effects, which other precisions do not support."""
     for place in _keys(scene):
         wrong = "smooth elastic discs in a reflecting box are all there is"
         yield Issue((place, ("run", "precision")), wrong, f'precision = "{scene.run.precision}"', f'"{PLAIN}"')
 
 
 def _pressure_issues(scene: Document) -> Iterator[Issue]:
-    """Methods whose discs are nowhere, or do not fly from event to event in plain numbers."""
+    """Check methods that do not record the flow of momentum."""
     run = scene.run
     got = f'method = "{run.method}"' if run.precision in (None, PLAIN) else f'precision = "{run.precision}"'
     if run.method in (MONTE_CARLO, TIME_DRIVEN) or run.precision not in (None, PLAIN):
@@ -78,7 +77,7 @@ def _pressure_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
-    """Sums that there are only beside those of the momentum, and gases in which heat comes from elsewhere."""
+    """Check heat flow without pressure, and in gases with other sources of heat."""
     key: Key = ("log", "heat_flow")
     if not scene.log.pressure:
         wrong = "recorded with the flow of momentum only"
@@ -92,7 +91,7 @@ def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Effects that need positions, and gases in which no pair ever meets."""
+    """Check effects that need positions, and gases without collisions."""
     for place in _keys(scene, "allows_monte_carlo"):
         got = f'method = "{MONTE_CARLO}"'
         yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
@@ -106,10 +105,9 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
 
 
 def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
-    """A v_ref below what discs of random directions have: the run might end before a trial shows it."""
-    largest = max([s.radius for s in scene.species] + [d.radius for d in scene.disc])
+    """Check for a v_ref that is too small, which the run might not detect before its end."""
     for i, s in enumerate(scene.species):
-        least = 0.0 if s.velocities or s.count == 1 else mean_speed([s], []) * s.radius / largest
+        least = 0.0 if s.velocities or s.count == 1 else mean_speed([s], []) * s.radius / scene.largest_radius
         if v_ref < least:
             keys = (("run", "v_ref"), *(("species", i, key) for key in ("speed", "temperature", "mass", "radius")))
             yield Issue(
@@ -118,7 +116,7 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
 
 
 def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """A run too long for its clock; times so short, or a v_ref so large, that snapshots, steps or trials do not end."""
+    """Check for runs too long for the clock, and for too many snapshots, steps or trials."""
     run, end = scene.run, scene.expected_end
     if run.until is not None and LONGEST * scene.free_time < end:
         got = f"{run.until}, about {run.until / scene.free_time:.3g} mean free times"
@@ -148,7 +146,7 @@ def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
 
 
 def endless_issues(scene: Document) -> Iterator[Issue]:
-    """Runs without a stop rule, or with one that is never met."""
+    """Check for runs without a stop rule, or with one that is never met."""
     run = scene.run
     keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
     if run.until is not None or run.trials is not None:
