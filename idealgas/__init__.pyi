@@ -4,7 +4,7 @@ from idealgas._version import __version__ as __version__
 from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
-from idealgas.analysis.evolution.measure import evolution as evolution
+from idealgas.analysis.evolution import EvolutionAnalysis
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram import HistogramAnalysis
 from idealgas.analysis.order.measure import order as order
@@ -34,6 +34,7 @@ from idealgas.scene import parse_scene as parse_scene
 
 cooling = CoolingAnalysis.measure
 effusion = EffusionAnalysis.measure
+evolution = EvolutionAnalysis.measure
 heat_capacity = HeatCapacityAnalysis.measure
 histogram = HistogramAnalysis.measure
 profile = ProfileAnalysis.measure

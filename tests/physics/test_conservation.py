@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
+from idealgas import evolution
 from idealgas.analysis.core.ensemble import conserved_momentum
-from idealgas.analysis.evolution.measure import evolution
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene

@@ -8,11 +8,10 @@ import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, kinetic_at_even_times, of_runs
 from scipy import stats
 
-from idealgas import profile
+from idealgas import evolution, profile
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import estimate, mean, ratio
-from idealgas.analysis.evolution.measure import evolution
-from idealgas.analysis.evolution.theory import expected_law, push
+from idealgas.analysis.evolution.theory import expected_law, piston_force
 from idealgas.analysis.theory import hard_discs
 
 pytestmark = pytest.mark.slow
@@ -114,7 +113,7 @@ def test_compression(run):
         n, t = 40 / length, math.exp(log_t)
         chi = float(hard_discs.contact_value(n * math.pi * 0.0004))
         excess = hard_discs.enskog_viscosity(0.04, n, t, 1.0, chi) * 0.0125 / (length * n * t)
-        log_t -= push(log, length) * (1 + excess) * step
+        log_t -= piston_force(log, length) * (1 + excess) * step
     agrees(of_runs(found, math.exp(log_t)), 1.5e-3)
 
 
@@ -143,7 +142,7 @@ def test_piston(run):
     n, force, diameter = 200, 20.0, 0.04
     energy = 200 + force * (10 - diameter)
     law = expected_law(log, np.zeros(1))
-    a, b = n * push(log, law.piston) * (law.piston - diameter) + 1, n + 0.5
+    a, b = n * piston_force(log, law.piston) * (law.piston - diameter) + 1, n + 0.5
     place = piston_at(log, np.arange(100.0, 5990.0, 5.0))
     share = force * (place - diameter) / energy
     expected = a / (a + b)

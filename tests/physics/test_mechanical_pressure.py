@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 
-from idealgas import histogram
+from idealgas import evolution, histogram
 from idealgas.analysis.core.equilibration import measure
-from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.scene import parse_scene
 

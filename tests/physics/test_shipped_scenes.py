@@ -11,10 +11,9 @@ import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, of_runs
 from scipy import stats
 
-from idealgas import effusion, profile
+from idealgas import effusion, evolution, profile
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.evolution.measure import evolution
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature import temperature

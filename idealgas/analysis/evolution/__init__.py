@@ -5,18 +5,99 @@ equilibrium for isolated gases, gases under gravity and heat baths. The pressure
 With a piston the picture has the pressure against the area, with the isotherm and the adiabat through the start.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
-from idealgas.analysis.core.analysis import Analysis, Section
-from idealgas.analysis.evolution.measure import Evolution, evolution
-from idealgas.analysis.evolution.tables import evolution_summary, evolution_tables
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
+from idealgas.analysis.core.equilibration import detect_equilibration
+from idealgas.analysis.core.fields import OPTIONAL, reported
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.stream import span
+from idealgas.analysis.core.tables import Number, Table, format_estimate
+from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
+from idealgas.analysis.evolution.theory import Law, expected_law
+from idealgas.analysis.theory.values import Theory
+from idealgas.errors import UserError
+from idealgas.log import Log
+from idealgas.physics.piston import piston_energy
+from idealgas.scene.walls import walls_inside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+INSTANTS, ROWS = 257, 9
+"""Number of instants of the series, and of those that the terminal shows; the picture and CSV have all."""
+
+PISTON, HEAT_BATH = "piston", "the heat bath"
+"""Names of the side with the piston and of a heat bath among the sources of energy."""
+
+ROUNDING = 1e-12
+"""Energy that collisions lose, relative to the largest energy, that is rounding."""
+
+CHANGED = 1.2
+"""Ratio of two temperatures above which the summary reports a change."""
+
+Series = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Evolution(Result):
+    """Evolution of a gas, at F evenly spaced times and at the P times of the samples stored during the run.
+
+    Attributes:
+        time: (F,), times.
+        temperature: (F,), mean m v²/2 per disc, energy.
+        spin: (F,), mean I ω² per disc, energy; None without spin.
+        beyond: fraction of the discs of each species beyond the first gate along an axis, (F,), by species.
+        law: theory of the temperature at these times; None without one.
+        samples: (P,), times of the samples.
+        parts: parts of the energy, (P,), by name.
+        given: energy from each wall, the piston (its work) and a heat bath since the start, (P,), by name.
+        piston: (P,), its coordinate, length; None without one.
+        balance: (P,), change since the start of the energy of discs and piston minus the energy from outside, relative
+            to the largest part of the energy: rounding only.
+        dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
+        pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
+        rest: mean position of a piston with a mass once it is steady, length; None without one, or if it is not steady
+            by the end.
+    """
+
+    time: np.ndarray
+    temperature: np.ndarray
+    spin: Annotated[np.ndarray | None, OPTIONAL]
+    beyond: Series
+    law: Law | None
+    samples: np.ndarray
+    parts: Series
+    given: Series
+    piston: Annotated[np.ndarray | None, OPTIONAL]
+    balance: np.ndarray
+    dissipated: Series
+    pressure: PressureSeries | None = None
+    rest: Estimate | None = None
+
+    @property
+    def track(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Times and coordinates of the piston, means over short blocks or samples; None without a piston."""
+        if self.pressure and self.pressure.track:
+            return self.pressure.track
+        return None if self.piston is None else (self.samples, self.piston)
+
+    @property
+    @reported
+    def end(self) -> dict[str, float]:
+        """Last value of each series, by name."""
+        series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
+        return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
+
 
 class EvolutionAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `evolution`."""
+    """Evolution in time."""
 
     position = 20
     results = (Evolution,)
@@ -29,13 +110,217 @@ class EvolutionAnalysis(Analysis):
     start = "the log's start"
     reads = "frames"
 
-    measure = staticmethod(evolution)
-    tables = staticmethod(evolution_tables)
-    summary = staticmethod(evolution_summary)
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Evolution:
+        """Follow temperature, pressure, energies, piston and discs beyond a gate in time; needs no equilibrium.
+
+        The theory, if there is one, is that of the temperature: in equilibrium, of a gas that cools by its collisions
+        (Haff's law), or of one that a moving piston compresses (the adiabat).
+
+        Args:
+            log: log with samples of the energy.
+            start: time; by default the start of the log.
+            end: time; by default the end of the log.
+            progress: called as progress(done, total) while states are read.
+
+        Raises:
+            UserError: if the log does not cover the times or has no samples of the energy.
+        """
+        first, last = span(log, start, end)
+        samples = log.observables["kinetic_energy"][0]
+        if not len(samples):
+            raise UserError(f"{log.path}: no samples of the energy")
+        inside = (samples >= first) & (samples <= last)
+        frames = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
+        observed = {name: values for name, (_, values) in log.observables.items()}
+        *energies, balance = _account(log, observed)
+        parts, given, lost = ({name: values[inside] for name, values in part.items()} for part in energies)
+        law = expected_law(log, frames[0])
+        pressure = pressure_series(log, first, last)
+        return Evolution(
+            *frames,
+            law,
+            samples[inside],
+            parts,
+            given,
+            observed["piston_position"][inside] if "piston_position" in observed else None,
+            balance[inside],
+            lost,
+            pressure,
+            _rest(log, pressure, law),
+            caveats=law.caveats if law else (),
+        )
 
     @staticmethod
-    def figure(result: Any) -> "Figure":
-        """Picture of the result; matplotlib is imported where it is drawn."""
-        from idealgas.analysis.evolution.figure import evolution_figure
+    def tables(result: Evolution) -> list[Table]:
+        """Tables of temperature and of discs beyond the gate, of the pressure, and of the energies."""
+        series = {"kinetic energy per disc": result.temperature}
+        if result.law is not None:
+            series["law"] = result.law.temperature
+        if result.spin is not None:
+            series["I ω² per disc"] = result.spin
+        series |= {f"fraction of {name} beyond the gate": share for name, share in result.beyond.items()}
+        energy = {f"energy of {name}": values for name, values in result.parts.items()}
+        energy |= {_source_label(name): values for name, values in result.given.items()}
+        energy |= {f"lost by {name}": values for name, values in result.dissipated.items()}
+        if result.piston is not None:
+            energy["piston position"] = result.piston
+        energy["balance, relative"] = result.balance
+        notes = (f"law: {result.law.text if result.law else 'none for this scene'}",)
+        tables = [_in_time("Time series", result.time, series, notes)]
+        if found := result.pressure:
+            columns = {"area": found.area}
+            for name in found.shown:
+                columns |= {f"P on {name}": found.pressure[name], f"± s.e. ({name})": found.error[name]}
+            tables.append(_in_time("Pressure on walls, means over bins of time", found.middles, columns))
+        return [*tables, _in_time("Energy", result.samples, energy)]
 
-        return evolution_figure(result)
+    @staticmethod
+    def summary(result: Evolution) -> list[str]:
+        """Sentences on a changed temperature, the position of a piston, and discs beyond a gate."""
+        found = []
+        first, last = result.temperature[[0, -1]]
+        if max(first, last) > CHANGED * min(first, last):
+            found.append(f"The temperature went from {first:.4g} to {last:.4g}.")
+        if result.rest:
+            found.append(f"The piston rests at {format_estimate(result.rest)}.")
+        elif result.track:
+            found.append("The piston went from {:.4g} to {:.4g}.".format(*result.track[1][[0, -1]]))
+        shares = result.beyond.items()
+        return [*found, *(f"At the end {share[-1]:.1%} of {name} are beyond the gate." for name, share in shares)]
+
+    @staticmethod
+    def figure(result: Evolution) -> "Figure":
+        """Picture of the temperature, its law dashed, of discs beyond a gate, pressure, piston and energy from walls.
+
+        With a piston the pressure against the area comes last, with the isotherm and the adiabat through the start.
+        """
+        from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
+
+        series, law, has_piston = result.pressure, result.law, result.track is not None
+        shown = [result.beyond, series, has_piston, result.given, series and has_piston]
+        figure, axes = panels(1 + sum(map(bool, shown)))
+        ax, *others = axes
+        rest = iter(others)
+        ax.plot(result.time, result.temperature, color=COLOURS[0], label="kinetic energy per disc")
+        if result.spin is not None:
+            ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² per disc")
+        if law is not None:
+            ax.plot(result.time, law.temperature, "--", color=BLACK, label=law.text)
+        low, high = result.temperature.min(), result.temperature.max()
+        if high > 10 * low > 0:
+            ax.set_yscale("log")
+        elif high - low < 1e-6 * high:  # changes only by rounding
+            ax.set_ylim(0.9 * low, 1.1 * high)
+        ax.set_ylabel("temperature (energy, k_B = 1)")
+        if result.beyond:
+            ax = next(rest)
+            for k, (name, share) in enumerate(result.beyond.items()):
+                colour, line, _ = curve_style(k)
+                ax.plot(result.time, share, line, color=colour, label=name)
+            ax.set(ylim=(-0.05, 1.05), ylabel="fraction beyond the gate (no unit)")
+        if series:
+            draw_pressure(next(rest), series, law)
+        if result.track:
+            ax = next(rest)
+            ax.plot(*result.track, color=COLOURS[0], label="piston")
+            if law is not None and law.piston is not None:
+                ax.axhline(law.piston, color=BLACK, linestyle="--", label=f"theory: at rest at {law.piston:.4g}")
+            ax.set_ylabel("piston position (length)")
+        if result.given:
+            ax = next(rest)
+            for k, (name, energy) in enumerate(result.given.items()):
+                colour, line, marker = curve_style(k)
+                ax.plot(result.samples, energy, line, marker=marker, ms=3, color=colour, label=_source_label(name))
+            ax.set_ylabel("energy (k_B = 1)")
+        for ax in axes:
+            ax.time_axis()
+        if series and has_piston:
+            draw_state(next(rest), series)
+        for ax in axes:
+            ax.legend()
+        return figure
+
+
+def _in_time(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], notes: Sequence[str] = ()) -> Table:
+    values = zip(*(column.tolist() for column in (time, *columns.values())), strict=True)
+    return Table(title, ("t", *columns), [tuple(map(Number, row)) for row in values], notes, most=ROWS)
+
+
+def _source_label(name: str) -> str:
+    """Heading of the energy that a wall, the piston or a heat bath gave to the discs."""
+    return "work done by the piston" if name == PISTON else f"energy from {name}"
+
+
+# ── measurement ──
+
+Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series]  # the first four series of an Evolution
+
+
+def _samples(log: Log, inside: np.ndarray) -> Frames:
+    """Evolution from the samples stored during the run, for a log without events."""
+    time, kinetic = log.observables["kinetic_energy"]
+    n, spin = len(log.discs), None
+    if "rotational_energy" in log.observables:
+        spin = 2 * log.observables["rotational_energy"][1][inside] / n
+    return time[inside], (kinetic - centre_of_mass_energy(log))[inside] / n, spin, {}
+
+
+def _frames(log: Log, first: float, last: float, progress: Progress | None) -> Frames:
+    """Evolution at evenly spaced times, from the events of a log."""
+    gas, frame, inertia = log.discs, centre_of_mass_velocity(log), log.inertia
+    walls = [wall for wall in walls_inside(log.scene) if wall.is_gate]
+    gates = [(axis, wall.start[axis]) for wall in walls for axis in range(2) if wall.start[axis] == wall.end[axis]]
+    number = np.bincount(gas.species)
+    time = np.linspace(first, last, INSTANTS)
+    temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
+    for k, state in enumerate(log.frames(time)):
+        temperature[k] = (gas.mass * ((state.velocity - frame) ** 2).sum(axis=1)).mean() / 2
+        if inertia is not None and state.angular_velocity is not None:
+            spin[k] = (inertia * state.angular_velocity**2).mean()
+        for axis, place in gates[:1]:
+            beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
+        if progress is not None:
+            progress(k + 1, len(time))
+    shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gates else {}
+    return time, temperature, None if inertia is None else spin, shares
+
+
+def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate | None:
+    """Mean position of a piston with a mass once it is steady, compared with theory."""
+    if not log.scene.piston or not log.scene.piston.mass or series is None or series.track is None:
+        return None
+    places = series.track[1]
+    start = detect_equilibration([places])
+    if start is None:
+        return None
+    theory = None if law is None or law.piston is None else Theory(law.piston, law.piston_error, law.text)
+    return mean(places[start:], theory)
+
+
+def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
+    """Parts of the energy, energy from walls and a heat bath, energy lost by kind of collision, and the balance."""
+    names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
+    parts = {part: observed[name] for part, name in names.items() if name in observed}
+    given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
+    lost = observed.get("dissipated_energy", np.zeros((len(given), 1 + len(log.walls))))
+    counted, unpaid = np.ones(given.shape[1], bool), lost[:, 0]
+    piston = log.scene.piston
+    if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
+        own = [wall.name for wall in log.walls].index(piston.side)
+        counted[own], unpaid = False, unpaid + lost[:, 1 + own]
+        pull = piston.acceleration(log.box, log.scene.properties.acceleration)
+        place, velocity = observed["piston_position"], observed["piston_velocity"]
+        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
+    bath = observed.get("bath_energy", np.zeros(len(given)))
+    from_outside = given[:, counted].sum(axis=1) + bath
+    total = sum(parts.values()) + unpaid - from_outside
+    scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
+    walls = [PISTON if piston and wall.name == piston.side else wall.name for wall in log.walls]
+    sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath}
+    by_source = {name: series for name, series in sources.items() if series.any()}
+    sinks = zip(("discs", *walls), lost.T, strict=True)
+    losses = {name: series for name, series in sinks if np.abs(series).max(initial=0.0) > ROUNDING * scale}
+    return parts, by_source, losses, (total - total[0]) / (scale or 1.0)

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -12,9 +12,12 @@ from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.walls import WallGauge
-from idealgas.analysis.evolution.theory import StateLines, room, state_lines
+from idealgas.analysis.evolution.theory import Law, StateLines, room, state_lines
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.log import Log
+
+if TYPE_CHECKING:
+    from idealgas.analysis.core.style import Panel
 
 BLOCKS = 2048
 """Number of blocks of time that are counted; a bin is a number of them, whose spread gives its error bar."""
@@ -34,16 +37,22 @@ FAR = 0.999
 
 ALL_SIDES = "all sides"
 
+WIDER = 1.2
+"""Range of the areas at which isotherm and adiabat are drawn, in units of that of the gas."""
+
 
 @dataclass(frozen=True)
 class PressureSeries:
     """Mechanical pressure on walls in B bins of time.
 
-    edges: (B + 1,), times between the bins. area: (B,), mean area that the gas has, length². pressure, error: (B,),
-    momentum given per time and length and its standard error, energy/length², by the name of the wall; nan as the error
-    of a wall that was not hit. shown: names of the walls in table and picture: a piston, all sides of a uniform gas
-    together, or each of them. lines: isotherm and adiabat through the start; None without a theory or a piston. track:
-    times (T,) and mean coordinates (T,) of the piston in POINTS blocks of time; None without a piston.
+    Attributes:
+        edges: (B + 1,), times between the bins.
+        area: (B,), mean area that the gas has, length².
+        pressure, error: (B,), momentum given per time and length and its standard error, energy/length², by the name of
+            the wall; nan as the error of a wall that was not hit.
+        shown: walls in table and picture: a piston, all sides of a uniform gas together, or each of them.
+        lines: isotherm and adiabat through the start; None without a theory or a piston.
+        track: times (T,) and mean coordinates (T,) of the piston in POINTS blocks of time; None without a piston.
     """
 
     edges: np.ndarray
@@ -58,10 +67,6 @@ class PressureSeries:
     def middles(self) -> np.ndarray:
         """Times (B,) of the middles of the bins."""
         return (self.edges[1:] + self.edges[:-1]) / 2
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def pressure_series(log: Log, first: float, last: float) -> PressureSeries | None:
@@ -84,22 +89,20 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
         moving = gauge.moving.wall if gauge.moving else None
         shown = [face.name for face in sides if moving in (None, face.wall)]
     found = {name: _in_bins(*series, bins) for name, series in given.items()}
+    lines = track = None
+    if gauge.moving:
+        lines = state_lines(log, gauge.area(blocks))
+        ends, depth = blocks[:: BLOCKS // POINTS], gauge.moving.depth.reshape(POINTS, -1).mean(axis=1)
+        track = (ends[1:] + ends[:-1]) / 2, room(log, depth)  # a mirror image: its own inverse
     return PressureSeries(
         blocks[:: BLOCKS // bins],
         gauge.area(blocks).reshape(bins, -1).mean(axis=1),
         {name: values for name, (values, _) in found.items()},
         {name: errors for name, (_, errors) in found.items()},
         tuple(shown),
-        state_lines(log, gauge.area(blocks)) if gauge.moving else None,
-        _track(log, gauge.moving.depth, blocks) if gauge.moving else None,
+        lines,
+        track,
     )
-
-
-def _track(log: Log, depth: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Times and mean coordinates of the piston in POINTS blocks, from its mean depth in each of BLOCKS."""
-    lengths = room(log, depth.reshape(POINTS, -1).mean(axis=1))  # a mirror image: its own inverse
-    edges = blocks[:: BLOCKS // POINTS]
-    return (edges[1:] + edges[:-1]) / 2, lengths
 
 
 def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarray, np.ndarray]:
@@ -130,3 +133,40 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
     off, told, free = off[known], told[known], GROUP - 2
     calm = off / told <= np.median(off / told) * chi2.ppf(FAR, free) / chi2.median(free)
     return math.sqrt(off[calm].sum() / told[calm].sum() * GROUP / free)
+
+
+def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
+    """Draw pressure against time, and the outer pressure on a piston, or the adiabat of a piston that is moved."""
+    from idealgas.analysis.core.style import BLACK
+
+    _draw_walls(ax, series, series.middles, fmt="o")
+    if law and law.pressure:
+        ax.axhline(law.pressure, ls="--", color=BLACK, label="theory: outer pressure")
+    elif law and series.lines and series.lines.adiabat is not None:
+        adiabat = np.interp(series.area, series.lines.area, series.lines.adiabat)
+        ax.plot(series.middles, adiabat, "--", color=BLACK, label="theory: adiabat")
+
+
+def draw_state(ax: "Panel", series: PressureSeries) -> None:
+    """Draw pressure against area, in order of time, with isotherm and adiabat."""
+    from idealgas.analysis.core.style import GREY
+
+    _draw_walls(ax, series, series.area, fmt="o-", lw=0.5)
+    if lines := series.lines:
+        middle = series.area.mean()
+        near = np.abs(lines.area - middle) <= WIDER * np.abs(series.area - middle).max()
+        ax.plot(lines.area[near], lines.isotherm[near], "--", color=GREY, label="isotherm through the start")
+        if lines.adiabat is not None:
+            ax.plot(lines.area[near], lines.adiabat[near], "-", color=GREY, label="adiabat through the start")
+    ax.in_time = False
+    ax.set_xlabel("area of the gas (length²)")
+
+
+def _draw_walls(ax: "Panel", series: PressureSeries, x: np.ndarray, **style: Any) -> None:
+    """Draw the pressure on the walls with its error bars against x (B,)."""
+    from idealgas.analysis.core.style import COLOURS
+
+    for name, colour in zip(series.shown, COLOURS, strict=False):
+        p, error = series.pressure[name], series.error[name]
+        ax.errorbar(x, p, error, ms=3, color=colour, elinewidth=0.8, label=f"P on {name}", **style)
+    ax.set_ylabel("pressure (energy/length²)")

@@ -36,9 +36,13 @@ REST_ERROR = 0.12
 class Law:
     """Law of the temperature of a gas at F times.
 
-    text: name of the law. temperature: (F,), mean m v²/2 per disc, energy. spin: mean I ω² per disc, energy. piston:
-    coordinate of the piston at rest, length. pressure: outer pressure on it, energy/length². caveats: conditions
-    of the law that are not met. piston_error: error of the coordinate, length.
+    Attributes:
+        text: name of the law.
+        temperature: (F,), mean m v²/2 per disc, energy.
+        spin: mean I ω² per disc, energy.
+        piston, piston_error: coordinate of the piston at rest, and its error, length.
+        pressure: outer pressure on the piston, energy/length².
+        caveats: conditions of the law that are not met.
     """
 
     text: str
@@ -84,32 +88,21 @@ def expected_law(log: Log, time: np.ndarray) -> Law | None:
     return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * one, t)
 
 
-def haff_time(log: Log) -> float:
-    """Haff's cooling time τ = 4/((1 - e²) Γ (1 + 3a₂/16)) of the law T = T₀/(1 + t/τ)², time.
-
-    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant
-    (`granular.cooling_time`). The velocity of the centre of mass, where it is conserved, is not part of the
-    temperature.
-    """
-    gas, table = log.discs, log.scene.restitution
-    e = 1.0 if table is None else table.normal
-    n, share = len(gas), 1 - conserved_momentum(log).mean() / len(gas)
-    t = _kinetic(log) / (n * share)
-    contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
-    rate = float(contacts) * hard_discs.mean_relative_speed(t, gas.mass[0])
-    return share * granular.cooling_time(granular.GranularParameters(e), rate)
-
-
 def _haff(log: Log, time: np.ndarray) -> Law | None:
-    table = log.scene.restitution
-    if table is None or table.wall < 1 or not log.discs.kinetic_energy > 0:
+    """Haff's law T = T₀/(1 + t/τ)² with τ = 4/((1 - e²) Γ (1 + 3a₂/16)) (`granular.cooling_time`).
+
+    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant. The
+    velocity of the centre of mass, where it is conserved, is not part of the temperature.
+    """
+    gas, table, kinetic = log.discs, log.scene.restitution, _kinetic(log)
+    if table is None or table.wall < 1 or table.normal < granular.TESTED_FROM or not gas.kinetic_energy > 0:
         return None
-    if table.normal < granular.TESTED_FROM:
-        return None
-    tau = haff_time(log)
+    n, share = len(gas), 1 - conserved_momentum(log).mean() / len(gas)
+    contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
+    rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
+    tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)
     said = "Haff's law is that of a uniform gas; `idealgas cooling` tells whether this one remains so."
-    temperature = _kinetic(log) / len(log.discs) / (1 + time / tau) ** 2
-    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", temperature, caveats=(said,))
+    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(said,))
 
 
 def _kinetic(log: Log) -> float:
@@ -126,7 +119,7 @@ def room(log: Log, piston: np.ndarray) -> np.ndarray:
     return piston if table.outward > 0 else log.box[table.axis] - piston
 
 
-def push(log: Log, length: float) -> float:
+def piston_force(log: Log, length: float) -> float:
     """Force on a piston at rest over N T, in 1/length: Z/(L - 2R), as the centres stay one radius away from it."""
     gas, table = log.discs, log.scene.piston
     size = list(gas.box)
@@ -150,7 +143,7 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     if _crowded(log, lengths[0]):
         return None
     temperature = _kinetic(log) / len(gas)
-    pressure = np.array([push(log, length) for length in lengths]) * len(gas) * temperature / across
+    pressure = np.array([piston_force(log, length) for length in lengths]) * len(gas) * temperature / across
     adiabat = None
     if len(log.scene.lacking("uniform", "conserves_motion")) == 1:
         adiabat = pressure * np.exp(_work(log, lengths, first) - _work(log, lengths, lengths))
@@ -166,7 +159,7 @@ def _crowded(log: Log, length: float) -> bool:
 
 def _work(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
     """Work ∫ F dL/NT of the gas on a piston from the length grid[0] to others, at rising grid points."""
-    slope = np.array([push(log, length) for length in (grid[1:] + grid[:-1]) / 2])
+    slope = np.array([piston_force(log, length) for length in (grid[1:] + grid[:-1]) / 2])
     return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
 
 
@@ -207,7 +200,7 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
     energy = _kinetic(log) + (table.mass or 0.0) * speed**2 / 2 + force * (start - diameter)
     length, t = start, 0.0
     for _ in range(100):
-        z = push(log, length) * (length - diameter)
+        z = piston_force(log, length) * (length - diameter)
         t = energy / (n + 0.5 + n * z + 1)
         length = diameter + (n * z + 1) * t / force
     piston = length if table.outward > 0 else log.box[table.axis] - length

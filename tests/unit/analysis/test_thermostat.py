@@ -3,14 +3,11 @@
 import numpy as np
 import pytest
 
-from idealgas import histogram
+from idealgas import evolution, histogram
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.walls import WallImpulses
-from idealgas.analysis.evolution.figure import evolution_figure
-from idealgas.analysis.evolution.measure import evolution
-from idealgas.analysis.evolution.tables import evolution_tables
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.transport.measure import transport
 from idealgas.columns import BATH, Kind
@@ -68,8 +65,8 @@ def test_the_energy_that_thermostat_collisions_give_is_on_the_account(make):
             before[disc] = velocity
     assert found.given["the heat bath"][-1] == pytest.approx(given, rel=1e-10)
     assert found.law.temperature[0] == 2
-    assert any("energy from the heat bath" in table.heads for table in evolution_tables(found))
-    assert evolution_figure(found).axes
+    assert any("energy from the heat bath" in table.heads for table in found.analysis.tables(found))
+    assert found.plot().axes
 
 
 @pytest.mark.slow

@@ -6,9 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.evolution.figure import evolution_figure
-from idealgas.analysis.evolution.measure import evolution
-from idealgas.analysis.evolution.tables import evolution_tables
+from idealgas import evolution
 from idealgas.errors import UserError
 
 GAS = """
@@ -117,11 +115,11 @@ def test_pressure_in_bins_of_time(make):
         96 - 0.8 * 20 * np.array([0.5, len(series.area) - 0.5]) / len(series.area)
     )
     assert set(series.pressure) == {"left wall", "right wall", "bottom wall", "top wall"}
-    titles = [table.title for table in evolution_tables(found)]
+    titles = [table.title for table in found.analysis.tables(found)]
     assert titles[1] == "Pressure on walls, means over bins of time"
-    axes = [ax.get_ylabel() for ax in evolution_figure(found).axes]
+    axes = [ax.get_ylabel() for ax in found.plot().axes]
     assert axes.count("pressure (energy/length²)") == 2
-    labels = [text.get_text() for text in evolution_figure(found).axes[-1].get_legend().get_texts()]
+    labels = [text.get_text() for text in found.plot().axes[-1].get_legend().get_texts()]
     assert labels == ["isotherm through the start", "adiabat through the start", "P on right wall"]
 
 
