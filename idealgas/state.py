@@ -1,4 +1,4 @@
-"""State of all discs at one instant, and the random numbers from which it is drawn."""
+"""State of the gas at one instant, and the random numbers from which it is drawn."""
 
 from dataclasses import dataclass
 

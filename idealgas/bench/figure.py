@@ -26,7 +26,7 @@ PEERS = (
         "billiards (C++)",
         0.1,
         {1_000: 0.15e6, 10_000: 0.09e6, 100_000: 0.05e6},
-        "measured on one core, each run beside one of idealgas",
+        "measured on one core, alternating with idealgas",
     ),
 )
 """Other programs; their figures are stated, not measured by the bench."""

@@ -26,4 +26,4 @@ EFFECTS: tuple[EffectSpec[Any], ...] = tuple(import_module(f"{__name__}.{name}")
 """All effects; no code of those that a scene does not have is compiled."""
 
 EFFECT_NAMES = tuple(effect.name for effect in EFFECTS)
-"""Their names for people."""
+"""Names of the effects in output and messages."""

@@ -39,7 +39,7 @@ class Start(NamedTuple):
     Attributes:
         gas: the discs.
         seed: seed of the scene.
-        acceleration: constant acceleration of all discs by all effects, length/time².
+        acceleration: constant acceleration of the discs, summed over the effects, length/time².
         angular_velocity: (N,) as the scene gives it, 1/time; 0 where it does not.
         spin_temperature: (N,) energy; 0 where spins are not drawn at random.
     """
@@ -89,7 +89,7 @@ class EffectSpec(Generic[State]):
     """One effect, with functions of its state, which `make` returns and the engine then changes.
 
     Attributes:
-        name: for people.
+        name: in output and messages.
         field: of the bundle of all effects (`idealgas.effects.bundle`).
         properties: how its tables, or sides of the box, change the gas; None if they change nothing.
         make: the state at time 0; called if the scene has the effect.

@@ -1,4 +1,4 @@
-"""Gravity: one constant acceleration of all discs."""
+"""Gravity: a constant acceleration."""
 
 from collections.abc import Iterator
 

@@ -58,7 +58,7 @@ class Piston(Table):
 
     @property
     def action(self) -> str:
-        """What it does, in words."""
+        """Short description for output."""
         if self.mass is None:
             return f"piston of velocity {self.velocity:g}"
         return f"piston of mass {self.mass:g} under pressure {self.pressure:g}"

@@ -32,9 +32,9 @@ def _plain(value: Any, both: Callable[[Any, Any], Any]) -> Any:
 
 @dataclass(frozen=True)
 class Properties:
-    """Of a gas. The defaults are those of the plain box: smooth elastic discs in a reflecting box.
+    """Properties of a gas. The defaults are those of the plain box: smooth elastic discs in a reflecting box.
 
-    True unless an effect changes it, and true of a scene if it is true with every effect in it:
+    True by default; true for a scene if true for each of its effects:
 
     uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: discs fly along straight
     lines between events. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
@@ -43,7 +43,7 @@ class Properties:
     as nothing in it has a fixed position. local: what happens to a disc depends only on what is near it, so that each
     thread may simulate a part of the box.
 
-    False unless an effect changes it, and true of a scene if it is true with any effect:
+    False by default; true for a scene if true for any of its effects:
 
     driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
     with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
@@ -88,7 +88,7 @@ class Properties:
 
     @property
     def temperatures(self) -> frozenset[float]:
-        """Those of all walls that emit, and of the heat bath."""
+        """Temperatures of the thermal walls and the heat bath."""
         return frozenset(temperature for temperature in (*self.emits, self.bath) if temperature is not None)
 
     @property
@@ -103,7 +103,7 @@ class Properties:
 
     @property
     def conserves_motion(self) -> bool:
-        """Whether nothing changes the energy of motion of all discs."""
+        """Whether the total kinetic energy is conserved."""
         return self.conserves_energy and self.isolated and not self.spins
 
     @property
@@ -125,7 +125,7 @@ class Properties:
 
 @dataclass(frozen=True)
 class ActiveEffect:
-    """An effect that a scene has: its name for people, the keys that turn it on, and what it changes."""
+    """An effect that a scene has: its name, the keys that turn it on, and what it changes."""
 
     name: str
     keys: tuple[Key, ...]

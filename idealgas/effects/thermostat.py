@@ -60,7 +60,5 @@ EFFECT = EffectSpec(
     },
     counted=THERMOSTAT_COLLISIONS,
     end_epoch=law.end_epoch,
-    samples=(  # a tenth of the collisions of a disc per time
-        Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),
-    ),
+    samples=(Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),),  # a tenth of all collisions
 )

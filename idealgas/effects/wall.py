@@ -45,7 +45,7 @@ class Wall(Table):
 
     @property
     def action(self) -> str:
-        """What it does, in words."""
+        """Short description for output."""
         action = "reflecting" if self.temperature is None else f"emits at temperature {self.temperature:g}"
         opens, closes = self.absence
         if math.isinf(opens):

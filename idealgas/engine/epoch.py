@@ -98,11 +98,6 @@ def driving_speed(gas: Gas, effects: Effects) -> float:
     return speed
 
 
-def thermostat_collision_rate(gas: Gas, effects: Effects) -> float:
-    """Thermostat collisions of all discs per time, 1/time."""
-    return 0.0 if effects.thermostat is None else len(gas) * effects.thermostat.rate
-
-
 def driving_energy(gas: Gas, effects: Effects) -> float:
     """Largest energy that a piston with a mass can bring on its way across the box; 0 without one."""
     if effects.piston is None:

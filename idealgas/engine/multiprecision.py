@@ -84,18 +84,12 @@ def pair_time(c, i, j):
 
 
 @inline
-def side_time(c, i, side):
-    """Local time at which disc i touches a side of the box; NEVER if it does not."""
-    return side_contact(disc_at(c, i), side, load(c.box, side >> 1), None)
-
-
-@inline
 def find_next(c, upcoming, i):
     """Find and store the next event of disc i: sides come before discs, and these are in order of id."""
     best = number(NEVER, load(c.t, i))
     partner = NO_PARTNER
     for side in range(4):
-        time = side_time(c, i, side)
+        time = side_contact(disc_at(c, i), side, load(c.box, side >> 1), None)
         if time < best:
             best, partner = time, -1 - side
     for j in range(c.t.shape[0]):

@@ -10,15 +10,9 @@ import numpy as np
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
-from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length, thermostat_collision_rate
+from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length
 from idealgas.engine.method import Limits, Method
-from idealgas.engine.records import (
-    COUNTERS,
-    LATEST,
-    UNLIMITED,
-    InelasticCollapseError,
-    synchronise,
-)
+from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, InelasticCollapseError, synchronise
 from idealgas.errors import UserError
 from idealgas.physics import stress
 from idealgas.physics.exact_sum import SumRangeError
@@ -98,11 +92,11 @@ class Simulation:
         until_change = next_change(self.effects, self.time) - self.time
         self.length = until_change
         if not self.method.single_epoch:
+            thermostat = self.effects.thermostat
+            bath_collisions = 0.0 if thermostat is None else len(self.gas) * thermostat.rate
             periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
-            thermostat_collisions = thermostat_collision_rate(self.gas, self.effects)
-            self.length = min(
-                epoch_length(self.gas, self._encounters, extra_speed, periodic, thermostat_collisions), until_change
-            )
+            length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions)
+            self.length = min(length, until_change)
         self.method.start(self.gas, self.effects)
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self._counters["trials"] = self.totals.trials

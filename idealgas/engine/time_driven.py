@@ -1,6 +1,6 @@
 """The time-driven method: all discs fly for a step, then those that overlap or stand outside, and approach, collide.
 
-For comparison with the event-driven method: its errors grow with its step. a contact is found late, by half a step
+For comparison with the event-driven method: its errors grow with its step. A contact is found late, by half a step
 on average, with a rotated line of centres; a contact that begins and ends between two steps is missed. It is as fast as
 such a method gets: near pairs are listed once, by cells, and the list serves until two discs may have come `skin`
 nearer (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley, Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
@@ -25,7 +25,7 @@ from idealgas.state import Gas
 U = np.uintp
 NEAR = 3.0  # mean number of discs within reach that was fastest
 LEAST_SKIN = 0.2  # in diameters
-CELLS_A_DISC = 4  # largest number of cells per disc
+CELLS_PER_DISC = 4  # at most
 
 STEP = np.dtype(
     [
@@ -64,7 +64,7 @@ def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
     """Cells and an empty list of pairs for a gas; periodic: whether the sides along x and along y are periodic."""
     n, widest = len(gas), 2.0 * float(gas.radius.max())
     skin = max(math.sqrt(NEAR * gas.area / (math.pi * n)) - widest, LEAST_SKIN * widest)
-    size = max(widest + skin, math.sqrt(gas.area / (CELLS_A_DISC * n)))
+    size = max(widest + skin, math.sqrt(gas.area / (CELLS_PER_DISC * n)))
     columns, rows = (max(int(length / size), 1) for length in gas.box)
     if periodic[0] and columns < 3:  # two cells would be neighbours on both sides
         columns = 1
@@ -194,20 +194,7 @@ def find_overlap(record, step, near, periodic):
 
 
 @njit
-def advance_steps(
-    record,
-    ids,
-    box,
-    near,
-    step,
-    dt,
-    deepest,
-    effects,
-    limits,
-    epoch_start,
-    batch,
-    counters,
-):
+def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, epoch_start, batch, counters):
     """Take steps up to the limits, or until the batch or the list of pairs is full.
 
     Returns the number of rows written, and whether everything up to the limit of time has happened. A limit may be

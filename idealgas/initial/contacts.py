@@ -4,20 +4,15 @@ Only a disc that touches the wall exactly and has no velocity along its normal i
 flies or bounces.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
+from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
-
-if TYPE_CHECKING:
-    from idealgas.state import Gas
 
 
 def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
@@ -52,10 +47,8 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     if scene.piston:
         piston = scene.piston
         gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
-        pressed = (
-            piston.outward * (piston.acceleration(gas.box, scene.properties.acceleration) - acceleration[piston.axis])
-            < 0
-        )
+        relative = piston.acceleration(gas.box, scene.properties.acceleration) - acceleration[piston.axis]
+        pressed = piston.outward * relative < 0
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
         yield "the piston", in_contact & pressed
 

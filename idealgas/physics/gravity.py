@@ -6,7 +6,7 @@ from idealgas.jit import inline
 
 
 class Gravity(NamedTuple):
-    """Constant acceleration of all discs.
+    """Constant acceleration of the discs.
 
     Attributes:
         x: component along x, length/time².

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -61,16 +61,14 @@ class Progress:
 def stop_of(scene: Scene, n: int) -> Stop:
     """Stop rules of a scene with n discs."""
     run = scene.run
-    stop = Stop()
-    if run.until is not None:
-        stop = stop._replace(time=run.until)
-    if run.events is not None:
-        stop = stop._replace(events=run.events)
-    if run.collisions_per_disc is not None:
-        stop = stop._replace(disc_collisions=min(math.ceil(run.collisions_per_disc * n / 2), UNLIMITED))
-    if run.trials is not None:
-        stop = stop._replace(trials=run.trials)
-    return stop
+    collisions = run.collisions_per_disc and min(math.ceil(run.collisions_per_disc * n / 2), UNLIMITED)
+    given: dict[str, Any] = {
+        "time": run.until,
+        "events": run.events,
+        "disc_collisions": collisions,
+        "trials": run.trials,
+    }
+    return Stop(**{name: limit for name, limit in given.items() if limit is not None})
 
 
 def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:

@@ -103,10 +103,5 @@ class StallDetector:
 def _expected_collisions(gas: Gas, duration: float) -> float:
     """Pair collisions expected in a time by kinetic theory, from velocities relative to the mean velocity."""
     n, speed = len(gas), float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
-    return (
-        n
-        / 2
-        * disc_collisions_per_length(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box)
-        * speed
-        * duration
-    )
+    per_length = disc_collisions_per_length(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box)
+    return n / 2 * per_length * speed * duration

@@ -23,7 +23,7 @@ from idealgas.toml.table import Number, Positive, Table
 from idealgas.toml.text import Origin, parse_document, read_text
 
 PHI, BASE = "phi", "base"
-"""Keys of axes beside those of a scene: packing fraction, by scaling the box, and path of the base scene."""
+"""Keys of axes in addition to those of a scene: packing fraction, by scaling the box, and path of the base scene."""
 
 
 def _known(name: str) -> str:

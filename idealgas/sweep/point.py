@@ -2,31 +2,12 @@
 
 import json
 import os
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from idealgas.analysis import registry
 from idealgas.files import replacing
-from idealgas.scene import parse_scene
-
-
-@dataclass(frozen=True)
-class Task:
-    """Task of a worker for one point, as plain values.
-
-    folder: of the sweep. index, combination, replicate: numbers of the point, see `Point`. values: value of each axis,
-    by its key. scene: text of the scene. analyses: names of the analyses. keep_log: whether the log is kept.
-    """
-
-    folder: str
-    index: int
-    combination: int
-    replicate: int
-    values: dict[str, Any]
-    scene: str
-    analyses: tuple[str, ...]
-    keep_log: bool
+from idealgas.sweep.plan import Point
+from idealgas.toml.dump import dump_document
 
 
 def points_folder(folder: str | os.PathLike[str]) -> Path:
@@ -44,33 +25,36 @@ def log_path(folder: str | os.PathLike[str], index: int) -> Path:
     return points_folder(folder) / f"{index:04d}.h5"
 
 
-def run_point(task: Task) -> None:
+def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: bool) -> None:
     """Simulate and analyse a point; its files get their names when they are complete, the result file last."""
     from idealgas.log import open_log
     from idealgas.run.simulate import simulate
 
-    done, log = result_path(task.folder, task.index), log_path(task.folder, task.index)
+    done, log = result_path(folder, point.index), log_path(folder, point.index)
     if done.exists():
         return
-    scene = parse_scene(task.scene)
-    if not task.keep_log:  # the log is removed, so compression would only cost time
+    scene = point.scene
+    if not keep_log:  # the log is removed, so compression would only cost time
         scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
     part = log.with_name(f"{log.name}.part")
     simulate(scene, part, force=True, command="idealgas sweep")
     with open_log(part) as opened:
         summary = {name: value for name, value in opened.summary.items() if not name.endswith("seconds")}
-        results = {name: registry.analyse(opened, name).as_dict() for name in task.analyses}
-    if task.keep_log:
+        results = {name: registry.analyse(opened, name).as_dict() for name in analyses}
+    if keep_log:
         part.replace(log)
     else:
         part.unlink()
-    labels = {
-        "point": task.index,
+    found = {
+        "point": point.index,
         "seed": scene.scene.seed,
-        "combination": task.combination,
-        "replicate": task.replicate,
+        "combination": point.combination,
+        "replicate": point.replicate,
+        "values": point.values,
+        "scene": dump_document(point.scene),
+        "summary": summary,
+        "analyses": results,
     }
-    found = {**labels, "values": task.values, "scene": task.scene, "summary": summary, "analyses": results}
     text = json.dumps(found, indent=1, allow_nan=False)
     with replacing(done) as unfinished:
         unfinished.write_text(text)

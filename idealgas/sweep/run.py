@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +20,7 @@ from idealgas.errors import OutputError, UserError
 from idealgas.sweep.cost import estimate_cost
 from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
 from idealgas.sweep.plan import Sweep
-from idealgas.sweep.point import Task, result_path, run_point
-from idealgas.toml.dump import dump_document
+from idealgas.sweep.point import result_path, run_point
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -94,27 +94,21 @@ def run_sweep(
         sweep = resume_numbering(sweep, folder)
         open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
         before = len(sweep.points) - len(open_points)
-        tasks = [
-            Task(
-                str(folder), p.index, p.combination, p.replicate, p.values, dump_document(p.scene), sweep.analyses,
-                sweep.keep_logs,
-            )
-            for p in open_points
-        ]  # fmt: skip
+        remaining = replace(sweep, points=tuple(open_points))
         failures: dict[int, str] = {}
-        workers = min(workers or os.cpu_count() or 1, max(len(tasks), 1))
-        estimated = None if scheduler or not tasks else _estimate(replace(sweep, points=tuple(open_points)), workers)
+        workers = min(workers or os.cpu_count() or 1, max(len(open_points), 1))
+        estimated = None if scheduler or not open_points else _estimate(remaining, workers)
         started = time.monotonic()
         on_progress(Progress(before, 0, len(sweep.points)))
-        if tasks:
+        if open_points:
             with _client(workers, scheduler) as client:
-                for k, (index, failure) in enumerate(_run(client, tasks)):
+                for k, (index, failure) in enumerate(_run(client, remaining, folder)):
                     if failure is not None:
                         check_folder(folder)
                         failures[index] = failure
                     on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
     seconds = time.monotonic() - started
-    return Outcome(len(tasks) - len(failures), before, dict(sorted(failures.items())), seconds, estimated)
+    return Outcome(len(open_points) - len(failures), before, dict(sorted(failures.items())), seconds, estimated)
 
 
 def _estimate(sweep: Sweep, workers: int) -> float | None:
@@ -124,12 +118,14 @@ def _estimate(sweep: Sweep, workers: int) -> float | None:
     return None
 
 
-def _run(client: "Client", tasks: list[Task]) -> Iterator[tuple[int, str | None]]:
+def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, str | None]]:
     """Yield the index of each point when it ends, with the reason of its failure or None."""
     from distributed import as_completed
 
-    futures = client.map(run_point, tasks, pure=False, retries=RETRIES, key=[f"point-{task.index}" for task in tasks])
-    index = {future.key: task.index for future, task in zip(futures, tasks, strict=True)}
+    run = partial(run_point, folder=folder, analyses=sweep.analyses, keep_log=sweep.keep_logs)
+    keys = [f"point-{point.index}" for point in sweep.points]
+    futures = client.map(run, sweep.points, pure=False, retries=RETRIES, key=keys)
+    index = {future.key: point.index for future, point in zip(futures, sweep.points, strict=True)}
     try:
         for future in as_completed(futures, loop=client.loop):
             if future.status == "cancelled":

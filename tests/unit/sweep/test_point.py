@@ -1,15 +1,14 @@
 import csv
 import json
-from dataclasses import replace
 
 import pytest
 
 from idealgas.analysis.pressure.combine import restore_pressure
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
-from idealgas.sweep.point import Task, log_path, points_folder, result_path, run_point
+from idealgas.sweep.plan import Point
+from idealgas.sweep.point import log_path, points_folder, result_path, run_point
 from idealgas.sweep.results import read_points, stored_results, write_tables
-from idealgas.toml.dump import dump_document
 
 SCENE = """
 scene.seed = 4
@@ -19,15 +18,17 @@ run.events = 2000
 """
 
 
+ANALYSES = ("pressure", "temperature")
+
+
 @pytest.fixture
-def task(tmp_path):
+def point(tmp_path):
     points_folder(tmp_path).mkdir()
-    scene = dump_document(parse_scene(SCENE))
-    return Task(str(tmp_path), 3, 1, 1, {"phi": 0.1, "species.x": [1, 2]}, scene, ("pressure", "temperature"), True)
+    return Point(3, 1, 1, {"phi": 0.1, "species.x": [1, 2]}, parse_scene(SCENE))
 
 
-def test_a_point_leaves_its_log_and_its_results(task, tmp_path):
-    run_point(task)
+def test_a_point_leaves_its_log_and_its_results(point, tmp_path):
+    run_point(point, tmp_path, ANALYSES, True)
     assert sorted(path.name for path in points_folder(tmp_path).iterdir()) == ["0003.h5", "0003.json"]
     (found,) = read_points(tmp_path)
     assert (found["point"], found["replicate"], found["seed"]) == (3, 1, 4)
@@ -36,25 +37,25 @@ def test_a_point_leaves_its_log_and_its_results(task, tmp_path):
     assert parse_scene(found["scene"]) == parse_scene(SCENE)
 
 
-def test_what_is_done_is_not_done_again(task, tmp_path):
+def test_what_is_done_is_not_done_again(point, tmp_path):
     result_path(tmp_path, 3).write_text("as it was")
-    run_point(task)
+    run_point(point, tmp_path, ANALYSES, True)
     assert result_path(tmp_path, 3).read_text() == "as it was"
     assert not log_path(tmp_path, 3).exists()
 
 
-def test_results_do_not_depend_on_what_a_dead_worker_left(task, tmp_path):
-    run_point(task)
+def test_results_do_not_depend_on_what_a_dead_worker_left(point, tmp_path):
+    run_point(point, tmp_path, ANALYSES, True)
     first = result_path(tmp_path, 3).read_bytes()
     result_path(tmp_path, 3).unlink()
     log_path(tmp_path, 3).rename(log_path(tmp_path, 3).with_suffix(".h5.part"))
-    run_point(replace(task, keep_log=False))
+    run_point(point, tmp_path, ANALYSES, False)
     assert result_path(tmp_path, 3).read_bytes() == first
     assert [path.name for path in points_folder(tmp_path).iterdir()] == ["0003.json"]
 
 
-def test_the_table_is_tidy(task, tmp_path):
-    run_point(task)
+def test_the_table_is_tidy(point, tmp_path):
+    run_point(point, tmp_path, ANALYSES, True)
     tables = write_tables(tmp_path)
     with (tmp_path / "results.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -75,10 +76,10 @@ def test_the_table_is_tidy(task, tmp_path):
         assert parquet.read_table(tables[1]).num_rows == len(rows)
 
 
-def test_folders_without_results_are_refused(task, tmp_path):
+def test_folders_without_results_are_refused(point, tmp_path):
     with pytest.raises(UserError, match="holds no results of a sweep"):
         read_points(tmp_path)
-    run_point(replace(task, analyses=("temperature",)))
+    run_point(point, tmp_path, ("temperature",), True)
     with pytest.raises(UserError, match='does not include the analysis "pressure"'):
         list(stored_results(tmp_path, "pressure"))
     result_path(tmp_path, 3).write_text(json.dumps({})[:1])
