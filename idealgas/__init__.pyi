@@ -11,7 +11,7 @@ from idealgas.analysis.order.measure import order as order
 from idealgas.analysis.pressure.measure import pressure as pressure
 from idealgas.analysis.profile import ProfileAnalysis
 from idealgas.analysis.registry import analyse as analyse
-from idealgas.analysis.relaxation.measure import relaxation as relaxation
+from idealgas.analysis.relaxation import RelaxationAnalysis
 from idealgas.analysis.sound.measure import sound as sound
 from idealgas.analysis.temperature import temperature as temperature
 from idealgas.analysis.transport.measure import transport as transport
@@ -38,3 +38,4 @@ evolution = EvolutionAnalysis.measure
 heat_capacity = HeatCapacityAnalysis.measure
 histogram = HistogramAnalysis.measure
 profile = ProfileAnalysis.measure
+relaxation = RelaxationAnalysis.measure

@@ -10,10 +10,9 @@ import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 from helpers.log_compare import differences
 
-from idealgas import histogram
+from idealgas import histogram, relaxation
 from idealgas.analysis.info import info
 from idealgas.analysis.relaxation.acceptance import acceptance
-from idealgas.analysis.relaxation.measure import relaxation
 from idealgas.analysis.temperature import temperature
 from idealgas.errors import UserError
 from idealgas.log import open_log

@@ -4,24 +4,140 @@ The relaxation time is that of an exponential fitted to the kurtosis of the velo
 of the fluctuations of a gas of so many discs. Several logs are drawn in one picture.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
-from idealgas.analysis.core.analysis import Analysis, Option, Section
-from idealgas.analysis.relaxation.measure import Relaxation, Relaxations, combine_relaxation, relaxation
-from idealgas.analysis.relaxation.tables import relaxation_tables
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.ensemble import ensemble
+from idealgas.analysis.core.fields import OMITTED, Key, reported
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, ks_distance
+from idealgas.analysis.core.tables import Cell, Number, Table
+from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance, acceptance_tables
+from idealgas.analysis.relaxation.speeds import (
+    SpeedDistributions,
+    check_steady,
+    colliding_span,
+    collisions_per_disc,
+    critical_distance,
+    fit_decay,
+    reduced_energy,
+    reduced_energy_cdf,
+    relative_entropy,
+    speed_distributions,
+    speed_table,
+)
+from idealgas.errors import UserError
+from idealgas.log import Log
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from idealgas.analysis.core.style import Panel
+
+SAMPLES = 320
+
+SETTLED = 3.0
+"""Relaxation times after which a gas counts as settled: 5 % of the distance is left."""
+
+LINEAR = 2.0
+"""Relaxation time of the kurtosis near equilibrium, in collisions per disc, for equal discs.
+
+First Sonine approximation: van Noije & Ernst, Granular Matter 1, 57 (1998), elastic discs in two dimensions. Far from
+equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
+"""
+
+MAXWELLIAN = 2.0
+"""Kurtosis of an infinite gas in equilibrium."""
+
+FEW = 100
+"""Number of discs below which the error of the relaxation time is not known well."""
+
+HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "indistinguishable")
+
+NOTES = (
+    "Relaxation time: of the kurtosis; after three of them 5 % of the distance is left, and the gas has settled.",
+    "Indistinguishable: from the first time on at which the speeds pass a Kolmogorov-Smirnov test at 5 %.",
+    "A collision counts for both discs. Near equilibrium theory expects a relaxation time of "
+    f"{LINEAR:g} collisions per disc, farther away more.",
+)
+
+DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
+"""Ticks of the axis of distances, which has both small and large values."""
+
+
+@dataclass(frozen=True)
+class Relaxation(Result):
+    """Relaxation of the gas of one log at K instants.
+
+    All measures take the reduced energy x = m v²/2T of a disc, whose density in equilibrium is exp(-x) whatever its
+    mass. As the energy is conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value is the relative entropy of the
+    two distributions.
+
+    Attributes:
+        path: of the log.
+        number: of discs.
+        time: (K,), times.
+        collisions: (K,), collisions per disc since the first instant.
+        kurtosis: (K,), ⟨v⁴⟩/⟨v²⟩² in reduced energies, from 1 of equal speeds to 2.
+        distance: (K,), Kolmogorov-Smirnov distance.
+        entropy: (K,), H - H_eq per disc.
+        equilibrium_kurtosis: mean kurtosis of this number of discs in equilibrium.
+        critical_distance: distance that one in twenty gases of this number of discs in equilibrium exceeds.
+        in_time, in_collisions: fitted relaxation time of the kurtosis, in units of time and in collisions per disc;
+            None if the kurtosis at the start is within its fluctuations in equilibrium.
+        first_indistinguishable: index of the first instant at which the distance is below the critical distance; None
+            if there is none.
+        acceptance: acceptance of Monte Carlo trials; None for other methods.
+        speeds: speed distributions; None unless they were counted.
+    """
+
+    path: str
+    number: int
+    time: np.ndarray
+    collisions: Annotated[np.ndarray, Key("collisions_per_disc")]
+    kurtosis: np.ndarray
+    distance: np.ndarray
+    entropy: np.ndarray
+    equilibrium_kurtosis: float
+    critical_distance: float
+    in_time: Annotated[Estimate | None, Key("relaxation_time")]
+    in_collisions: Annotated[Estimate | None, Key("relaxation_collisions_per_disc")]
+    first_indistinguishable: Annotated[int | None, OMITTED]
+    acceptance: Acceptance | None
+    speeds: Annotated[SpeedDistributions | None, Key("speed_distributions")]
+
+    @property
+    @reported
+    def settled_time(self) -> float | None:
+        """Time after which a gas counts as settled; None without a relaxation time."""
+        return SETTLED * self.in_time.value if self.in_time else None
+
+    @property
+    @reported
+    def indistinguishable_after(self) -> dict[str, float] | None:
+        """Time and collisions per disc at `first_indistinguishable`; None if there is none."""
+        if (k := self.first_indistinguishable) is None:
+            return None
+        return {"time": float(self.time[k]), "collisions_per_disc": float(self.collisions[k])}
+
+
+@dataclass(frozen=True)
+class Relaxations(Result):
+    """Relaxation of the gas of each log."""
+
+    logs: tuple[Relaxation, ...]
+
 
 class RelaxationAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `relaxation`."""
+    """Relaxation to equilibrium."""
 
     position = 60
-    results = (
-        Relaxation,
-        Relaxations,
-    )
+    results = (Relaxation, Relaxations)
     sections = (
         Section(
             "Relaxation",
@@ -41,13 +157,162 @@ class RelaxationAnalysis(Analysis):
     end = "after 40 collisions per disc"
     reads = "instants"
 
-    measure = staticmethod(relaxation)
-    tables = staticmethod(relaxation_tables)
-    combine = staticmethod(combine_relaxation)
+    @staticmethod
+    def measure(
+        log: Log,
+        start: float | None = None,
+        end: float | None = None,
+        progress: Progress | None = None,
+        every: float | None = None,
+    ) -> Relaxation:
+        """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit its time.
+
+        Args:
+            log: log with events.
+            start: time; by default the start of the log.
+            end: time; by default HORIZON collisions per disc after the start.
+            progress: called as progress(done, total) while states are read.
+            every: interval between the instants at which discs are also counted by speed, in trials (Monte Carlo) or
+                time; None for no counts.
+
+        Raises:
+            UserError: if no two discs collide in between, or if the energy of the discs is not constant, so that they
+                tend to no distribution.
+        """
+        check_steady(log)
+        first, last = colliding_span(log, start, end)
+        time, number, equilibrium = np.linspace(first, last, SAMPLES + 1), len(log.discs), ensemble(log)
+        distance, entropy, kurtosis = np.empty((3, len(time)))
+        for k, state in enumerate(log.frames(time)):
+            energy = reduced_energy(log, state.velocity, equilibrium)
+            if not energy.any():
+                raise UserError(f"{log.path}: no disc moves at t = {state.time:g}")
+            distance[k], entropy[k] = ks_distance(energy, reduced_energy_cdf), relative_entropy(energy)
+            kurtosis[k] = number * (energy**2).sum() / energy.sum() ** 2
+            if progress is not None:
+                progress(k + 1, len(time))
+        collisions, critical = collisions_per_disc(log, time), critical_distance(number)
+        target = 2 / (1 + 2 / equilibrium.dof)
+        indistinguishable = np.flatnonzero(distance < critical)
+        in_collisions = fit_decay(collisions, kurtosis, number, target)
+        return Relaxation(
+            path=str(log.path),
+            number=number,
+            time=time,
+            collisions=collisions,
+            kurtosis=kurtosis,
+            distance=distance,
+            entropy=entropy,
+            equilibrium_kurtosis=target,
+            critical_distance=critical,
+            in_time=fit_decay(time - first, kurtosis, number, target),
+            in_collisions=in_collisions,
+            first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
+            acceptance=acceptance(log),
+            speeds=None if every is None else speed_distributions(log, every, start, end),
+            caveats=tuple(_caveats(in_collisions, collisions, kurtosis, number, first > log.start_time)),
+        )
 
     @staticmethod
-    def figure(result: Any) -> "Figure":
-        """Picture of the result; matplotlib is imported where it is drawn."""
-        from idealgas.analysis.relaxation.figure import relaxation_figure
+    def combine(results: Sequence[Relaxation]) -> Relaxations:
+        """Combine the relaxation of several logs, in their order."""
+        return Relaxations(tuple(results))
 
-        return relaxation_figure(result)
+    @staticmethod
+    def tables(found: Relaxations) -> list[Table]:
+        """Tables of speed distributions, if they were counted, of relaxation times, and of Monte Carlo trials."""
+        in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in found.logs]
+        in_collisions = [_row(r, r.in_collisions, r.collisions) for r in found.logs]
+        tried = {r.path: r.acceptance for r in found.logs if r.acceptance is not None}
+        return [
+            *(speed_table(r.path, r.speeds) for r in found.logs if r.speeds is not None),
+            Table("Relaxation to Maxwell-Boltzmann, in units of time", HEADS, in_time, NOTES),
+            Table("The same in collisions per disc", HEADS, in_collisions),
+            *(acceptance_tables(tried) if tried else ()),
+        ]
+
+    @staticmethod
+    def figure(found: Relaxations) -> "Figure":
+        """Picture of kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
+
+        Of several logs it has the same against collisions per disc, on the left.
+        """
+        from idealgas.analysis.core.style import panels
+
+        if len(found.logs) == 1:
+            figure, axes = panels(3)
+            _draw(axes, found, in_time=True)
+        else:
+            figure, axes = panels(3, columns=2)
+            _draw(axes[::2], found, in_time=False)
+            _draw(axes[1::2], found, in_time=True)
+        return figure
+
+
+def _caveats(
+    fit: Estimate | None, collisions: np.ndarray, kurtosis: np.ndarray, number: int, late: bool
+) -> Iterator[str]:
+    """Sentences on a relaxation time in collisions per disc; late: whether it begins after the start of the log."""
+    if fit is None:
+        return
+    if collisions[-1] < fit.value:
+        yield (
+            f"The log is followed for {collisions[-1]:.2g} collisions per disc, less than the relaxation time that was "
+            f"fitted, {fit.value:.2g}: that is an extrapolation."
+        )
+    if kurtosis[0] > MAXWELLIAN:
+        yield (
+            f"The error of the relaxation time is that of a start with equal speeds; here a few discs are faster than "
+            f"most (kurtosis {kurtosis[0]:.3g}, in equilibrium 2), and chance decides how soon they meet others."
+        )
+    if number < FEW:
+        yield f"The error of the relaxation time was calibrated with 200 and 500 discs; here are {number}."
+    if late:
+        yield "The error of the relaxation time is that of a start with equal speeds; later curves scatter more."
+
+
+def _row(result: Relaxation, fit: Estimate | None, series: np.ndarray) -> tuple[Cell, ...]:
+    first = result.first_indistinguishable
+    return (
+        result.path,
+        Number(result.number, "d"),
+        Number(fit.value if fit else None, ".4g", absent="none seen"),
+        Number(fit.standard_error if fit else None, ".2g"),
+        Number(SETTLED * fit.value if fit else None, ".4g"),
+        Number(None if first is None else float(series[first]), ".3g", absent="not reached"),
+    )
+
+
+def _draw(axes: "Sequence[Panel]", found: Relaxations, in_time: bool) -> None:
+    """Draw three panels against time, or against collisions per disc."""
+    from matplotlib.ticker import FixedLocator, NullLocator
+
+    from idealgas.analysis.core.style import BLACK, curve_style
+
+    kurtosis, distance, entropy = axes
+    for k, result in enumerate(found.logs):
+        colour, line, _ = curve_style(k)
+        name = f"{Path(result.path).stem}, N = {result.number}"
+        x, fit = (result.time, result.in_time) if in_time else (result.collisions, result.in_collisions)
+        kurtosis.plot(x, result.kurtosis, line, color=colour, linewidth=1.2, label=name)
+        if fit is not None:
+            start, target = result.kurtosis[0], result.equilibrium_kurtosis
+            model = target + (start - target) * np.exp(-(x - x[0]) / fit.value)
+            kurtosis.plot(x, model, color=colour, linewidth=2.5, alpha=0.35, label="fitted exponential")
+        distance.plot(x, result.distance, line, color=colour, linewidth=1.2, label=name)
+        beyond = "1 in 20 gases is beyond it"
+        distance.axhline(result.critical_distance, color=colour, linestyle=":", linewidth=1, label=beyond)
+        entropy.plot(x, result.entropy, line, color=colour, linewidth=1.2, label=name)
+        for ax in axes:
+            ax.set_xlim(x[0], x[-1])
+            ax.time_axis() if in_time else ax.set_xlabel("collisions per disc (no unit)")
+    kurtosis.axhline(MAXWELLIAN, color=BLACK, linestyle="--", label="Maxwell-Boltzmann")
+    kurtosis.set_ylabel("kurtosis ⟨v⁴⟩/⟨v²⟩² (no unit)")
+    distance.set(ylabel="KS distance (no unit)", yscale="log")
+    distance.yaxis.set_major_locator(FixedLocator(DISTANCES))
+    distance.yaxis.set_major_formatter("{x:g}")
+    distance.yaxis.set_minor_locator(NullLocator())
+    entropy.axhline(0, color=BLACK, linestyle="--", label="equilibrium")
+    entropy.set_ylabel("H less that of equilibrium, per disc (no unit)")
+    for ax in axes:
+        ax.legend()

@@ -1,6 +1,7 @@
 """Acceptance of the trials of a Monte Carlo run, compared with kinetic theory and with a published run."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -9,6 +10,7 @@ import numpy as np
 from idealgas.analysis.core.ensemble import composition, ensemble
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.tables import Cell, Number, Table, estimates
 from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.log import Log
 from idealgas.scene import Scene
@@ -28,11 +30,14 @@ MANY = 2000  # largest number of discs for which the mean over pairs takes all d
 class Acceptance:
     """Acceptance of the trials of a Monte Carlo run: share of the trials that became collisions.
 
-    number: of trials. collisions: number of accepted trials. collisions_per_disc: their number per disc. acceptance:
-    measured share; its theory is that of these discs in equilibrium. at_start: share expected for the velocities at the
-    start. expected: share expected in equilibrium, by the name of the ensemble. published: published number of
-    collisions; None for other scenes. raises: of v_ref, in order of time, each as the number of trials before it and
-    the v_ref from then on (length/time); the first is that of the start.
+    Attributes:
+        number: of trials.
+        collisions, collisions_per_disc: number of accepted trials, and that number per disc.
+        acceptance: measured share; its theory is that of these discs in equilibrium.
+        at_start: share expected for the velocities at the start.
+        expected: share expected in equilibrium, by the name of the ensemble.
+        published: published number of collisions; None for other scenes.
+        raises: number of trials before each v_ref and the v_ref from then on (length/time), in order of time.
     """
 
     number: Annotated[int, Key("trials")]
@@ -55,24 +60,24 @@ def acceptance(log: Log) -> Acceptance | None:
     """Measure the acceptance of all trials of a log; None if its method has no trials."""
     if "trial" not in log.columns:
         return None
-    number = log.summary["trials"] if log.complete else last_trial(log)
-    collisions, n = len(log) // 2, len(log.discs)
+    number, collisions = log.summary["trials"] if log.complete else last_trial(log), len(log) // 2
     share = collisions / max(number, 1)
     error = float(np.sqrt(share * (1 - share) / max(number, 1)))
-    equilibrium, raises = ensemble(log), raises_of(log)
+    equilibrium, raises = ensemble(log), _raises(log)
     still = conserved.share_of_motion(log.discs, equilibrium.centre_of_mass_velocity) <= conserved.SAID_FROM
-    v_ref = mean_reference_speed(raises, number)
-    fixed = equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
-    expected = {
-        "Maxwell-Boltzmann": equilibrium_acceptance(
-            log, v_ref, log.discs.temperature if still else equilibrium.temperature
-        ),
-        f"fixed energy and momentum, D = {equilibrium.dof}": fixed,
-    }
-    acceptance = Estimate(share, error, float(number), theory=fixed)
-    published = PUBLISHED if is_published(log.scene) else None
-    at_start = start_acceptance(log, raises[0][1])
-    return Acceptance(number, collisions, 2 * collisions / n, acceptance, at_start, expected, published, raises)
+    v_ref = _mean_reference_speed(raises, number)
+    fixed = _equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
+    maxwell = _equilibrium_acceptance(log, v_ref, log.discs.temperature if still else equilibrium.temperature)
+    return Acceptance(
+        number,
+        collisions,
+        2 * collisions / len(log.discs),
+        Estimate(share, error, float(number), theory=fixed),
+        at_start=_start_acceptance(log, raises[0][1]),
+        expected={"Maxwell-Boltzmann": maxwell, f"fixed energy and momentum, D = {equilibrium.dof}": fixed},
+        published=PUBLISHED if _is_published(log.scene) else None,
+        raises=raises,
+    )
 
 
 def last_trial(log: Log) -> int:
@@ -80,12 +85,9 @@ def last_trial(log: Log) -> int:
     return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
 
 
-def raises_of(log: Log) -> tuple[tuple[int, float], ...]:
-    """Each v_ref of a log (length/time) with the number of trials made before it: that of the start, then the raised.
-
-    A v_ref that the scene gives, or that of a log from before it could rise, is the only one.
-    """
-    if V_REF not in log.observables:
+def _raises(log: Log) -> tuple[tuple[int, float], ...]:
+    """Each v_ref of a log (length/time) with the number of trials before it: that of the start, then raised ones."""
+    if V_REF not in log.observables:  # the scene gives the only one
         return ((0, reference_speed(log.scene.run, float(np.hypot(*log.discs.velocity.T).max()))),)
     values = log.observables[V_REF][1]
     trials = log.observables["trials"][1][: len(values)]
@@ -93,21 +95,18 @@ def raises_of(log: Log) -> tuple[tuple[int, float], ...]:
     return tuple(zip(trials[first].tolist(), values[first].tolist(), strict=True))
 
 
-def mean_reference_speed(raises: tuple[tuple[int, float], ...], number: int) -> float:
-    """The v_ref, length/time, that would accept as many of all trials as those of a run did: their harmonic mean.
-
-    number: of all trials.
-    """
+def _mean_reference_speed(raises: tuple[tuple[int, float], ...], number: int) -> float:
+    """Harmonic mean of the v_ref, length/time, over all trials: it accepts as many of them as those of the run."""
     starts = np.array([trials for trials, _ in raises] + [max(number, raises[-1][0] + 1)])
     return float(np.diff(starts).sum() / (np.diff(starts) / [v_ref for _, v_ref in raises]).sum())
 
 
-def largest_product(log: Log, v_ref: float) -> float:
+def _largest_product(log: Log, v_ref: float) -> float:
     """Sum of radii times relative speed of a pair at which a trial is always accepted, length²/time."""
     return float(np.sort(log.discs.radius)[-2:].sum()) * v_ref
 
 
-def equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: float = math.inf) -> float:
+def _equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: float = math.inf) -> float:
     """Acceptance in equilibrium: mean of the sum of radii times relative speed over its largest value.
 
     It is √(π/2)/5 for equal discs if v_ref is 5 times the root-mean-square speed.
@@ -116,22 +115,51 @@ def equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: floa
     sigma = discs.radius[:, None] + discs.radius
     speed = hard_discs.mean_relative_speeds(temperature, discs.mass, dof)
     pairs = discs.number[:, None] * (discs.number - np.eye(len(discs.number)))
-    return float((pairs * sigma * speed).sum() / pairs.sum() / largest_product(log, v_ref))
+    return float((pairs * sigma * speed).sum() / pairs.sum() / _largest_product(log, v_ref))
 
 
-def start_acceptance(log: Log, v_ref: float) -> float:
+def _start_acceptance(log: Log, v_ref: float) -> float:
     """Acceptance for the velocities at the start: (4/π)/5 for equal speeds in random directions."""
     gas = log.discs
     some = slice(None, None, -(-len(gas) // MANY))
     v, r = gas.velocity[some], gas.radius[some]
     product = (r[:, None] + r) * np.hypot(*(v[:, None] - v).T)
-    return float(product.sum() / (len(r) * (len(r) - 1)) / largest_product(log, v_ref))
+    return float(product.sum() / (len(r) * (len(r) - 1)) / _largest_product(log, v_ref))
 
 
-def is_published(scene: Scene) -> bool:
+def _is_published(scene: Scene) -> bool:
     """Whether a scene is that of the published run of Novak & Bortz (1970)."""
     run = scene.run
     if len(scene.species) != 1 or scene.disc or run.trials != 28_000 or run.events or run.collisions_per_disc:
         return False
     (gas,) = scene.species
     return gas.count == 200 and gas.speed is not None and (run.v_ref or 5 * gas.speed) == 5 * gas.speed
+
+
+def acceptance_tables(tried: dict[str, Acceptance]) -> list[Table]:
+    """Tables of the acceptance of each log, compared with theory and with the value of the published run."""
+    counts = [
+        (path, Number(found.number, ","), Number(found.collisions, ","), Number(found.collisions_per_disc, ".5g"))
+        for path, found in tried.items()
+    ]
+    expected = [row for path, found in tried.items() for row in _expected(path, found)]
+    raised = [
+        (path, Number(trials, ","), Number(v_ref, ".6g"))
+        for path, found in tried.items()
+        for trials, v_ref in found.raises
+    ]
+    return [
+        Table("Trials of pairs", ("", "trials", "collisions", "collisions per disc"), counts),
+        estimates("Acceptance of trials", [(path, found.acceptance) for path, found in tried.items()]),
+        Table("Acceptance expected", ("", "value", "collisions"), expected),
+        Table("Reference speed", ("", "after trials", "v_ref"), raised),
+    ]
+
+
+def _expected(path: str, found: Acceptance) -> Iterator[tuple[Cell, ...]]:
+    shares = {"at the start": found.at_start} | {f"in equilibrium, {name}": x for name, x in found.expected.items()}
+    for name, share in shares.items():
+        yield f"{path}: {name}", Number(share, ".5f"), Number(share * found.number, ",.0f")
+    if found.published is not None:
+        share = found.published / found.number
+        yield f"{path}: published, Novak & Bortz (1970)", Number(share, ".5f"), Number(found.published, ",")

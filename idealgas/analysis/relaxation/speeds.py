@@ -1,4 +1,7 @@
-"""Speed distributions at several instants: numbers of discs in classes of speed."""
+"""Speeds of discs against their distribution in equilibrium: distances from it, relaxation time, classes of speed.
+
+The reduced energy of a disc has the density exp(-x) in equilibrium.
+"""
 
 import math
 from dataclasses import dataclass
@@ -6,18 +9,14 @@ from itertools import count, takewhile
 from typing import Annotated
 
 import numpy as np
+from scipy import optimize
 
-from idealgas.analysis.core.ensemble import ensemble
+from idealgas.analysis.core.ensemble import Ensemble, ensemble
 from idealgas.analysis.core.fields import Key
-from idealgas.analysis.core.statistics import ks_distance
+from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.stream import span
+from idealgas.analysis.core.tables import Cell, Number, Table
 from idealgas.analysis.relaxation.acceptance import last_trial
-from idealgas.analysis.relaxation.velocities import (
-    check_steady,
-    collisions_per_disc,
-    reduced_energy,
-    reduced_energy_cdf,
-)
 from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -27,16 +26,152 @@ CLASSES = 0.3 * np.arange(9)
 
 MOST_INSTANTS = 10_000
 
+HORIZON = 40.0
+"""Default length of the window in collisions per disc: about ten relaxation times."""
+
+CELLS = 32
+"""Number of cells of equal probability for H."""
+
+LEAST_RELAXATION = 4.0
+"""Smallest deviation of the kurtosis at the start for a fit, in its standard deviations in equilibrium."""
+
+MEMORY = 2 / 3
+"""Time for which fluctuations of the kurtosis last, in units of the relaxation time on the whole way: 2 over 3."""
+
+
+def check_steady(log: Log) -> None:
+    """Check that the velocities of a log can relax to Maxwell-Boltzmann's distribution.
+
+    Raises:
+        UserError: if the log has no events, if the kinetic energy of its discs is not constant, or if no disc moves.
+    """
+    if not log.has_events:
+        raise UserError(f"{log.path}: has no events (made with log.events = false)")
+    if restless := log.scene.lacking("conserves_motion"):
+        raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
+    if not log.discs.temperature > 0:
+        raise UserError(f"{log.path}: no disc moves")
+
+
+def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
+    """First and last time to follow; by default it ends after HORIZON collisions per disc or at the end of the log.
+
+    Raises:
+        UserError: if no discs collide between the two times.
+    """
+    first, last = span(log, start, end)
+    most = HORIZON * len(log.discs) if end is None else math.inf
+    found = 0
+    for rows in log.chunks(("time", "partner"), log.row_at(first, "right"), log.row_at(last, "right")):
+        pairs = np.flatnonzero(rows.partner >= 0)
+        if found + len(pairs) > most:
+            return first, float(rows.time[pairs[int(most) - found]])
+        found += len(pairs)
+    if not found:
+        raise UserError(f"{log.path}: no two discs collide between t = {first:g} and {last:g}")
+    return first, last
+
+
+def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
+    """Mean number (K,) of collisions of a disc from time[0] up to each time; a collision counts for both discs."""
+    rows_until = np.zeros(len(time))
+    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
+        instant = np.searchsorted(time, rows.time[rows.partner >= 0])
+        rows_until += np.bincount(instant, minlength=len(time))
+    return np.cumsum(rows_until) / len(log.discs)
+
+
+def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
+    """Reduced energy m v²/2T of every disc (no unit), with its mean kinetic energy T in equilibrium."""
+    gas = log.discs
+    square = ((velocity - equilibrium.centre_of_mass_velocity) ** 2).sum(axis=1)
+    return gas.mass * square / (2 * equilibrium.of_species[gas.species])
+
+
+def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
+    """Distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
+    return -np.expm1(-energy)
+
+
+def relative_entropy(energy: np.ndarray) -> float:
+    """Relative entropy ∫ p ln(p/e^(-x)) dx of reduced energies (N,), estimated in cells of equal probability (no unit).
+
+    The bias (cells - 1)/2N is subtracted: Miller (1955). The estimate is at most ln(cells), for equal speeds, whose
+    relative entropy is infinite.
+    """
+    n = len(energy)
+    cells = max(2, min(CELLS, n // 5))
+    cell = np.minimum((reduced_energy_cdf(energy) * cells).astype(int), cells - 1)
+    share = np.bincount(cell, minlength=cells) / n
+    seen = share[share > 0]
+    return float((seen * np.log(seen * cells)).sum() - (cells - 1) / (2 * n))
+
+
+def critical_distance(number: int) -> float:
+    """Kolmogorov-Smirnov distance that one in twenty gases of `number` discs in equilibrium exceeds (no unit).
+
+    It is that of an exponential law with fitted mean, as the total energy is fixed: Stephens, J. Am. Stat. Assoc. 69,
+    730 (1974), table 1.5.
+    """
+    root = math.sqrt(number)
+    return 1.094 / (root + 0.26 + 0.5 / root) + 0.2 / number
+
+
+def fit_decay(time: np.ndarray, kurtosis: np.ndarray, number: int, target: float) -> Estimate | None:
+    """Relaxation time of the kurtosis (S,) from its first value to its target by least squares, in the unit of `time`.
+
+    The error is that of the fluctuations of a gas of `number` discs. Their variance in equilibrium, about 4/N, is that
+    of equally probable shares of the energy. They start from none and grow as the gas relaxes: in 300 runs each of 200
+    and 500 discs from equal speeds the errors are right to 2 % ± 4 %. Discs are not independent of each other, as a
+    collision changes two at once.
+    """
+    if abs(kurtosis[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(number):
+        return None
+    value = decay_time(time, kurtosis, target)
+    left = np.exp(-time / value)
+    slope = (target - kurtosis[0]) * time / value**2 * left
+    n = number
+    variance = 4 * n**2 * (n - 1) / ((n + 1) ** 2 * (n + 2) * (n + 3))  # n² times that of the sum of squared spacings
+    scatter = variance * np.outer(1 - left, 1 - left)
+    scatter *= np.exp(-np.abs(np.subtract.outer(time, time)) / (MEMORY * value))
+    error = math.sqrt(float(slope @ scatter @ slope)) / float(slope @ slope)
+    return Estimate(value, error, float(number))
+
+
+def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
+    """Relaxation time τ of target + (series[0] - target) exp(-time/τ), fitted to a series by least squares.
+
+    time, series: (S,). The result has the unit of `time`.
+    """
+
+    def misfit(logarithm: float) -> float:
+        model = target + (series[0] - target) * np.exp(-time * math.exp(-logarithm))
+        return float(((series - model) ** 2).sum())
+
+    low, high = math.log(time[time > 0][0] / 10), math.log(10 * time[-1])
+    start = min(np.linspace(low, high, 40), key=misfit)
+    step = (high - low) / 39
+    found = optimize.minimize_scalar(misfit, bounds=(start - step, start + step), method="bounded")
+    return math.exp(found.x)
+
+
+# ── classes of speed ──
+
 
 @dataclass(frozen=True)
 class SpeedDistributions:
     """Speed distributions at K instants in C classes of speed.
 
-    Speeds are relative to the centre of mass along axes where momentum is conserved. time: (K,), times. trials: (K,),
-    Monte Carlo trials until then; None for a method without trials. collisions: (K,), collisions per disc until then.
-    distance: (K,), Kolmogorov-Smirnov distance from Maxwell-Boltzmann's distribution. rms: root-mean-square speed,
-    length/time. edges: (C,), lower ends of the classes, length/time. counts: (K, C), numbers of discs. expected: (C,),
-    numbers of discs by Maxwell-Boltzmann's distribution.
+    Speeds are relative to the centre of mass along axes where momentum is conserved.
+
+    Attributes:
+        time: (K,), times.
+        trials: (K,), Monte Carlo trials until then; None for a method without trials.
+        collisions: (K,), collisions per disc until then.
+        distance: (K,), Kolmogorov-Smirnov distance from the Maxwell-Boltzmann distribution.
+        rms: root-mean-square speed, length/time.
+        edges: (C,), lower ends of the classes, length/time.
+        counts, expected: (K, C) and (C,), numbers of discs, and those of the Maxwell-Boltzmann distribution.
     """
 
     time: np.ndarray
@@ -73,15 +208,13 @@ def speed_distributions(
         speed = np.hypot(*(state.velocity - equilibrium.centre_of_mass_velocity).T)
         counts.append(np.histogram(speed, [*edges, math.inf])[0])
         distance.append(ks_distance(reduced_energy(log, state.velocity, equilibrium), reduced_energy_cdf))
-    species = zip(equilibrium.of_species, range(len(gas.species_names)), strict=True)
     expected = np.zeros(len(edges))
-    for temperature, s in species:
+    for s, temperature in enumerate(equilibrium.of_species):
         members = gas.species == s
         law = SpeedLaw(float(temperature), float(gas.mass[members][0]))
         expected += members.sum() * np.diff(law.cdf(edges), append=1.0)
-    return SpeedDistributions(
-        time, trials, collisions_per_disc(log, time), np.array(distance), rms, edges, np.array(counts), expected
-    )
+    collisions = collisions_per_disc(log, time)
+    return SpeedDistributions(time, trials, collisions, np.array(distance), rms, edges, np.array(counts), expected)
 
 
 def _at_trials(log: Log, every: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
@@ -100,3 +233,19 @@ def _at_trials(log: Log, every: float, first: float, last: float) -> tuple[np.nd
 def _check_number(instants: float) -> None:
     if instants > MOST_INSTANTS:
         raise UserError(f"{instants:.3g} instants are too many for a table (allowed <= {MOST_INSTANTS})")
+
+
+def speed_table(path: str, found: SpeedDistributions) -> Table:
+    """Table of the numbers of discs by speed, one row for each instant; Maxwell-Boltzmann's numbers in the last row."""
+    title = f"{path}: discs by speed, in classes from multiples of {found.rms:.4g} (rms)"
+    classes = (f"{edge / found.rms:.1f}" for edge in found.edges)
+    clock = [Number(t, ".4g") for t in found.time.tolist()]
+    if found.trials is not None:
+        clock = [Number(trial, ",") for trial in found.trials.tolist()]
+    columns = zip(clock, found.collisions.tolist(), found.distance.tolist(), found.counts.tolist(), strict=True)
+    rows: list[tuple[Cell, ...]] = [
+        (instant, Number(collisions, ".2f"), Number(distance, ".3f"), *(Number(n, "d") for n in counts))
+        for instant, collisions, distance, counts in columns
+    ]
+    rows.append(("law", "", "", *(Number(number, ".1f") for number in found.expected.tolist())))
+    return Table(title, ("time" if found.trials is None else "trials", "coll/disc", "KS", *classes), rows)

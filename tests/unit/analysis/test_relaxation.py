@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 from helpers.crafted import craft, put
 
+from idealgas import relaxation
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.statistics import ks_distance
-from idealgas.analysis.relaxation import measure as module
 from idealgas.analysis.relaxation.acceptance import acceptance
-from idealgas.analysis.relaxation.figure import relaxation_figure
-from idealgas.analysis.relaxation.measure import (
+from idealgas.analysis.relaxation.speeds import (
     colliding_span,
-    combine_relaxation,
+    collisions_per_disc,
     critical_distance,
+    decay_time,
+    reduced_energy,
+    reduced_energy_cdf,
     relative_entropy,
-    relaxation,
+    speed_distributions,
 )
-from idealgas.analysis.relaxation.speeds import speed_distributions
-from idealgas.analysis.relaxation.velocities import collisions_per_disc, reduced_energy, reduced_energy_cdf
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -90,12 +90,12 @@ def test_one_gas_in_twenty_exceeds_the_critical_distance(number):
 def test_decay_times_are_found():
     time = np.linspace(0, 40, 321)
     for tau in (0.5, 2.9, 30.0):
-        assert module.decay_time(time, 2 - np.exp(-time / tau), 2.0) == pytest.approx(tau, rel=1e-4)
+        assert decay_time(time, 2 - np.exp(-time / tau), 2.0) == pytest.approx(tau, rel=1e-4)
 
 
 def test_decay_times_are_found_in_collisions_that_set_in_late():
     collisions = np.maximum(np.linspace(-3, 37, 321), 0)
-    assert module.decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
+    assert decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
 
 
 def test_reduced_energies_of_both_species_have_mean_one(make_log):
@@ -147,7 +147,7 @@ def test_what_was_seen_of_equal_speeds(make_log):
     assert found.in_collisions.value / found.in_time.value == pytest.approx(
         found.collisions[-1] / found.time[-1], rel=0.1
     )
-    axes = relaxation_figure(combine_relaxation([found, found])).axes
+    axes = found.analysis.figure(found.analysis.combine([found, found])).axes
     assert all("(" in axis.get_xlabel() and "(" in axis.get_ylabel() for axis in axes)
 
 
