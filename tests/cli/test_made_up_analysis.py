@@ -5,13 +5,9 @@ The package is copied, and the copy gets the file; everything else of it is as i
 
 import csv
 import json
-import os
-import shutil
-import subprocess
-import sys
 
 import pytest
-from helpers.support import ROOT
+from helpers.fresh_python import COMMAND, package_copy
 
 pytestmark = pytest.mark.slow
 
@@ -83,24 +79,13 @@ values = [1.0, 4.0]
 def idealgas(tmp_path_factory):
     """The command of a copy of the package that has the analysis, in a folder with a scene and its log."""
     copy, folder = tmp_path_factory.mktemp("package"), tmp_path_factory.mktemp("folder")
-    ignored = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(ROOT / "idealgas", copy / "idealgas", ignore=ignored)
-    shutil.copytree(ROOT / "cli", copy / "idealgas_cli", ignore=ignored)
+    python = package_copy(copy, folder)
     (copy / "idealgas" / "analysis" / "fastest_disc.py").write_text(MODULE)
 
-    def run(*arguments, code=0, program="from idealgas_cli.main import main; main()"):
-        done = subprocess.run(
-            [sys.executable, "-c", program, *map(str, arguments)],
-            capture_output=True,
-            text=True,
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(copy)},
-            stdin=subprocess.DEVNULL,
-        )
-        assert done.returncode == code, done.stderr
-        return done.stdout if code == 0 else done.stderr
+    def run(*arguments, code=0):
+        return python(COMMAND, *arguments, code=code)
 
-    run.python = lambda program: run(program=program)
+    run.python = python
     run.folder = folder
     (folder / "scene.toml").write_text(SCENE)
     (folder / "sweep.toml").write_text(SWEEP)

@@ -4,14 +4,10 @@ The package is copied, and the copy gets the effect; everything else in it is un
 """
 
 import json
-import os
-import shutil
-import subprocess
-import sys
 from textwrap import dedent
 
 import pytest
-from helpers.support import ROOT
+from helpers.fresh_python import COMMAND, package_copy
 
 pytestmark = pytest.mark.slow
 
@@ -137,9 +133,7 @@ print(json.dumps([shared, all(np.array_equal(column, together[name]) for name, c
 def run(tmp_path_factory):
     """Runs Python with a copy of the package that has the effect, in a folder with a scene."""
     copy, folder = tmp_path_factory.mktemp("package"), tmp_path_factory.mktemp("folder")
-    ignored = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(ROOT / "idealgas", copy / "idealgas", ignore=ignored)
-    shutil.copytree(ROOT / "cli", copy / "idealgas_cli", ignore=ignored)
+    run = package_copy(copy, folder, NUMBA_DISABLE_JIT="1")
     (copy / "idealgas" / "physics" / "tilt.py").write_text(dedent(LAW).lstrip())
     (copy / "idealgas" / "effects" / "tilt.py").write_text(dedent(EFFECT).lstrip())
     names = copy / "idealgas" / "effects" / "__init__.py"
@@ -147,19 +141,6 @@ def run(tmp_path_factory):
     assert names.read_text().count(last) == 1
     names.write_text(names.read_text().replace(last, last + '    "tilt",\n'))
     (folder / "scene.toml").write_text(SCENE)
-
-    def run(program, *arguments, **environment):
-        done = subprocess.run(
-            [sys.executable, "-c", program, *arguments],
-            capture_output=True,
-            text=True,
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(copy), "NUMBA_DISABLE_JIT": "1"} | environment,
-            stdin=subprocess.DEVNULL,
-        )
-        assert done.returncode == 0, done.stderr
-        return done.stdout
-
     return run
 
 
@@ -176,9 +157,8 @@ def test_it_runs_like_any_other(run):
 
 
 def test_commands_show_it(run):
-    command = "from idealgas_cli.main import main; main()"
-    assert json.loads(run(command, "check", "scene.toml", "--json"))["effects"] == ["tilt"]
-    assert json.loads(run(command, "schema"))["$defs"]["Tilt"]["required"] == ["strength"]
+    assert json.loads(run(COMMAND, "check", "scene.toml", "--json"))["effects"] == ["tilt"]
+    assert json.loads(run(COMMAND, "schema"))["$defs"]["Tilt"]["required"] == ["strength"]
 
 
 @pytest.mark.long

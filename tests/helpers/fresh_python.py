@@ -1,5 +1,7 @@
 """Programs in a Python of their own."""
 
+import os
+import shutil
 import subprocess
 import sys
 
@@ -20,3 +22,27 @@ def python(program, folder, **environment):
     output, errors = process.communicate()
     assert (process.returncode, errors) == (0, "")
     return output.strip()
+
+
+def package_copy(copy, folder, **settings):
+    """Copy the package with its commands; returns run(program, ...), which runs Python with the copy in a folder."""
+    for source, name in (("idealgas", "idealgas"), ("cli", "idealgas_cli")):
+        shutil.copytree(ROOT / source, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+
+    def run(program, *arguments, code=0, **environment):
+        done = subprocess.run(
+            [sys.executable, "-c", program, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            cwd=folder,
+            env=os.environ | {"PYTHONPATH": str(copy)} | settings | environment,
+            stdin=subprocess.DEVNULL,
+        )
+        assert done.returncode == code, done.stderr
+        return done.stdout if code == 0 else done.stderr
+
+    return run
+
+
+COMMAND = "from idealgas_cli.main import main; main()"
+"""Program of the command in such a copy."""
