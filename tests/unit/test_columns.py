@@ -81,7 +81,7 @@ def test_a_log_has_the_columns_of_its_discs(overrides, has, tmp_path):
     """By name, type and shape, in the file as in the batch."""
     scene = parse_scene(GAS, overrides=overrides)
     columns = event_columns(*has)
-    assert row_columns(make_effects(scene, make_gas(scene)), POSITIONS not in has) == columns
+    assert row_columns(make_effects(scene, make_gas(scene)), POSITIONS in has) == columns
     simulate(scene, tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         assert set(log.columns) == set(names(columns))
