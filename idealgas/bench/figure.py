@@ -1,4 +1,4 @@
-"""Picture of the speed of the engine: collisions per second, and time per collision, against the number of discs."""
+"""Figure of the speed of the engine: collisions per second, and time per collision, against the number of discs."""
 
 from typing import Any, NamedTuple
 
@@ -48,20 +48,14 @@ def bench_figure(found: Bench) -> Figure:
         times.plot(n, MICRO / rate, **style)
 
     for (phi, threads), entries in series.items():
-        style = {
-            "color": colour.get(phi, GREY),
-            "marker": marker.get(threads, "."),
-            "ls": "-" if threads == 1 else "--",
-        }
+        line = "-" if threads == 1 else "--"
+        style = {"color": colour.get(phi, GREY), "marker": marker.get(threads, "."), "ls": line}
         draw(entries, f"φ = {phi:g}, {threads} thread{'s' * (threads > 1)}", **style)
     for peer in PEERS:
         label = f"{peer.name}, φ = {peer.phi:g},\n{peer.source}"
         draw(peer.rates, label, color=GREY, marker="x", ls=":")
     for ax, name in ((rates, "million collisions per second"), (times, "time per collision (µs)")):
-        ax.set_xscale("log")
-        ax.set_yscale("log")
-        ax.set_xlabel("number of discs N")
-        ax.set_ylabel(name)
+        ax.set(xscale="log", yscale="log", xlabel="number of discs N", ylabel=name)
         ax.yaxis.set_major_formatter("{x:g}")
     figure.suptitle("Speed of the event-driven engine: reflecting box, equal discs, without the log")
     figure.legend(*rates.get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False, fontsize=9)

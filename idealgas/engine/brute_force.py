@@ -171,8 +171,7 @@ def cross_boundary(periodic, i, axis, forward):
 def advance_events(record, ids, box, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full; records are in order of id.
 
-    Returns the number of rows written, and whether everything up to the limit of time has happened. batch: None where
-    no log is kept. counters: (1,) COUNTERS, updated.
+    Returns the number of rows written, and whether everything up to the limit of time has happened.
     """
     rows = 0
     events = 0

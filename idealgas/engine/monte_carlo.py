@@ -80,8 +80,7 @@ def advance_trials(
 
     most_collisions, most_trials: numbers still allowed. key: of the epoch's random numbers. trial_time: mean time
     between trials. fastest: largest relative speed times sum of the radii, length²/time. fastest_square: square of a
-    disc's largest speed, (length/time)², or None. one_sided: whether impact parameters have one sign only. batch: None
-    where no log is kept. counters: (1,) COUNTERS, updated.
+    disc's largest speed, (length/time)², or None. one_sided: whether impact parameters have one sign only.
     """
     counter = counters[0]
     number = record.shape[0]

@@ -181,7 +181,7 @@ def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, ba
     """Process events up to the limits, or until the batch is full; discs are in order of id.
 
     Returns the number of rows written, and whether everything up to the limit of time has happened. record: the discs
-    rounded to float64, updated. batch: None where no log is kept. counters: (1,) COUNTERS, updated.
+    rounded to float64, updated.
     """
     rows = 0
     events = 0

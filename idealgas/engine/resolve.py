@@ -62,10 +62,7 @@ def finish(disc, own, time, effects):
 
 @inline
 def resolve_pair(a, b, a_id, b_id, time, images, effects):
-    """Collide two discs at a local time.
-
-    images: numbers of box lengths (x, y) between their records, where sides are periodic.
-    """
+    """Collide two discs at a local time."""
     flights = flights_to(effects.flow, a, b, time)
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
@@ -90,8 +87,7 @@ def arrive(disc, time, effects):
 def bounce(disc, own, nx, ny, wall, time, effects):
     """Reflect or emit a disc, whose record is at the time of contact, at a wall at rest; record the energies.
 
-    nx, ny: unit normal of the wall towards the disc. wall: number of the wall. Returns the momentum (px, py) that the
-    disc received, mass length/time.
+    wall: number of the wall. Returns the momentum (px, py) that the disc received, mass length/time.
     """
     energy = energy_of(disc, own, effects.rotation)
     vx = disc.vx
@@ -114,10 +110,7 @@ def resolve_side(disc, own, side, time, effects):
 
 @inline
 def resolve_segment(disc, own, segment, time, images, segments, effects):
-    """Collide a disc with a wall segment at a local time; return whether it touches an end of the segment.
-
-    images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic.
-    """
+    """Collide a disc with a wall segment at a local time; return whether it touches an end of the segment."""
     if segments is not None:
         arrive(disc, time, effects)
         wall = segments[U(segment)]

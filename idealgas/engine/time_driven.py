@@ -199,8 +199,7 @@ def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, ep
 
     Returns the number of rows written, and whether everything up to the limit of time has happened. A limit may be
     reached in the middle of a step; the next call continues from there. step: (1,) STEP, updated. dt: length of a step,
-    time. deepest: (1,) f8, deepest overlap of a collision, divided by the sum of the radii, updated. batch: None where
-    no log is kept. counters: (1,) COUNTERS, updated.
+    time. deepest: (1,) f8, deepest overlap of a collision, divided by the sum of the radii, updated.
     """
     s = step[0]
     number = record.shape[0]

@@ -18,8 +18,7 @@ from idealgas.physics.rotation import tangential_impulse
 def relative_motion(a, b, gravity, periodic, images):
     """Later local time of two records, and the position and velocity of disc a relative to b at that time.
 
-    Returns (time, x, y, vx, vy), in units of time, length and length/time. images: numbers of box lengths (x, y)
-    between the records, where sides are periodic.
+    Returns (time, x, y, vx, vy), in units of time, length and length/time.
     """
     time = a.t if a.t > b.t else b.t
     a_dt = time - a.t
@@ -117,10 +116,7 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 @inline
 def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
-    """Exchange momentum between two discs whose records are at the time of contact; velocities and spins change.
-
-    images: numbers of box lengths (x, y) between the records, where sides are periodic.
-    """
+    """Exchange momentum between two discs whose records are at the time of contact; velocities and spins change."""
     x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)

@@ -1,6 +1,7 @@
 """Contact of a disc with a side of the box (left 0, right 1, bottom 2, top 3), and its collision with any wall.
 
-Without gravity the contact times run in any precision, see `arithmetic`.
+Without gravity the contact times run in any precision, see `arithmetic`. In all laws of walls, (nx, ny) is the unit
+normal of the wall towards the disc.
 """
 
 from idealgas.jit import inline
@@ -25,12 +26,6 @@ def arrival_delay(position, velocity, target):
 
 
 @inline
-def centre_range(length, radius):
-    """Smallest and largest coordinate (length) of a disc's centre between two opposite sides of the box."""
-    return radius, length - radius
-
-
-@inline
 def inward_normal(side):
     """Unit normal (x, y) of a side of the box, pointing into the box."""
     sign = -1.0 if side & 1 else 1.0
@@ -43,7 +38,7 @@ def side_contact(disc, side, length, gravity):
 
     side: 0 to 3. length: distance between this side and the opposite one.
     """
-    low, high = centre_range(length, disc.r)
+    low, high = disc.r, length - disc.r
     position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
     upper = side & 1
     zero, never = number(0.0, velocity), number(NEVER, velocity)
@@ -72,10 +67,7 @@ def reflection_factor(disc, own, nx, ny, restitution):
 
 @inline
 def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
-    """Change the velocity and spin of a disc that touches a wall at rest.
-
-    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
-    """
+    """Change the velocity and spin of a disc that touches a wall at rest, which has the number `wall`."""
     if is_thermal(thermal, wall):
         emit(disc, own, nx, ny, wall, thermal, rotation)
         return

@@ -1,7 +1,8 @@
 """Periodic sides of the box: wrapped positions, images and minimum-image distances.
 
 A disc that crosses a periodic side keeps its record: the crossing is counted, and the position is wrapped when the
-record is next moved.
+record is next moved. In all laws, `images` are the numbers of box lengths (x, y) between two records, or between a
+record and a wall; they matter only where sides are periodic.
 """
 
 from typing import NamedTuple
@@ -96,23 +97,17 @@ def is_periodic(periodic, along_y):
 
 
 @inline
-def boxes_to_nearest(distance, length):
-    """Number of box lengths to subtract from a coordinate difference to get the minimum image."""
-    return round(distance / length)
-
-
-@inline
 def nearest_image(distance, length, is_periodic):
     """Coordinate difference (length) to the nearest image, or as it is along an axis that is not periodic."""
-    return distance - length * boxes_to_nearest(distance, length) if is_periodic else distance
+    return distance - length * round(distance / length) if is_periodic else distance
 
 
 @inline
 def nearest_images(x, y, periodic):
     """Numbers of box lengths (x, y) to subtract from a relative position (x, y) to get the minimum image."""
     if periodic is not None:
-        images_x = np.int64(boxes_to_nearest(x, periodic.Lx)) if periodic.x else 0
-        images_y = np.int64(boxes_to_nearest(y, periodic.Ly)) if periodic.y else 0
+        images_x = np.int64(round(x / periodic.Lx)) if periodic.x else 0
+        images_y = np.int64(round(y / periodic.Ly)) if periodic.y else 0
         return images_x, images_y
     return NO_IMAGES
 

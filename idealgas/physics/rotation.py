@@ -61,10 +61,7 @@ def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
 
 @inline
 def tangential_impulse_at_wall(disc, own, nx, ny, rotation):
-    """Apply a wall's tangential impulse to the velocity and spin of a disc that touches it.
-
-    nx, ny: unit normal of the wall towards the disc. The wall does not move along itself.
-    """
+    """Apply the tangential impulse of a wall at rest to the velocity and spin of a disc that touches it."""
     u = np.uintp(own)
     tx = ny  # the wall is the second disc: n from the disc to the wall is -(nx, ny)
     ty = -nx

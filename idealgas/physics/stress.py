@@ -149,7 +149,6 @@ def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, i
     """Record the collision of two discs at their contact, if stress is recorded.
 
     flights: result of `flights_to`. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
-    images: numbers of box lengths (x, y) between the records, where sides are periodic.
     """
     if flow is not None:
         number, terms = flow.buffer.number, flow.buffer.terms

@@ -46,7 +46,7 @@ def uniform(thermal, own, draw):
 def emit(disc, own, nx, ny, wall, thermal, rotation):
     """Give a disc a random velocity away from a wall, and a random spin, at the wall's temperature.
 
-    nx, ny: unit normal of the wall towards the disc. wall: number of the wall.
+    wall: number of the wall.
     """
     if thermal is not None:
         temperature = thermal.temperature[np.uintp(wall)]

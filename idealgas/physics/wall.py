@@ -137,10 +137,7 @@ def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
 
 @inline
 def segment_normal(disc, segment, periodic, images):
-    """Unit normal (x, y) towards a disc that touches a segment, and whether the disc touches an end.
-
-    images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic.
-    """
+    """Unit normal (x, y) towards a disc that touches a segment, and whether the disc touches an end."""
     tx = segment.tx
     ty = segment.ty
     x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
@@ -182,9 +179,8 @@ def misses_segment(disc, segment, gravity, periodic, images):
 def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
     """Local time at which a disc touches a segment, its body or an end; NEVER if it does not.
 
-    images: numbers of box lengths (x, y) between the disc's record and the segment, where sides are periodic. A
-    touching disc whose reflection would not change a digit of its velocity counts as reflected, unless gravity presses
-    it to the wall.
+    A touching disc whose reflection would not change a digit of its velocity counts as reflected, unless gravity
+    presses it to the wall.
     """
     tx = segment.tx
     ty = segment.ty

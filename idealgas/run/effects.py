@@ -45,15 +45,10 @@ def _spins(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 def with_sums(
     effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool, inner_energy: float
 ) -> Effects:
-    """The effects with all sums of a run, at time 0.
+    """The effects at time 0 with all sums of a run.
 
-    Args:
-        effects: without sums.
-        scene: the scene of the run.
-        gas: its discs at time 0.
-        gives_energy: whether walls give energy to discs, or take some.
-        loses_energy: whether collisions lose energy.
-        inner_energy: energy of the discs in addition to the kinetic one that collisions may turn into it.
+    gives_energy: whether walls give energy to discs, or take some. loses_energy: whether collisions lose energy.
+    inner_energy: energy of the discs that collisions may turn into kinetic energy.
     """
     speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
     largest = max(0.5 * float(gas.mass.mean()) * speed**2, driving_energy(gas, effects), inner_energy)

@@ -28,14 +28,9 @@ DIAGNOSTICS = (
 def layout_of(
     scene: Scene, gas: Gas, effects: Effects, has_positions: bool, extra_state: Iterable[Column] = ()
 ) -> LogLayout:
-    """Layout of the log of a scene.
+    """Layout of the log of a scene, from its discs and effects at time 0.
 
-    Args:
-        scene: the scene.
-        gas: its discs at time 0.
-        effects: its effects at time 0.
-        has_positions: whether discs have positions with its method.
-        extra_state: values of the method that checkpoints store in addition to the discs.
+    has_positions: whether discs have positions. extra_state: values of the method that checkpoints store.
     """
     x, y = ("periodic" if periodic else "none" for periodic in scene.properties.periodic)  # in the words of H5MD
     return LogLayout(

@@ -1,4 +1,4 @@
-"""Picture of one quantity of a sweep against one of its axes."""
+"""Figure of one quantity of a sweep against one of its axes."""
 
 import math
 import os
@@ -16,7 +16,7 @@ Row = dict[str, Any]
 
 
 def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, axis: str | None = None) -> Figure:
-    """Picture of a quantity against an axis: averages over the replicates, theory, and a curve for all other values.
+    """Figure of a quantity against an axis: averages over the replicates, theory, one curve per set of other values.
 
     quantity: "analysis/quantity" with the names of results.csv; None for the first number with an error bar. axis: key
     of an axis with numbers; None for the first one.

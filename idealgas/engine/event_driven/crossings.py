@@ -5,7 +5,7 @@ import numpy as np
 from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
-from idealgas.physics.disc_wall import arrival_delay, centre_range
+from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along
@@ -26,7 +26,7 @@ def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_
     edge = cell if forward else cell - 1
     target = edge * size
     at_side = (edge == 0) | (edge == cells_across - 2)
-    low, high = centre_range(length, disc.r)
+    low, high = disc.r, length - disc.r
     if is_periodic:
         target += boundary_crossings * length
         at_side = False
@@ -49,7 +49,7 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
     speed = velocity_after(velocity, pull, dt)
     first = (cell == 1) & (not is_periodic)
     last = (cell == cells_across - 2) & (not is_periodic)
-    low, high = centre_range(length, disc.r)
+    low, high = disc.r, length - disc.r
     if first:
         down = disc.t + time_to_plane(position - low, velocity, pull)
     else:

@@ -79,8 +79,8 @@ def place(record, ids, position, velocity, cells, tree):
 def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, subdomain):
     """Process events up to the limits, or until the batch is full; at the start of an epoch, predict all of them first.
 
-    Returns the number of rows written, and whether all events up to the limit of time have happened. batch: None
-    without a log. counters: (1,) COUNTERS, updated. subdomain: the slab whose events these are; None for all discs.
+    Returns the number of rows written, and whether all events up to the limit of time have happened. subdomain: the
+    slab whose events these are; None for all discs.
     """
     events = 0
     collisions = 0
