@@ -17,8 +17,8 @@ from idealgas.analysis.core.caveats import narrow
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, degrees_of_freedom
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
-from idealgas.analysis.core.stream import span
-from idealgas.analysis.core.tables import Number, Table, estimates
+from idealgas.analysis.core.stream import frames, span
+from idealgas.analysis.core.tables import Table, estimates, time_series
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.analysis.theory.granular import GranularParameters
 from idealgas.analysis.theory.values import Theory
@@ -28,8 +28,8 @@ from idealgas.log import Log, LogState
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-INSTANTS, ROWS = 257, 9
-"""Number of instants of the series, and of those that the terminal shows."""
+INSTANTS = 257
+"""Number of instants of the series."""
 
 FEW = 10
 """Number of discs below which a caveat says that the theory is for many discs."""
@@ -143,11 +143,9 @@ class CoolingAnalysis(Analysis):
         time = np.clip(np.geomspace(tau + first, tau + last, INSTANTS) - tau, first, last)
         temperature, spin, cumulant, scatter, flow = np.empty((5, len(time)))
         shape = _cells(log)
-        for k, state in enumerate(log.frames(time)):
+        for k, state in enumerate(frames(log, time, progress)):
             temperature[k], spin[k], cumulant[k] = _moments(log, state, dof)
             scatter[k], flow[k] = _scatter(log, state, shape)
-            if progress is not None:
-                progress(k + 1, len(time))
         collisions = _collisions(log, time)
         settled = max(SETTLED, FOLDS * granular.relaxation(parameters))
         window = np.flatnonzero(collisions >= settled if start is None else time >= start)
@@ -237,9 +235,7 @@ class CoolingAnalysis(Analysis):
             "scatter": result.scatter,
             "flow": result.flow,
         }
-        shown = {name: values.tolist() for name, values in columns.items() if values is not None}
-        values = [tuple(map(Number, row)) for row in zip(*shown.values(), strict=True)]
-        return [estimates("Cooling", rows, notes), Table("Time series", tuple(shown), values, most=ROWS)]
+        return [estimates("Cooling", rows, notes), time_series("Time series", columns)]
 
     @staticmethod
     def figure(result: Cooling) -> "Figure":

@@ -16,7 +16,7 @@ from idealgas.analysis.core.ensemble import composition, ensemble
 from idealgas.analysis.core.fields import INLINE, OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
-from idealgas.analysis.core.stream import span
+from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, estimates
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import UserError
@@ -120,11 +120,9 @@ class EffusionAnalysis(Analysis):
         radius, number, slit = discs.radius[0], len(log.discs), gate.width - 2 * discs.radius[0]
         time = _instants(log, gate, start, end)
         beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: sum of the speeds, below and above
-        for k, state in enumerate(log.frames(time)):
+        for k, state in enumerate(frames(log, time, progress)):
             side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
             beyond[k], flux[:, k] = side.sum(), (pace[~side].sum(), pace[side].sum())
-            if progress is not None:
-                progress(k + 1, INSTANTS)
         if beyond[0] > number / 2:
             beyond, flux, place = number - beyond, flux[::-1], log.box[across] - place
         height = log.box[1 - across] - 2 * radius

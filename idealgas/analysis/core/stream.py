@@ -4,7 +4,7 @@ A tally adds up what flights and the events at their ends contribute to B blocks
 edges of the blocks, time averages are exact. Shape of the sums: (B, …).
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.errors import UserError
-from idealgas.log import Flights, Log
+from idealgas.log import Flights, Log, LogState
 from idealgas.log.flights import NO_EVENT, FlightReader
 from idealgas.state import Gas
 
@@ -131,6 +131,14 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
     number = len(log.discs)
     most = min(max(DISC_BLOCKS // number, MANY_BLOCKS), MOST_BLOCKS)
     return np.linspace(first, last, min(max(rows // number, FEWEST_BLOCKS), most) + 1)
+
+
+def frames(log: Log, times: np.ndarray, progress: Callable[[int, int], None] | None) -> Iterator[LogState]:
+    """States of a log at increasing times, each counted by `progress` once it is used."""
+    for k, state in enumerate(log.frames(times)):
+        yield state
+        if progress is not None:
+            progress(k + 1, len(times))
 
 
 def span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:

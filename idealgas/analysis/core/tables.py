@@ -4,13 +4,15 @@ import csv
 import html
 import io
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from idealgas.errors import plain
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from idealgas.analysis.core.collisions import CollisionRate, FreePath
     from idealgas.analysis.core.equilibration import Window
     from idealgas.analysis.core.statistics import Estimate
@@ -63,6 +65,9 @@ class Table:
 
 ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "deviation (σ)")
 
+SHOWN_ROWS = 9
+"""Number of instants of a series that the terminal and the report show; CSV has all."""
+
 THEORY_ERROR = "± theory"
 """Heading of the error of theory, a column of those tables in which a theory has one."""
 
@@ -109,6 +114,13 @@ def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath
         estimates("Collisions per disc (1/time)", [(f"{r.species} with {r.other}", r.rate) for r in rates]),
         estimates("Mean free path and time (in units of length and time)", between),
     ]
+
+
+def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
+    """Table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS of the instants."""
+    shown = {name: values.tolist() for name, values in columns.items() if values is not None}
+    rows = [tuple(map(Number, row)) for row in zip(*shown.values(), strict=True)]
+    return Table(title, tuple(shown), rows, notes, most=SHOWN_ROWS)
 
 
 def describe(window: "Window") -> str:

@@ -5,7 +5,6 @@ equilibrium for isolated gases, gases under gravity and heat baths. The pressure
 With a piston the picture has the pressure against the area, with the isotherm and the adiabat through the start.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,8 +16,8 @@ from idealgas.analysis.core.equilibration import detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.stream import span
-from idealgas.analysis.core.tables import Number, Table, format_estimate
+from idealgas.analysis.core.stream import frames, span
+from idealgas.analysis.core.tables import Table, format_estimate, time_series
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
 from idealgas.analysis.evolution.theory import Law, expected_law
 from idealgas.analysis.theory.values import Theory
@@ -30,8 +29,8 @@ from idealgas.scene.walls import walls_inside
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-INSTANTS, ROWS = 257, 9
-"""Number of instants of the series, and of those that the terminal shows; the picture and CSV have all."""
+INSTANTS = 257
+"""Number of instants of the series."""
 
 PISTON, HEAT_BATH = "piston", "the heat bath"
 """Names of the side with the piston and of a heat bath among the sources of energy."""
@@ -156,26 +155,29 @@ class EvolutionAnalysis(Analysis):
     @staticmethod
     def tables(result: Evolution) -> list[Table]:
         """Tables of temperature and of discs beyond the gate, of the pressure, and of the energies."""
-        series = {"kinetic energy per disc": result.temperature}
-        if result.law is not None:
-            series["law"] = result.law.temperature
-        if result.spin is not None:
-            series["I ω² per disc"] = result.spin
-        series |= {f"fraction of {name} beyond the gate": share for name, share in result.beyond.items()}
-        energy = {f"energy of {name}": values for name, values in result.parts.items()}
-        energy |= {_source_label(name): values for name, values in result.given.items()}
-        energy |= {f"lost by {name}": values for name, values in result.dissipated.items()}
-        if result.piston is not None:
-            energy["piston position"] = result.piston
-        energy["balance, relative"] = result.balance
-        notes = (f"law: {result.law.text if result.law else 'none for this scene'}",)
-        tables = [_in_time("Time series", result.time, series, notes)]
+        law = result.law
+        series = {
+            "t": result.time,
+            "kinetic energy per disc": result.temperature,
+            "law": law.temperature if law else None,
+            "I ω² per disc": result.spin,
+            **{f"fraction of {name} beyond the gate": share for name, share in result.beyond.items()},
+        }
+        tables = [time_series("Time series", series, (f"law: {law.text if law else 'none for this scene'}",))]
         if found := result.pressure:
-            columns = {"area": found.area}
+            columns = {"t": found.middles, "area": found.area}
             for name in found.shown:
                 columns |= {f"P on {name}": found.pressure[name], f"± s.e. ({name})": found.error[name]}
-            tables.append(_in_time("Pressure on walls, means over bins of time", found.middles, columns))
-        return [*tables, _in_time("Energy", result.samples, energy)]
+            tables.append(time_series("Pressure on walls, means over bins of time", columns))
+        energy = {
+            "t": result.samples,
+            **{f"energy of {name}": values for name, values in result.parts.items()},
+            **{_source_label(name): values for name, values in result.given.items()},
+            **{f"lost by {name}": values for name, values in result.dissipated.items()},
+            "piston position": result.piston,
+            "balance, relative": result.balance,
+        }
+        return [*tables, time_series("Energy", energy)]
 
     @staticmethod
     def summary(result: Evolution) -> list[str]:
@@ -244,11 +246,6 @@ class EvolutionAnalysis(Analysis):
         return figure
 
 
-def _in_time(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], notes: Sequence[str] = ()) -> Table:
-    values = zip(*(column.tolist() for column in (time, *columns.values())), strict=True)
-    return Table(title, ("t", *columns), [tuple(map(Number, row)) for row in values], notes, most=ROWS)
-
-
 def _source_label(name: str) -> str:
     """Heading of the energy that a wall, the piston or a heat bath gave to the discs."""
     return "work done by the piston" if name == PISTON else f"energy from {name}"
@@ -276,14 +273,12 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
-    for k, state in enumerate(log.frames(time)):
+    for k, state in enumerate(frames(log, time, progress)):
         temperature[k] = (gas.mass * ((state.velocity - frame) ** 2).sum(axis=1)).mean() / 2
         if inertia is not None and state.angular_velocity is not None:
             spin[k] = (inertia * state.angular_velocity**2).mean()
         for axis, place in gates[:1]:
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
-        if progress is not None:
-            progress(k + 1, len(time))
     shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gates else {}
     return time, temperature, None if inertia is None else spin, shares
 

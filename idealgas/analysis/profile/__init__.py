@@ -17,6 +17,7 @@ from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
+from idealgas.analysis.core.stream import frames
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.analysis.theory import hard_discs
@@ -256,7 +257,7 @@ def _collect(log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress
     shape = (len(gas.species_names), len(edges) - 1)
     sums = np.zeros((len(times), *shape, 3))
     inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
-    for k, state in enumerate(log.frames(times)):
+    for k, state in enumerate(frames(log, times, progress)):
         place = state.position[:, axis]
         strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
         cell = gas.species.astype(np.int64) * shape[1] + strip
@@ -264,8 +265,6 @@ def _collect(log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress
         values = (np.ones(len(gas)), gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2, inertia * spin**2)
         for c, value in enumerate(values):
             sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
-        if progress is not None:
-            progress(k + 1, len(times))
     return sums
 
 

@@ -16,6 +16,7 @@ from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
+from idealgas.analysis.core.stream import frames
 from idealgas.analysis.core.tables import Cell, Number, Table
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance, acceptance_tables
 from idealgas.analysis.relaxation.speeds import (
@@ -183,14 +184,12 @@ class RelaxationAnalysis(Analysis):
         first, last = colliding_span(log, start, end)
         time, number, equilibrium = np.linspace(first, last, SAMPLES + 1), len(log.discs), ensemble(log)
         distance, entropy, kurtosis = np.empty((3, len(time)))
-        for k, state in enumerate(log.frames(time)):
+        for k, state in enumerate(frames(log, time, progress)):
             energy = reduced_energy(log, state.velocity, equilibrium)
             if not energy.any():
                 raise UserError(f"{log.path}: no disc moves at t = {state.time:g}")
             distance[k], entropy[k] = ks_distance(energy, reduced_energy_cdf), relative_entropy(energy)
             kurtosis[k] = number * (energy**2).sum() / energy.sum() ** 2
-            if progress is not None:
-                progress(k + 1, len(time))
         collisions, critical = collisions_per_disc(log, time), critical_distance(number)
         target = 2 / (1 + 2 / equilibrium.dof)
         indistinguishable = np.flatnonzero(distance < critical)
