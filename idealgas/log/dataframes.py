@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.columns import EventBatch, Kind, columns_named, empty_batch
-from idealgas.log.components import VECTORS, components
 from idealgas.log.errors import LogError
 from idealgas.log.flights import FLIGHT_COLUMNS, NO_EVENT, Flights
 from idealgas.log.replay import LogState
-from idealgas.log.schema import Wall
+from idealgas.log.schema import VECTORS, Wall, components
 from idealgas.state import Gas
 
 if TYPE_CHECKING:

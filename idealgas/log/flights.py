@@ -1,7 +1,7 @@
-"""Flights of discs: what every disc did between two of its events, in bounded memory.
+"""Flights: the motion of each disc between two of its events, in bounded memory.
 
-An event row says what a disc is like after an event. A flight says what it was like before: the state that its previous
-event left it in, when that was, and what the event at the end made of it. One pass over the rows joins the two.
+An event row has the state of a disc after an event. A flight also has the state before it, which follows from the
+previous event of the disc. One pass over the rows joins the two.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -22,7 +22,7 @@ BATCH = 2 * BLOCK
 """Number of flights in a batch, at most, unless a single flight is cut into more pieces."""
 
 NO_EVENT = 255
-"""Kind of a flight that no event ends: it is cut at an edge, or still open at the last one."""
+"""Kind of a flight that does not end with an event: it is cut at an edge, or open at the last one."""
 NOBODY = -(2**31)
 """Partner of a disc at the end of such a flight."""
 
@@ -54,7 +54,7 @@ _NEEDS: dict[str, tuple[str, ...]] = {
     "image": ("position", "velocity"),
     "new_angular_velocity": ("angular_velocity",),
 }
-"""Columns from which a column follows at an edge."""
+"""Columns from which a column is computed at an edge."""
 
 _READ = {
     "kind": "kind",
@@ -67,23 +67,23 @@ _READ = {
     "angular_velocity": "angular_velocity",
     "new_angular_velocity": "angular_velocity",
 }
-"""Event column that has the values of a column before or after events."""
+"""Event column with the values of a column before or after events."""
 
 _STATE = {"position", "velocity", "image", "angular_velocity"}
-"""Columns that have a disc's state at the start."""
+"""Columns of the state at the start of a flight."""
 
 
 class Flights(NamedTuple):
-    """Flights of discs, in the order of the events that end them; those that no event ends follow last.
+    """Flights of discs, in the order of the events that end them, then those that are still open.
 
-    The two flights that end in a collision of two discs are in one batch, that of the smaller id first, and nothing but
-    pieces of the second one lies between their ends. The pieces of a flight that is cut follow each other. A column is
-    None if it was not asked for. Columns may share memory: do not write into them.
+    The two flights that end in a collision of two discs are in one batch, that of the smaller id first; between their
+    ends are only pieces of the second one. The pieces of a flight follow each other. A column that was not requested is
+    None. Columns may share memory: do not write into them.
 
     Attributes:
         disc: (n,) u4, id of the disc.
-        block: (n,) i8, block of time between two edges that the flight lies in, from 0; an event at an edge is in the
-            block before it.
+        block: (n,) i8, number of the interval between two edges, from 0; an event at an edge belongs to the
+            interval before it.
         start: (n,) f8, time of the disc's previous event, or of the edge at which the piece begins.
         end: (n,) f8, time of the event or edge at the end.
         kind: (n,) u1, `Kind` of the event at the end, or NO_EVENT.
@@ -117,31 +117,31 @@ class Flights(NamedTuple):
 
     @classmethod
     def joined(cls, batches: Iterable["Flights"]) -> "Flights":
-        """All flights of some batches, at least one, in memory together."""
+        """Join at least one batch of flights."""
         columns: Iterable[Any] = zip(*batches, strict=True)
         return cls(*(cast(Any, None if column[0] is None else np.concatenate(column)) for column in columns))
 
 
 def flight_columns(events: Collection[str]) -> tuple[Column, ...]:
-    """Columns of the flights of a log whose events have the columns of these names."""
+    """Columns of the flights of a log with these event columns."""
     return tuple(column for column in FLIGHT_COLUMNS if _read_for(_made_for([column.name])) <= set(events))
 
 
 def _made_for(columns: Collection[str]) -> set[str]:
-    """Some columns and all those from which they follow."""
+    """Columns, and those from which they are computed."""
     return {source for name in columns for source in (name, *_NEEDS.get(name, ()))}
 
 
 def _read_for(made: set[str]) -> set[str]:
-    """Event columns to read in order to make some columns."""
+    """Event columns that are needed for some columns."""
     return {_READ[name] for name in made if name in _READ}
 
 
 class FlightReader:
-    """Flights of a log between the first and the last of some edges, cut at those in between.
+    """Flights of a log between the first and the last edge, cut at the edges in between.
 
-    `batches` is what most need. Its steps are for sums over whole flights and over pieces in one pass; there, flights
-    are columns by name: those asked for, and those from which these follow where a flight is cut.
+    Most callers need only `batches`. Its steps are for sums over both whole flights and pieces in one pass; they use
+    columns by name, also those from which the requested columns are computed where a flight is cut.
     """
 
     def __init__(
@@ -151,7 +151,7 @@ class FlightReader:
         discs: ArrayLike | None = None,
         columns: Collection[str] | None = None,
     ) -> None:
-        """Take what `Log.flights` takes. Raises LogError as that does."""
+        """Check the arguments of `Log.flights`. Raises LogError as described there."""
         if not log.has_events:
             raise LogError(f"{log.path}: no flights without events (made with log.events = false)")
         known = [column.name for column in flight_columns(log.columns)]
@@ -173,13 +173,13 @@ class FlightReader:
         self._gravity = np.array(log.gravity) if any(log.gravity) else None
 
     def batches(self) -> Iterator[Flights]:
-        """Pieces of flights between the edges, in batches."""
+        """Yield flights, cut at the edges, in batches."""
         for flights in chain(self.whole(), self.open()):
             for pieces in self.cut(flights):
                 yield self.batch(pieces)
 
     def whole(self) -> Iterator[Arrays]:
-        """Flights that events end, not cut, in batches. Their block is that of their end."""
+        """Yield uncut flights that end with events, in batches. Their block is that of their end."""
         log, (first, last) = self._log, self._edges[[0, -1]]
         self._join = Join(log.state_at(first), self._read)
         for rows in whole_pairs(log.chunks(self._read, log.row_at(first, "right"), log.row_at(last, "right"))):
@@ -190,13 +190,13 @@ class FlightReader:
                 yield self._flights(self._join.pass_on(rows), rows["time"], rows)
 
     def open(self) -> Iterator[Arrays]:
-        """Flights that are open at the last edge, one of each disc, in batches; after all those of `whole`."""
+        """Yield uncut flights that are open at the last edge, one per disc, in batches, after all those of `whole`."""
         every = np.arange(self._join.discs) if self._discs is None else self._discs
         for some in np.split(every, range(BATCH, len(every), BATCH)):
             yield self._flights(self._join.states(some), np.full(len(some), self._edges[-1]), None)
 
     def cut(self, flights: Arrays) -> Iterator[Arrays]:
-        """The pieces between edges of a batch of whole flights, in batches."""
+        """Yield the pieces between edges of a batch of uncut flights, in batches."""
         edges, last = self._edges, flights["block"]
         before = np.flatnonzero(flights["start"] < edges[last])
         if len(before) == 0:
@@ -210,13 +210,13 @@ class FlightReader:
         while stop < len(pieces):
             start = stop
             stop = max(int(done.searchsorted(done[start] + BATCH, "right")) - 1, start + 1)
-            if pairs and flights["disc"][stop - 1] < flights["partner"][stop - 1]:  # the second one would be left out
+            if pairs and flights["disc"][stop - 1] < flights["partner"][stop - 1]:  # keep both flights of a pair
                 stop += 1 if stop - 1 == start else -1
             some = slice(start, stop)
             yield self._pieces({name: values[some] for name, values in flights.items()}, first[some], pieces[some])
 
     def batch(self, flights: Arrays) -> Flights:
-        """Flights with the columns that were asked for."""
+        """Flights with the requested columns."""
         found = dict(flights)
         if self._gravity is None and "end_velocity" in self._made:
             found["end_velocity"] = flights["velocity"]
@@ -226,7 +226,7 @@ class FlightReader:
         return Flights(*(cast(Any, found[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
-        """Flights from the states (n,) that they start in. rows: of the events that end them, if these do."""
+        """Uncut flights from states (n,) at their starts. rows: events that end them, if any."""
         start, made = state["time"], self._made
         found = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}
         found |= {name: state[name] for name in _STATE & made}
@@ -244,7 +244,7 @@ class FlightReader:
         return found | {name: values for name, values in none.items() if name in made}
 
     def _pieces(self, flights: Arrays, first: np.ndarray, pieces: np.ndarray) -> Arrays:
-        """All pieces of some flights. first: (n,), blocks of their first pieces. pieces: (n,), numbers of them."""
+        """Pieces of flights. first: (n,), blocks of the first pieces. pieces: (n,), numbers of pieces."""
         source = np.repeat(np.arange(len(pieces)), pieces)
         opening = np.cumsum(pieces) - pieces
         found = {name: values.take(source, axis=0) for name, values in flights.items()}
@@ -270,7 +270,7 @@ class FlightReader:
         return found
 
     def _block_of(self, times: np.ndarray) -> np.ndarray:
-        """Blocks that times lie in, which do not decrease and come after the first edge."""
+        """Blocks of non-decreasing times after the first edge."""
         inner = self._edges[1:-1]
         low, high = inner.searchsorted(times[[0, -1]]) if len(times) else (0, 0)
         return np.asarray(low + inner[low:high].searchsorted(times))

@@ -1,4 +1,4 @@
-"""The join of event rows with the states that the previous rows of their discs left them in."""
+"""Join of event rows with the states of their discs before each event."""
 
 from collections.abc import Collection, Iterator
 from typing import Any
@@ -14,7 +14,7 @@ Arrays = dict[str, np.ndarray]
 
 
 def whole_pairs(chunks: Iterator[Any]) -> Iterator[Arrays]:
-    """Chunks of event rows as columns by name, such that no pair of rows lies across the edge of two."""
+    """Yield chunks of event rows as columns by name, without splitting the two rows of a collision."""
     held: Arrays = {}
     for chunk in chunks:
         rows: Arrays = chunk._asdict()
@@ -28,18 +28,19 @@ def whole_pairs(chunks: Iterator[Any]) -> Iterator[Arrays]:
 
 
 class Join:
-    """States that the previous events of discs left them in, as an event comes to end them.
+    """Latest states of all discs, advanced through the event rows.
 
-    discs: number of discs.
+    Attributes:
+        discs: number of discs.
     """
 
     def __init__(self, state: LogState, names: Collection[str]) -> None:
-        """Start with the states of all discs at one time. names: of event columns that are read."""
+        """Start with the states of all discs at one time. names: event columns that are read."""
         self.discs = len(state.velocity)
         start = {"time": np.full(self.discs, state.time)}
         start |= {name: getattr(state, name) for name in LogState._fields[1:] if name in names}
-        self._states = start  # of the discs, and after them those of the rows at hand
-        self._latest = np.arange(self.discs)  # place there of each disc's latest state
+        self._states = start  # of the discs, then of the current rows
+        self._latest = np.arange(self.discs)  # index of the latest state of each disc
         self._make_room(BLOCK)
 
     def _make_room(self, rows: int) -> None:
@@ -51,12 +52,12 @@ class Join:
         }
 
     def pass_on(self, rows: Arrays) -> Arrays:
-        """States of the discs of event rows before each of them; after that those behind the rows are known."""
+        """States of the discs before each event row; then advance the latest states through the rows."""
         number = len(rows["disc"])
         if number > self._room:
             self._make_room(number)
         disc, previous = rows["disc"].view(), self._previous[:number]
-        disc.flags.writeable = False  # as most are: compiled for one type
+        disc.flags.writeable = False  # as in most chunks, so that one type is compiled
         touched = self._touched[: _find_previous(disc, self._latest, previous, self._touched)]
         newest, found = self._latest[touched], {}
         for name, values in self._states.items():
@@ -74,9 +75,9 @@ class Join:
 
 @njit
 def _find_previous(disc: np.ndarray, latest: np.ndarray, previous: np.ndarray, touched: np.ndarray) -> int:
-    """Place of the latest state of each row's disc; returns the number of discs that have rows, with their ids.
+    """Find the index of the latest state of the disc of each row, and the ids of all discs that have rows.
 
-    A loop over the rows is what takes compilation here: a row's flight starts where the disc's previous row ended it.
+    Returns the number of these discs. It is compiled because each row depends on the previous row of its disc.
     """
     discs, found = latest.shape[0], 0
     for k in range(disc.shape[0]):

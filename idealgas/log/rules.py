@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from idealgas.columns import BATH, EVENT_COLUMNS, IMAGE, SIDES, TRIALS, VELOCITY, Column, Kind, side_ends
-from idealgas.log.components import components
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.schema import (
     BOX,
@@ -26,6 +25,7 @@ from idealgas.log.schema import (
     SAMPLE_COLUMNS,
     SUMMARY_COLUMNS,
     Wall,
+    components,
 )
 
 NEEDED: dict[str, Sequence[Column]] = {

@@ -17,7 +17,18 @@ import h5py
 import numpy as np
 
 from idealgas._version import __version__
-from idealgas.columns import BLOCK, PLAIN_COLUMNS, POSITION, SIDES, VELOCITY, Column, Kind, side_ends
+from idealgas.columns import (
+    BLOCK,
+    EVENT_COLUMNS,
+    PLAIN_COLUMNS,
+    POSITION,
+    SIDES,
+    VELOCITY,
+    Column,
+    Kind,
+    face_names,
+    side_ends,
+)
 from idealgas.log.hdf5.commit import Commit
 from idealgas.state import Gas
 
@@ -90,9 +101,30 @@ COMMAND_SIZE = 1024
 """Largest size of a command, bytes."""
 
 
+VECTORS: dict[str, Sequence[str]] = {
+    **{column.name: column.parts for column in EVENT_COLUMNS if column.parts},
+    "momentum": ("momentum_x", "momentum_y"),
+    "kinetic_flow": tuple(f"kinetic_flow_{part}" for part in ("xx", "xy", "yy")),
+    **{name: (f"{name}_x", f"{name}_y") for name in ("kinetic_heat_flow", "collision_heat_flow")},
+    "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
+}
+"""Component names that do not depend on the walls."""
+
+
 def box_walls(box: tuple[float, float]) -> list[Wall]:
     """Sides of the box as walls: left, right, bottom, top."""
     return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
+
+
+def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
+    """Component names of event columns and observables. walls: names of the walls of a log."""
+    faces = {
+        name: [f"{name}_{face}" for face in face_names(walls)]
+        for name in ("face_normal_impulse", "face_tangential_impulse", "face_hits")
+    }
+    given = [f"wall_energy_{name}" for name in walls]
+    lost = [f"dissipated_energy_{name}" for name in ("discs", *walls)]
+    return {**VECTORS, **faces, "wall_energy": given, "dissipated_energy": lost}
 
 
 @dataclass(frozen=True)

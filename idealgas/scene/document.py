@@ -136,7 +136,7 @@ class Document(_DiscsAndEffects):
         return math.pi * math.fsum(r * r * count for r, count in self._radii)
 
     @property
-    def free_time(self) -> float:
+    def mean_free_time(self) -> float:
         """Expected time between two collisions of a disc, with discs and sides, time; infinite if nothing moves.
 
         The speed is that of a disc with the mean speed at the start after a fall through half of the room.
@@ -165,9 +165,9 @@ class Document(_DiscsAndEffects):
         run = self.run
         ends = [run.until or math.inf]
         if run.events is not None:
-            ends.append(run.events * self.free_time / self.number_of_discs)
+            ends.append(run.events * self.mean_free_time / self.number_of_discs)
         if run.collisions_per_disc is not None:
-            ends.append(run.collisions_per_disc * self.free_time)
+            ends.append(run.collisions_per_disc * self.mean_free_time)
         if run.trials is not None:
             ends.append(run.trials * self.trial_time)
         return min(ends)
@@ -185,7 +185,7 @@ class Document(_DiscsAndEffects):
         if self.restitution.contact_duration is not None:
             return self.restitution.contact_duration
         if any(self.body_force):
-            return DEFAULT_CONTACT * self.free_time
+            return DEFAULT_CONTACT * self.mean_free_time
         if self.mean_speed == 0:
             return math.inf
         return SHORT_CONTACT * self._sum_of_diameters / self.number_of_discs / self.mean_speed
@@ -203,7 +203,7 @@ class Document(_DiscsAndEffects):
         duration, e = self.contact_duration, min(self.restitution.normal, self.restitution.wall)
         most = 1 / (e * duration) if e > 0 else None
         height, energy = force * duration**2 / 8, (force * duration) ** 2 / 8
-        return RestingDisc((1 / duration, most), height, energy, None if most is None else most * self.free_time)
+        return RestingDisc((1 / duration, most), height, energy, None if most is None else most * self.mean_free_time)
 
     @property
     def collapse_risk(self) -> bool:

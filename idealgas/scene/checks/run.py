@@ -118,9 +118,9 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
 def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Check for runs too long for the clock, and for too many snapshots, steps or trials."""
     run, end = scene.run, scene.expected_end
-    if run.until is not None and LONGEST * scene.free_time < end:
-        got = f"{run.until}, about {run.until / scene.free_time:.3g} mean free times"
-        allowed = f"<= {LONGEST:.3g} of them, a time <= {LONGEST * scene.free_time:.3g}"
+    if run.until is not None and LONGEST * scene.mean_free_time < end:
+        got = f"{run.until}, about {run.until / scene.mean_free_time:.3g} mean free times"
+        allowed = f"<= {LONGEST:.3g} of them, a time <= {LONGEST * scene.mean_free_time:.3g}"
         yield Issue((("run", "until"), ("run",)), "too long for the digits of the clock", got, allowed)
     every = None if "log" in invalid else scene.log.snapshot_every
     for key, period, what, most in (

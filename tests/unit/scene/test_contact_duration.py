@@ -36,7 +36,7 @@ def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
     pairs = math.sqrt(2) * 0.4 * 19 / 80 * chi
     sides = 2 / math.pi * (1 / 9.6 + 1 / 7.6)
     free_time = 1 / ((pairs + sides) * math.sqrt(4 + 3 * 8))
-    assert found.free_time == pytest.approx(free_time, rel=1e-14)
+    assert found.mean_free_time == pytest.approx(free_time, rel=1e-14)
     assert found.restitution.contact_duration == pytest.approx(free_time / 20, rel=1e-14)
     assert parse_scene(GAS, overrides=[FALL]).restitution == found.restitution
 
@@ -44,8 +44,8 @@ def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
 def test_a_piston_that_is_pressed_is_a_force():
     found = scene(PISTON)
     assert found.body_force == (-0.5 * 8 / 4, 0)
-    assert found.restitution.contact_duration == pytest.approx(found.free_time / 20, rel=1e-14)
-    assert found.free_time < scene("piston={ position=9, velocity=0 }").free_time
+    assert found.restitution.contact_duration == pytest.approx(found.mean_free_time / 20, rel=1e-14)
+    assert found.mean_free_time < scene("piston={ position=9, velocity=0 }").mean_free_time
 
 
 def test_what_is_given_stays():
@@ -65,7 +65,7 @@ def test_rest():
     assert rest.hits == pytest.approx((100, 125))
     assert rest.height == pytest.approx(3 * 0.01**2 / 8)
     assert rest.energy == pytest.approx(3 * rest.height)
-    assert rest.per_free_time == pytest.approx(125 * scene(FALL).free_time)
+    assert rest.per_free_time == pytest.approx(125 * scene(FALL).mean_free_time)
     assert scene(FALL).rest.per_free_time == pytest.approx(20 / 0.8)
     stuck = scene(FALL, "restitution.wall=0").rest
     assert (stuck.hits[1], stuck.per_free_time) == (None, None)
