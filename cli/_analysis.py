@@ -145,7 +145,13 @@ def _analyse(
     except NotApplicableError as error:
         if not check or plot or as_csv:
             raise
-        _print_no_theory(error, as_json)
+        from idealgas.analysis.core.statistics import CheckResult
+
+        inapplicable = CheckResult(None, why_not=str(error))
+        if as_json:
+            print_json(inapplicable.as_dict())
+        else:
+            echo(f"{inapplicable}")
         return
     checked = result.check() if check else None
     if plot:
@@ -171,17 +177,6 @@ def _analyse(
         written(plot, err=as_json or as_csv)
     if checked and checked.agrees is False:
         raise SystemExit(1)
-
-
-def _print_no_theory(error: NotApplicableError, as_json: bool) -> None:
-    """Print the result of a check of a gas to which the analysis does not apply."""
-    from idealgas.analysis.core.statistics import CheckResult
-
-    checked = CheckResult(None, why_not=str(error))
-    if as_json:
-        print_json(checked.as_dict())
-    else:
-        echo(f"{checked}")
 
 
 def _results(

@@ -28,11 +28,10 @@ def scene_argument(command: Callable) -> Callable:
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
         help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
     )  # fmt: skip
-    return click.argument("path", metavar="SCENE.toml", callback=_or_stdin)(overrides(command))
-
-
-def _or_stdin(_: click.Context, __: click.Parameter, path: str) -> str:
-    return "/dev/stdin" if path == "-" else path
+    path = click.argument(
+        "path", metavar="SCENE.toml", callback=lambda _, __, path: "/dev/stdin" if path == "-" else path
+    )
+    return path(overrides(command))
 
 
 force_option = click.option("--force", is_flag=True, help="Overwrite existing output of the same command.")

@@ -30,8 +30,14 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 @click.option(
     "--phi", "fractions", default="0.01,0.1,0.5", show_default=True, callback=_numbers, help="Packing fractions φ."
 )
-@click.option("--collisions", default=1_000_000, show_default=True, help="Smallest number of pair collisions of a run.")
-@click.option("--repeats", default=3, show_default=True, help="Number of runs of each kind; the median is shown.")
+@click.option(
+    "--collisions", type=click.IntRange(1), default=1_000_000, show_default=True,
+    help="Smallest number of pair collisions of a run.",
+)  # fmt: skip
+@click.option(
+    "--repeats", type=click.IntRange(1), default=3, show_default=True,
+    help="Number of runs of each kind; the median is shown.",
+)  # fmt: skip
 @click.option("--threads", default="1", show_default=True, callback=_numbers, help="Numbers of threads.")
 @click.option("--effects", is_flag=True, help="Measure the cost of each effect relative to the plain box instead.")
 @plot_option
@@ -52,8 +58,8 @@ def bench(
 
     The figure also shows published speeds of other programs.
     """
-    if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions) or collisions < 1 or repeats < 1:
-        raise click.UsageError("N, collisions and repeats must be at least 1, φ above 0 and at most 0.9")
+    if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions):
+        raise click.UsageError("N must be at least 1, φ above 0 and at most 0.9")
     if not all(1 <= number <= 256 for number in threads):
         raise click.UsageError("the number of threads must be 1 to 256")
     if plot and effects:

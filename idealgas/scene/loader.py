@@ -68,7 +68,7 @@ def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
     for name, field in Scene.model_fields.items():
         table, value = table_at((name,), Scene), document.get(name)
         if value is not None and field.default == ():
-            parts[name] = _valid_items(table, value)
+            parts[name] = [_valid(table, item) for item in value] if isinstance(value, list) else [None]
             valid = None not in parts[name]
         elif value is not None or field.is_required():
             parts[name] = _valid(table, value)
@@ -85,7 +85,3 @@ def _valid(table: type, value: Any) -> Any:
         return TypeAdapter(table).validate_python(value)
     except ValidationError:
         return None
-
-
-def _valid_items(table: type, value: Any) -> list[Any]:
-    return [_valid(table, item) for item in value] if isinstance(value, list) else [None]

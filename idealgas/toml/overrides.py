@@ -25,7 +25,7 @@ def apply(override: str, document: dict[str, Any]) -> Key:
     for depth, name in enumerate(names):
         if isinstance(node, list) and (index := _index(node, name)) is not None:
             step: str | int = index
-        elif isinstance(node, list) and _only_table(node) and name == names[-1] and not name.isdigit():
+        elif isinstance(node, list) and [*map(type, node)] == [dict] and name == names[-1] and not name.isdigit():
             key, node, step = (*key, 0), node[0], name
         elif isinstance(node, dict):
             step = name
@@ -41,10 +41,6 @@ def apply(override: str, document: dict[str, Any]) -> Key:
     else:
         raise OverrideError("no value (allowed a TOML value; only a key of a table can be taken away)")
     return key
-
-
-def _only_table(items: list[Any]) -> bool:
-    return len(items) == 1 and isinstance(items[0], dict)
 
 
 def _index(items: list[Any], name: str) -> int | None:
