@@ -4,13 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from helpers.support import ROOT
-
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import load_scene
-
-CONFIGS = ROOT / "configs"
 
 CORNER = [
     (1.0, 0, -1), (1.0, 0, -3), (1.25, 3, 4), (1.25, 4, 3), (1.5, 1, 2), (1.5, 2, 1),
@@ -19,19 +12,16 @@ CORNER = [
 """Time, disc and partner of every row; walls are -1 left, -2 right, -3 bottom, -4 top."""
 
 
-def run(name, folder, *overrides):
+def motion(log):
     """Rows (time, disc, partner) of a run, and the state at its end."""
-    path = folder / "run.h5"
-    simulate(load_scene(CONFIGS / name, overrides), path)
-    with open_log(path) as log:
-        rows = [row for batch in log.events() for row in zip(*(c.tolist() for c in batch[:3]), strict=True)]
-        return rows, log.state_at(log.end_time)
+    rows = [row for batch in log.events() for row in zip(*(c.tolist() for c in batch[:3]), strict=True)]
+    return rows, log.state_at(log.end_time)
 
 
 @pytest.mark.parametrize("method", ["event_driven", "brute_force"])
-def test_corner(method, tmp_path):
+def test_corner(method, run):
     """Sums of powers of two throughout: exact to the last bit."""
-    rows, end = run("corner.toml", tmp_path, f"run.method={method}")
+    rows, end = motion(run("corner", f"run.method={method}"))
     assert rows == CORNER
     assert end.time == 10
     assert end.position.tolist() == [[5.5, 5.5], [1, 5], [1, 1.5], [1.875, 1], [3.625, 1]]
@@ -39,10 +29,10 @@ def test_corner(method, tmp_path):
 
 
 @pytest.mark.parametrize("method", ["event_driven", "brute_force"])
-def test_three_discs_return_after_a_period(method, tmp_path):
+def test_three_discs_return_after_a_period(method, run):
     """A period multiplies a deviation by 2500, the one of rounding at the start (4 ulp of the box, 7e-15) too."""
     period = 12.4 - 2 * math.sqrt(2)
-    rows, end = run("three-discs.toml", tmp_path, f"run.method={method}", f"run.until={period!r}")
+    rows, end = motion(run("three-discs", f"run.method={method}", f"run.until={period!r}"))
     meetings = [(time, disc, partner) for time, disc, partner in rows if partner > disc]
     assert [row[1:] for row in meetings] == [(1, 2), (1, 2), (0, 1), (0, 1)]
     turn = 5.2 - math.sqrt(2)
