@@ -7,12 +7,12 @@ from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.evolution import EvolutionAnalysis
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram import HistogramAnalysis
-from idealgas.analysis.order.measure import order as order
+from idealgas.analysis.order import OrderAnalysis
 from idealgas.analysis.pressure.measure import pressure as pressure
 from idealgas.analysis.profile import ProfileAnalysis
 from idealgas.analysis.registry import analyse as analyse
 from idealgas.analysis.relaxation import RelaxationAnalysis
-from idealgas.analysis.sound.measure import sound as sound
+from idealgas.analysis.sound import SoundAnalysis
 from idealgas.analysis.temperature import temperature as temperature
 from idealgas.analysis.transport.measure import transport as transport
 from idealgas.columns import EventBatch as EventBatch
@@ -37,5 +37,7 @@ effusion = EffusionAnalysis.measure
 evolution = EvolutionAnalysis.measure
 heat_capacity = HeatCapacityAnalysis.measure
 histogram = HistogramAnalysis.measure
+order = OrderAnalysis.measure
 profile = ProfileAnalysis.measure
 relaxation = RelaxationAnalysis.measure
+sound = SoundAnalysis.measure

@@ -4,11 +4,9 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from idealgas import Log, cooling, effusion, heat_capacity, histogram, profile, relaxation
+from idealgas import Log, cooling, effusion, heat_capacity, histogram, order, profile, relaxation, sound
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.order.measure import order
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature import temperature
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.measure import MOST_SEGMENTS as SEGMENTS

@@ -11,11 +11,10 @@ import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, of_runs
 from scipy import stats
 
-from idealgas import effusion, evolution, profile
+from idealgas import effusion, evolution, profile, sound
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.temperature import temperature
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.measure import transport

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from idealgas import sound
 from idealgas.analysis.core.statistics import mean_of_replicates
-from idealgas.analysis.sound.measure import sound
 from idealgas.analysis.transport.measure import transport
 from idealgas.scene import parse_scene
 

@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
+from idealgas import order
 from idealgas.analysis.core.bond_order import bond_order
-from idealgas.analysis.order.measure import FEWEST_FRAMES, FRAMES, order
-from idealgas.analysis.order.structure import WaveVectors
+from idealgas.analysis.order import FEWEST_FRAMES, FRAMES, WaveVectors
 from idealgas.errors import UserError
 
 GAS = """

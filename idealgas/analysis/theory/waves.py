@@ -1,12 +1,15 @@
-"""How a wave of density goes on in a fluid, by linear hydrodynamics: heat that spreads, and sound."""
+"""Waves of density in a fluid, by linear hydrodynamics: heat that spreads, and sound."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import curve_fit
 
+from idealgas.analysis.theory import hard_discs
+
 MOST_CALLS = 4000
-"""Evaluations of the law after which a fit is given up."""
+"""Evaluations of the correlation after which a fit is given up."""
 
 
 class Fluid(NamedTuple):
@@ -78,3 +81,14 @@ def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> De
     except RuntimeError:
         return None
     return Decay(float(best[0]), guess.k, fluid(*map(float, best)))
+
+
+def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float) -> Fluid:
+    """Fluid of hard discs, of a packing fraction φ up to 0.62: c² = (T/m)(d(φZ)/dφ + Z²), γ = 1 + Z²/(d(φZ)/dφ)."""
+    z, slope = float(hard_discs.compressibility_factor(phi)), float(hard_discs.inverse_compressibility(phi))
+    density, gamma = 4 * phi / (math.pi * diameter**2), 1 + z**2 / slope
+    state = diameter, density, temperature, mass, hard_discs.fluid_contact_value(phi)
+    viscous = hard_discs.enskog_viscosity(*state) + hard_discs.enskog_bulk_viscosity(*state)
+    spreading = hard_discs.enskog_conductivity(*state) / (density * gamma)  # c_P = γ for each disc
+    damping = (viscous / (density * mass) + (gamma - 1) * spreading) / 2
+    return Fluid(math.sqrt(temperature / mass * (slope + z**2)), damping, spreading, gamma)

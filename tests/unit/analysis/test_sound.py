@@ -5,10 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from idealgas.analysis.sound import measure
-from idealgas.analysis.sound.law import Decay, Fluid, correlation, fit
-from idealgas.analysis.sound.measure import correlations, sound
-from idealgas.analysis.sound.theory import sound_of_discs
+from idealgas import sound
+from idealgas.analysis.sound import correlations
+from idealgas.analysis.theory.waves import Decay, Fluid, correlation, fit, sound_of_discs
 from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -101,5 +100,5 @@ def test_a_speed_that_is_hardly_known_is_said_to_be(tmp_path, monkeypatch):
     with open_log(tmp_path / "run.h5") as log:
         part = max(wave.speed.standard_error / wave.speed.value for wave in sound(log, start=0.0).waves)
         for rough, said in ((0.99, True), (1.01, False)):
-            monkeypatch.setattr(measure, "ROUGH", rough * part)
+            monkeypatch.setattr("idealgas.analysis.sound.ROUGH", rough * part)
             assert any("is known to" in sentence for sentence in sound(log, start=0.0).caveats) == said

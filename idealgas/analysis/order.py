@@ -1,0 +1,351 @@
+"""Measure the order of the discs: ψ₆ of neighbours, its correlation g₆(r) and the structure factor S(k).
+
+ψ₆ tells how well the neighbours of a disc stand at the corners of a hexagon; its mean over all discs is 1 in a
+crystal and of the order of 1/√N in a fluid. S(k), in a periodic box only, tells how well the discs stand in rows;
+theory knows its limit at small k, the compressibility of the fluid. A run without events is measured at its
+checkpoints.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.bond_order import FOLD, bond_order
+from idealgas.analysis.core.equilibration import Window, measure, unsteady
+from idealgas.analysis.core.fields import OMITTED, Key
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.samples import sampled
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.tables import Number, Table, describe, estimates
+from idealgas.analysis.theory import hard_discs
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.log import Log
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FRAMES, FEWEST_FRAMES = 128, 8
+"""Number of instants of the whole log at which the order is measured, and least number of them in the window."""
+
+MOST_WAVES = 2**28
+"""Largest number of discs squared times frames: of a large gas fewer instants are taken, at least FEWEST_FRAMES."""
+
+MOST_PAIRS = 2**19
+"""Largest number of pairs of an instant for g₆(r): of a large gas some discs are taken, with all others around them."""
+
+BINS_A_SPACING = 8
+"""Bins of g₆(r) in a mean distance 1/√n between discs."""
+
+MOST_ROWS = 12
+"""Rows of a function of distance or wave number that are shown; CSV has all of them."""
+
+REACH = 15.0
+"""Largest wave number in units of √n: three rings of peaks of a triangular lattice, at 6.75, 11.7 and 13.5."""
+
+RINGS = 60
+"""Number of rings of wave vectors over whose directions S(k) is averaged."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Structure factor of the discs of a periodic box (no unit).
+
+    kx, ky: (X,) and (Y,), components of the wave vectors, 1/length; kx ≥ 0, as S(-k) = S(k). on_lattice: (X, Y), mean
+    of S over time at each wave vector; nan at 0 and beyond the reach. k, value, error: (K,), mean wave number of a
+    ring, mean of S over time and the directions in the ring, and its standard error. peak: (2,), wave vector of the
+    highest S in every other frame. positional: S/N at that wave vector in the remaining frames, so that chance does
+    not choose what is measured: the square of the positional order, 1 in a lattice at rest.
+    """
+
+    kx: Annotated[np.ndarray, OMITTED]
+    ky: Annotated[np.ndarray, OMITTED]
+    on_lattice: Annotated[np.ndarray, OMITTED]
+    k: np.ndarray
+    value: np.ndarray
+    error: np.ndarray
+    peak: np.ndarray
+    positional: Annotated[Estimate, Key("positional_order_squared")]
+
+
+@dataclass(frozen=True)
+class Order(Result):
+    """Order of the discs of one log (no unit, but for times and lengths).
+
+    window: the time that was used. frames: number of instants in it. local: mean |ψ₆| of a disc. whole: |Ψ₆|, size of
+    the mean of ψ₆ over all discs. square: N ⟨|Ψ₆|²⟩, the number of discs that turn together. hexagons: share of the
+    discs with six neighbours. time, series: (F,), instants from the start of the log on, and |Ψ₆| there. distance,
+    correlation, correlation_error: (B,), distance in the middle of a bin, length, g₆ = ⟨Re ψ₆*(0) ψ₆(r)⟩ of two discs
+    so far apart, and its standard error. structure: structure factor; None unless the box is periodic.
+    compressibility: limit of S(k) at small k by theory, nT times the isothermal compressibility; None without a theory.
+    """
+
+    window: Window
+    frames: int
+    local: Estimate
+    whole: Estimate
+    square: Estimate
+    hexagons: Estimate
+    time: np.ndarray
+    series: np.ndarray
+    distance: np.ndarray
+    correlation: np.ndarray
+    correlation_error: np.ndarray
+    structure: Structure | None
+    compressibility: float | None
+
+
+class OrderAnalysis(Analysis):
+    """Order of the discs of one log."""
+
+    position = 80
+    results = (Order,)
+    sections = (
+        Section(
+            "Order",
+            "Hexagonal order against time and its correlation against distance; in a periodic box the structure factor",
+        ),
+    )
+    reads = "frames"
+
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Order:
+        """Measure how well the discs of a gas are ordered between two times of its log.
+
+        The order ψ₆ of the neighbours of each disc (`bond_order`), of all discs together and of two at a distance; in
+        a periodic box the structure factor S(k), with its limit at small k by theory for a fluid of equal discs. All
+        discs count alike, whatever their radius; walls inside the box do not part neighbours.
+
+        Args:
+            log: log with positions; without events the instants are its checkpoints.
+            start: start of the window, time; by default detected equilibrium.
+            end: end of the window, time; by default the end of the log.
+            progress: called as progress(done, total) while states are read.
+
+        Raises:
+            UserError: without positions or with a piston, or if the window is empty or has too few checkpoints.
+        """
+        if not log.has_positions:
+            raise NotApplicableError(f"{log.path}: discs of this method have no positions")
+        window, times = _instants(log, start, end)
+        first = int(times.searchsorted(window.start))
+        number, waves = len(log.discs), WaveVectors(log.box, len(log.discs))
+        bins = _Distances(log)
+        found, factors = [], []
+        for k, state in enumerate(log.frames(times)):
+            local, neighbours = bond_order(state.position, log.box, log.periodic)
+            found.append((np.abs(local).mean(), np.abs(local.mean()), (neighbours == FOLD).mean()))
+            if k >= first:
+                bins.add(state.position, local)
+                factors += [waves.structure_factor(state.position)] if all(log.periodic) else []
+            if progress is not None:
+                progress(k + 1, len(times))
+        size, whole, six = np.array(found).T
+        distance, correlation, error = bins.correlation()
+        return Order(
+            window=window,
+            frames=len(times) - first,
+            local=mean(size[first:]),
+            whole=mean(whole[first:]),
+            square=mean(number * whole[first:] ** 2),
+            hexagons=mean(six[first:]),
+            time=times,
+            series=whole,
+            distance=distance,
+            correlation=correlation,
+            correlation_error=error,
+            structure=waves.structure(np.array(factors), number) if factors else None,
+            compressibility=_compressibility(log),
+            caveats=unsteady("|Ψ₆| of all discs", whole[first:], times[first:]),
+        )
+
+    @staticmethod
+    def tables(result: Order) -> list[Table]:
+        """Tables of hexagonal order, its correlation, and the structure factor of a periodic box."""
+        rows = [
+            ("|ψ₆| of a disc, mean", result.local),
+            ("|Ψ₆|, of all discs together", result.whole),
+            ("N |Ψ₆|²", result.square),
+            ("share of discs with six neighbours", result.hexagons),
+        ]
+        notes = [f"{describe(result.window)}, {result.frames} frames"]
+        found = result.structure
+        if found is not None:
+            rows.append(("S/N at the highest peak (positional order, squared)", found.positional))
+            notes.append(f"highest peak of S at k = ({found.peak[0]:.5g}, {found.peak[1]:.5g})")
+        else:
+            notes.append("S(k) and positional order: in a periodic box only")
+        if result.compressibility is not None:
+            notes.append(f"S(k) at small k by theory: {result.compressibility:.4g} (nT times the compressibility)")
+        correlation = result.distance, result.correlation, result.correlation_error
+        tables = [
+            estimates("Order (no unit)", rows, notes),
+            _function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation),
+        ]
+        if found is not None:
+            title = "Structure factor, all directions (no unit)"
+            tables.append(_function(title, "k (1/length)", found.k, found.value, found.error))
+        return tables
+
+    @staticmethod
+    def figure(result: Order) -> "Figure":
+        """Picture of |Ψ₆| against time, g₆ against distance, and in a periodic box S against wave number and vector."""
+        from idealgas.analysis.core.style import COLOURS, GREY, panels
+
+        figure, axes = panels(1 if result.structure is None else 2, 2)
+        series, correlation = axes[:2]
+        series.plot(result.time, result.series, color=COLOURS[0], label="measured")
+        series.axvspan(result.window.start, result.window.end, color=GREY, alpha=0.12, label="window of the averages")
+        series.time_axis()
+        series.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
+        x, y, error = result.distance, result.correlation, result.correlation_error
+        correlation.errorbar(x, y, error, fmt=".", ms=3, color=COLOURS[0], label="measured")
+        correlation.axhline(result.whole.value**2, color=GREY, linewidth=0.9, label="|Ψ₆|² (no correlation left)")
+        correlation.set(
+            xlabel="r (length)", ylabel="g₆(r) (no unit)", ylim=(None, None if result.whole.value < 0.5 else 1)
+        )
+        if result.structure is not None:
+            rings, vectors = axes[2:]
+            k, value, error = result.structure.k, result.structure.value, result.structure.error
+            rings.errorbar(k, value, error, fmt=".", ms=4, color=COLOURS[0], label="mean over directions")
+            if (limit := result.compressibility) is not None:
+                rings.axhline(
+                    limit, color=GREY, linestyle="--", linewidth=0.9, label="theory for small k: compressibility"
+                )
+            rings.set(yscale="log", xlabel="k (1/length)", ylabel="S(k) (no unit)", xlim=(0, None))
+            _draw_vectors(vectors, result.structure)
+        for ax in axes[:3]:
+            ax.legend()
+        return figure
+
+
+def _function(title: str, of: str, *columns: np.ndarray) -> Table:
+    """Table of a function of distance or wave number, with its standard error."""
+    rows = [
+        (Number(float(x), ".4g"), Number(float(y), ".5g"), Number(float(error), ".2g"))
+        for x, y, error in zip(*columns, strict=True)
+    ]
+    return Table(title, (of, "value", "± s.e."), rows, most=MOST_ROWS)
+
+
+def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window, np.ndarray]:
+    """Window of time, and instants from the start of the log, or the given one, to its end."""
+    number = max(min(FRAMES, MOST_WAVES // len(log.discs) ** 2), FEWEST_FRAMES)
+    if log.has_events:
+        window = measure(log, [], start, end, needs=("fixed_walls",))
+        times = np.linspace(window.edges[0], window.end, number)
+        if (times >= window.start).sum() < FEWEST_FRAMES:
+            times = np.append(times[times < window.start], np.linspace(window.start, window.end, FEWEST_FRAMES))
+        return window, times
+    window, _ = sampled(log, start, end, ("fixed_walls",))
+    known = log.checkpoints.times
+    known = known[(known >= window.edges[0]) & (known <= window.end)]
+    times = known[np.unique(np.linspace(0, len(known) - 1, number).astype(int))] if len(known) else known
+    if (inside := int((times >= window.start).sum())) < FEWEST_FRAMES:
+        few = f"only {inside} checkpoints between t = {window.start:g} and {window.end:g} (allowed >= {FEWEST_FRAMES})"
+        raise UserError(f"{log.path}: has no events, and {few}")
+    return window, times
+
+
+def _compressibility(log: Log) -> float | None:
+    """Limit of S(k) at small k, 1/(d(φZ)/dφ), of a fluid of equal discs in a periodic box; None for other gases."""
+    gas, phi = log.discs, log.discs.packing_fraction
+    if not all(log.periodic) or np.ptp(gas.radius) > 0 or phi > hard_discs.HIGHEST:
+        return None
+    return 1 / float(hard_discs.inverse_compressibility(phi))
+
+
+class _Distances:
+    """Sums of Re ψ₆*(0) ψ₆(r) over pairs of discs, by distance up to half of the box's shorter side."""
+
+    def __init__(self, log: Log) -> None:
+        number = len(log.discs)
+        self._box, self._periodic = log.box, log.periodic
+        self._reach, spacing = min(log.box) / 2, math.sqrt(log.discs.area / number)
+        self._bins = max(int(BINS_A_SPACING * self._reach / spacing), 1)
+        self._chosen = np.arange(0, number, -(-(number**2) // MOST_PAIRS))
+        self._sums: list[np.ndarray] = []
+
+    def add(self, position: np.ndarray, local: np.ndarray) -> None:
+        """Add the pairs of an instant with positions (N, 2) and the order ψ₆ (N,) of each disc."""
+        squared = np.zeros((len(self._chosen), len(position)))
+        for place, size, periodic in zip(position.T, self._box, self._periodic, strict=True):
+            apart = place[self._chosen, None] - place
+            squared += (apart - size * np.round(apart / size) if periodic else apart) ** 2
+        bins = np.minimum(np.sqrt(squared) * (self._bins / self._reach), self._bins).astype(np.int64)
+        bins[np.arange(len(self._chosen)), self._chosen] = self._bins  # a disc is no pair with itself
+        products = sum(part[self._chosen, None] * part for part in (local.real, local.imag))
+        sums = (np.bincount(bins.ravel(), weights, self._bins + 1) for weights in (products.ravel(), None))
+        self._sums.append(np.array([each[: self._bins] for each in sums]))
+
+    def correlation(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Middle of each bin that mostly has pairs in it, mean of the product there, and its standard error."""
+        product, pairs = np.moveaxis(np.array(self._sums), 1, 0)
+        middle = (np.arange(self._bins) + 0.5) * (self._reach / self._bins)
+        some = (pairs > 0).mean(axis=0) > 0.5  # a product that is rarely observed has no known error
+        value = product.sum(axis=0)[some] / pairs.sum(axis=0)[some]
+        influence = (product[:, some] - value * pairs[:, some]) / pairs[:, some].mean(axis=0)
+        error = np.array([mean(column).standard_error for column in influence.T])
+        return middle[some], value, error
+
+
+class WaveVectors:
+    """Wave vectors 2π(a/Lx, b/Ly) of a periodic box up to a reach, of which one in each pair ±k."""
+
+    def __init__(self, box: tuple[float, float], number: int) -> None:
+        """Take the width and height of the box, length, and the number of discs in it."""
+        reach = REACH * math.sqrt(number / (box[0] * box[1]))
+        most = [max(int(reach * size / (2 * math.pi)), 1) for size in box]
+        self.kx = 2 * math.pi / box[0] * np.arange(most[0] + 1)
+        self.ky = 2 * math.pi / box[1] * np.arange(-most[1], most[1] + 1)
+        size = np.hypot(self.kx[:, None], self.ky)
+        twice = (self.kx[:, None] == 0) & (self.ky <= 0)  # the other one of a pair, or no wave at all
+        self.used = ~twice & (size <= max(reach, size[0, most[1] + 1], size[1, most[1]]))
+        self.size = size[self.used]
+
+    def structure_factor(self, position: np.ndarray) -> np.ndarray:
+        """S (K,) of positions (N, 2) at the wave vectors that are used."""
+        along, across = (np.exp(1j * np.outer(k, x)) for k, x in zip((self.kx, self.ky), position.T, strict=True))
+        return np.asarray(np.abs((along @ across.T)[self.used]) ** 2 / len(position))
+
+    def structure(self, frames: np.ndarray, number: int) -> Structure:
+        """Structure of a gas of `number` discs from S (F, K) in F frames, F ≥ 2."""
+        edges = np.linspace(0.0, self.size.max() * (1 + 1e-9), RINGS + 1)
+        ring = np.digitize(self.size, edges) - 1
+        filled = np.unique(ring)
+        found = [mean(frames[:, ring == r].mean(axis=1)) for r in filled]
+        on_lattice = np.full(self.used.shape, np.nan)
+        on_lattice[self.used] = frames.mean(axis=0)
+        best = int(frames[::2].mean(axis=0).argmax())
+        column, row = (index[best] for index in np.nonzero(self.used))
+        return Structure(
+            self.kx,
+            self.ky,
+            on_lattice,
+            k=np.array([self.size[ring == r].mean() for r in filled]),
+            value=np.array([one.value for one in found]),
+            error=np.array([one.standard_error for one in found]),
+            peak=np.array((self.kx[column], self.ky[row])),
+            positional=mean(frames[1::2, best] / number),
+        )
+
+
+def _draw_vectors(ax: "Axes", found: Structure) -> None:
+    """Draw S at every wave vector, in all directions."""
+    from matplotlib.colors import LogNorm
+
+    half = found.on_lattice
+    both = np.concatenate((half[:0:-1, ::-1], half))
+    both[len(half) - 1] = np.fmax(half[0], half[0, ::-1])
+    kx = np.concatenate((-found.kx[:0:-1], found.kx))
+    low, high = np.nanmin(half), np.nanmax(half)
+    norm = LogNorm(max(low, high * 1e-4), high)
+    shown = ax.pcolormesh(kx, found.ky, both.T, norm=norm, cmap="cividis", rasterized=True)
+    ax.set(aspect="equal", xlabel="kx (1/length)", ylabel="ky (1/length)")
+    ax.grid(visible=False)
+    ax.figure.colorbar(shown, ax=ax, label="S(k) (no unit)")

@@ -1,0 +1,287 @@
+"""Measure the speed and the damping of sound by the longest waves of density in a periodic box.
+
+Theory: the speed by the equation of state, the damping by Enskog's viscosities and thermal conductivity.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.caveats import narrow
+from idealgas.analysis.core.ensemble import composition, ensemble
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.fields import OMITTED
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.stream import sample_trajectories
+from idealgas.analysis.core.tables import Table, describe, estimates
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.waves import Decay, Fluid, fit, sound_of_discs
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STEPS = 12
+"""Instants in a period of the sound that is expected."""
+
+DECAYS, PERIODS = 3.0, 6.0
+"""Longest time for which a wave is followed: so many of its expected decay times or, if that is less, periods."""
+
+SEGMENTS = 32
+"""Parts of the window; the spread over them gives the error bars."""
+
+ROUGH = 0.025
+"""Largest relative error of the speed with which error bars do not depend on what was found."""
+
+FEWEST_DECAYS = 100
+"""Number of decay times of sound that an estimate takes."""
+
+MOST_FRAMES = 2**17
+AT_ONCE = 2**20
+"""Number of places that are in memory together."""
+
+HYDRODYNAMIC = 0.5
+"""Largest k times the mean free path, and k times the diameter, at which waves are those of a fluid."""
+
+
+ERRORS = Fluid(speed=0.001, damping=0.05, spreading=0.1, exponent=0.001)
+"""Relative errors of theory for long waves: those of the equation of state and of Enskog's coefficients."""
+
+FASTER = 0.15
+"""Sound of waves of finite length is faster than theory by up to this part of Γk/c: measured at φ = 0.3 with 300, 600
+and 2400 discs, 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions currents have long tails, so that what is
+neglected here is not small as k²."""
+
+
+@dataclass(frozen=True)
+class Wave:
+    """The longest waves of density along the axes of the box, or along one of them.
+
+    axes: their names. wavelength: length. lag: (L,), time. correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit). error: (L,),
+    its standard error. fitted: the law that is nearest to it. theory: the law by theory; None without one. speed: of
+    sound, length/time. damping: Γ, length²/time. spreading: thermal diffusivity χ, length²/time. exponent: adiabatic
+    exponent γ (no unit).
+    """
+
+    axes: str
+    wavelength: float
+    lag: np.ndarray
+    correlation: np.ndarray
+    error: np.ndarray
+    fitted: Annotated[Decay, OMITTED]
+    theory: Annotated[Decay | None, OMITTED]
+    speed: Estimate
+    damping: Estimate
+    spreading: Estimate
+    exponent: Estimate
+
+
+@dataclass(frozen=True)
+class Sound(Result):
+    """Sound in the gas of one log.
+
+    window: the time that was used. frames: number of instants. waves: one entry, of both axes, in a square box.
+    """
+
+    window: Window
+    frames: int
+    waves: tuple[Wave, ...]
+
+
+class SoundAnalysis(Analysis):
+    """Sound in a gas of one species."""
+
+    position = 90
+    results = (Sound,)
+    sections = (Section("Sound", "Correlation in time of the longest waves of density, hydrodynamics dashed"),)
+    reads = "frames"
+
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Sound:
+        """Measure the speed and the damping of sound between two times of a log.
+
+        The amplitude ρ(t) = Σ exp(-ikx) of the longest wave along each periodic axis is followed in time. Its
+        correlation is fitted by hydrodynamics, as sound and heat conduction. Error bars are by the jackknife over 32
+        parts of the window.
+
+        Args:
+            log: log with events, of a gas of one species.
+            start: start of the window, time; by default detected equilibrium.
+            end: end of the window, time; by default the end of the log.
+            progress: called as progress(done, total) while states are read.
+
+        Raises:
+            UserError: without events or a periodic axis, for several species, with effects other than periodic sides,
+                or if the window is too short to follow a wave.
+        """
+        if len(composition(log.discs).name) > 1:
+            raise UserError(f"{log.path}: sound takes a gas of one species")
+        if not any(log.periodic):
+            raise UserError(f"{log.path}: sound takes a box with periodic sides, in which waves run freely")
+        window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
+        alone = [(axis,) for axis in (0, 1) if log.periodic[axis]]
+        groups: Sequence[tuple[int, ...]] = [(0, 1)] if len(alone) == 2 and log.box[0] == log.box[1] else alone
+        waves, frames = [], 0
+        for axes in groups:
+            expected, errors = _expected(log, 2 * math.pi / log.box[axes[0]])
+            step, lags = _steps(log, window, expected)
+            times = np.minimum(window.start + step * np.arange(int(window.duration / step) + 1), window.end)
+            waves.append(
+                _wave(log, axes, (expected, errors), step * np.arange(lags), _amplitudes(log, times, axes, progress))
+            )
+            frames += len(times)
+        caveats = [sentence for wave in waves for sentence in _caveats(log, window, wave)]
+        return Sound(window, frames, tuple(waves), caveats=(*narrow(log), *caveats))
+
+    @staticmethod
+    def tables(result: Sound) -> list[Table]:
+        """Table of each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
+        tables = [
+            estimates(
+                f"Waves along {wave.axes}, {wave.wavelength:.4g} long",
+                [
+                    ("speed of sound (length/time)", wave.speed),
+                    ("damping of sound Γ (length²/time)", wave.damping),
+                    ("thermal diffusivity (length²/time)", wave.spreading),
+                    ("adiabatic exponent γ (no unit)", wave.exponent),
+                ],
+            )
+            for wave in result.waves
+        ]
+        notes = (
+            f"{describe(result.window)}, {result.frames} instants",
+            "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and thermal "
+            "conductivity",
+        )
+        return [replace(tables[0], notes=notes), *tables[1:]]
+
+    @staticmethod
+    def figure(result: Sound) -> "Figure":
+        """Picture of the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
+        from idealgas.analysis.core.style import COLOURS, GREY, panels
+
+        figure, axes = panels(len(result.waves))
+        for ax, wave in zip(axes, result.waves, strict=True):
+            every = max(len(wave.lag) // 60, 1)
+            lag, found, error = (values[::every] for values in (wave.lag, wave.correlation, wave.error))
+            ax.errorbar(lag, found, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="measured")
+            fine = np.linspace(0, wave.lag[-1], 500)
+            ax.plot(fine, wave.fitted.at(fine), color=COLOURS[1], linewidth=1.2, label="fit: heat and sound")
+            if wave.theory is not None:
+                ax.plot(fine, wave.theory.at(fine), "--", color=GREY, label="hydrodynamics by theory")
+            ax.axhline(0, color="#bbbbbb", linewidth=0.8, zorder=1)
+            ax.set_xlabel("t (time)")
+            wave_in_words = f"waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}"
+            ax.set_ylabel(f"⟨ρ(t) ρ*(0)⟩/N (no unit), {wave_in_words}")
+            ax.legend()
+        return figure
+
+
+def _expected(log: Log, k: float) -> tuple[Decay, Fluid | None]:
+    """Correlation of waves with the wave number k by theory, and relative errors of its fluid; None above freezing."""
+    gas, temperature = log.discs, ensemble(log).temperature
+    phi, mass, diameter = gas.packing_fraction, float(gas.mass[0]), 2 * float(gas.radius[0])
+    fluid = sound_of_discs(phi, temperature, mass, diameter)
+    short = FASTER * fluid.damping * k / fluid.speed
+    errors = Fluid(*(math.hypot(error, short) for error in ERRORS)) if phi <= hard_discs.HIGHEST else None
+    return Decay(1 / float(hard_discs.inverse_compressibility(phi)), k, fluid), errors
+
+
+def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
+    """Time between two instants, and number of them for which a wave is followed."""
+    k, fluid = expected.k, expected.fluid
+    decay_time, period = 1 / (fluid.damping * k**2), 2 * math.pi / (fluid.speed * k)
+    longest = min(DECAYS * decay_time, PERIODS * period, window.duration / 8)
+    step = max(min(period, decay_time) / STEPS, window.duration / MOST_FRAMES)
+    lags = int(longest / step) + 1
+    if lags < STEPS:
+        raise UserError(f"{log.path}: a window of {8 * STEPS * step:.3g} is the least in which waves can be followed")
+    return step, lags
+
+
+def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Progress | None) -> np.ndarray:
+    """Σ exp(-ikx) over all discs (A, G) at G times, complex, of the longest waves along the axes."""
+    drift, discs = ensemble(log).centre_of_mass_velocity, np.arange(len(log.discs))
+    found = np.empty((len(axes), len(times)), complex)
+    some = max(AT_ONCE // len(discs), 1)
+    for first in range(0, len(times), some):
+        now = times[first : first + some]
+        places, _ = sample_trajectories(log, now, discs)
+        for a, axis in enumerate(axes):
+            phase = (places[:, :, axis] - drift[axis] * now[:, None]) * (2 * math.pi / log.box[axis])
+            found[a, first : first + some] = np.cos(phase).sum(axis=1) - 1j * np.sin(phase).sum(axis=1)
+        if progress is not None:
+            progress(min(first + some, len(times)), len(times))
+    return found
+
+
+def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray:
+    """⟨ρ(t + lag) ρ*(t)⟩ (segments, lags) of amplitudes (A, G), averaged over A and over the starts of each segment."""
+    starts = amplitudes.shape[1] - lags + 1
+    edges = np.linspace(0, starts, segments + 1).astype(int)[:-1]
+    counts = np.diff(np.append(edges, starts))
+    early = amplitudes[:, :starts].conj()
+    products = ((amplitudes[:, lag : lag + starts] * early).real.mean(axis=0) for lag in range(lags))
+    return np.stack([np.add.reduceat(product, edges) / counts for product in products], axis=1)
+
+
+def _wave(
+    log: Log, axes: tuple[int, ...], theory: tuple[Decay, Fluid | None], lag: np.ndarray, amplitudes: np.ndarray
+) -> Wave:
+    """Wave along some axes from its amplitudes (A, G), with theory and its relative errors."""
+    expected, errors = theory
+    parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
+    whole = parts.mean(axis=0)
+    thermal = ensemble(log).temperature / float(log.discs.mass[0])
+    fitted = fit(lag, whole, expected._replace(size=float(whole[0])), thermal)
+    rest = (whole * SEGMENTS - parts) / (SEGMENTS - 1)
+    others = [] if fitted is None else [fit(lag, one, fitted, thermal) for one in rest]
+    without = [other.fluid for other in others if other is not None]
+    if fitted is None or len(without) < SEGMENTS:
+        raise UserError(f"{log.path}: the waves of density are not those of a fluid, or too few for a fit")
+    error = np.sqrt((SEGMENTS - 1) * np.var(without, axis=0))  # the jackknife
+    quantities = {
+        name: Estimate(value, float(error[j]), float(SEGMENTS), *((of, of * errors[j]) if errors else ()))
+        for j, (name, value, of) in enumerate(zip(Fluid._fields, fitted.fluid, expected.fluid, strict=True))
+    }
+    return Wave(
+        axes=" and ".join("xy"[axis] for axis in axes),
+        wavelength=log.box[axes[0]],
+        lag=lag,
+        correlation=whole,
+        error=parts.std(axis=0, ddof=1) / math.sqrt(SEGMENTS),
+        fitted=fitted,
+        theory=expected if errors else None,
+        **quantities,
+    )
+
+
+def _caveats(log: Log, window: Window, wave: Wave) -> Iterator[str]:
+    """Sentences on what does not hold for a wave."""
+    gas, k, fluid = log.discs, wave.fitted.k, wave.fitted.fluid
+    diameter = 2 * float(gas.radius[0])
+    short = max(diameter, hard_discs.mean_free_path(diameter, len(gas) / gas.area, gas.packing_fraction))
+    if k * short > HYDRODYNAMIC:
+        yield (
+            f"The waves along {wave.axes} are {wave.wavelength / short:.3g} mean free paths or diameters long; a fluid "
+            f"takes {2 * math.pi / HYDRODYNAMIC:.3g}."
+        )
+    if fluid.damping * k > fluid.speed:
+        yield f"The waves along {wave.axes} die out within a period: they hardly are sound."
+    if (part := wave.speed.standard_error / wave.speed.value) > ROUGH:
+        yield (
+            f"The speed of sound along {wave.axes} is known to {100 * part:.2g} %; above {100 * ROUGH:g} % error bars "
+            "of it and of γ are up to a fifth too small."
+        )
+    if (number := window.duration * fluid.damping * k**2) < FEWEST_DECAYS:
+        yield (
+            f"The window has {number:.2g} decay times of the waves along {wave.axes}; error bars take {FEWEST_DECAYS}."
+        )
