@@ -150,7 +150,7 @@ def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
         )
         for point, cost in zip(plan.points, costs, strict=True)
     ]
-    print_tables([Table("", ("point", "replicate", *plan.axes, "N", "φ", "events", "log"), rows)])
+    print_tables([Table("", ("point", "replicate", *plan.points[0].values, "N", "φ", "events", "log"), rows)])
     size = sum(cost.bytes for cost in costs)
     kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
     echo(f"{len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")

@@ -78,28 +78,28 @@ def next_change(effects: Effects, time: float) -> float:
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:
-    """Energy of the discs at time 0 that may become motion, mass length²/time²."""
+    """Energy of the discs at time 0 that may become kinetic energy, mass length²/time²."""
     parts = ((effect.energy, state) for effect, state in present(effects))
     return sum(part.of(state, gas, 0.0) for part, state in parts if part is not None and part.inner)
 
 
 def counted(effects: Effects) -> tuple[Column, ...]:
-    """Totals of events that only these effects have."""
+    """Columns of the event counts that these effects add."""
     return tuple(effect.counted for effect, _ in present(effects) if effect.counted is not None)
 
 
 def disc_state(effects: Effects) -> Arrays:
-    """What checkpoints keep of each disc: the effects' own arrays; times count from the checkpoint."""
+    """Arrays per disc that checkpoints store for the effects; times count from the checkpoint."""
     return {column: values for effect, state in present(effects) for column, values in effect.disc_state(state).items()}
 
 
 def disc_constants(effects: Effects) -> Arrays:
-    """What the log keeps of each disc at the start, in addition to motion, radius and mass."""
+    """Values per disc that the log stores once, in addition to motion, radius and mass."""
     return {column: values for effect, state in present(effects) for column, values in effect.constants(state).items()}
 
 
 def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
-    """What checkpoints and samples keep of the effects as a whole; local_time: from the start of the epoch."""
+    """Values of the effects as a whole for checkpoints and samples; local_time: from the start of the epoch."""
     return {
         column: value
         for effect, state in present(effects)
@@ -116,7 +116,7 @@ def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray], values: 
 
 
 def with_own_sums(effects: Effects) -> Effects:
-    """The same effects with sums of their own, which are 0: what several threads add up can be put together."""
+    """The same effects with their own sums, set to 0, so that the sums of several threads can be added."""
     sums = {name: None if (found := getattr(effects, name)) is None else found.copy() for name in ENERGIES}
     own = effects._replace(flow=stress.copy_of(effects.flow), **sums)
     clear_sums(own)
@@ -134,7 +134,7 @@ def clear_sums(effects: Effects) -> None:
 
 
 def add_sums_of(effects: Effects, part: Effects) -> None:
-    """Add to the sums and numbers of collisions what another bundle of the same effects has; no term waits in that."""
+    """Add the sums and numbers of collisions of another bundle of the same effects, whose buffer is empty."""
     for total, sums in zip(_sums(effects), _sums(part), strict=True):
         add_sums(total, sums)
     for number, counts in zip(_counts(effects), _counts(part), strict=True):

@@ -1,4 +1,4 @@
-"""The time-driven method: all discs fly for a step, then those that overlap or stand outside, and approach, collide.
+"""The time-driven method: discs fly for a step, then those that overlap or reach outside, and approach, collide.
 
 For comparison with the event-driven method: its errors grow with its step. A contact is found late, by half a step
 on average, with a rotated line of centres; a contact that begins and ends between two steps is missed. It is as fast as

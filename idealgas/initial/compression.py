@@ -1,8 +1,8 @@
-"""Dense states by compression: discs collide while their radii grow at a constant rate, until they have their size.
+"""Dense states by compression: discs collide while their radii grow at a constant rate, until they reach their size.
 
-This is the algorithm of Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990), in a periodic box, by events and
-without randomness beyond the velocities at its start. It is a preparation: it comes before time 0 of a run, all discs
-have the same mass in it, velocities are scaled back again and again, and no trace but the positions is left of it.
+This is the event-driven algorithm of Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990), in a periodic box; only
+the initial velocities are random. It prepares the positions before time 0 of a run: all discs have the same mass,
+velocities are rescaled repeatedly, and only the positions are kept.
 """
 
 import math
@@ -20,29 +20,29 @@ RATE = 5e-3
 """Growth of the mean radius per time, in units of the root-mean-square of a component of the velocity."""
 
 GAP = 1e-9
-"""Part of the radius by which discs grow beyond it, so that none overlaps by rounding at the start of the run."""
+"""Relative growth beyond the final radius, so that rounding causes no overlap at the start of the run."""
 
 SLACK = 0.3
-"""Width of the border in which neighbours are listed, in diameters of the largest disc."""
+"""Gap up to which neighbours are listed, in diameters of the largest disc."""
 
 RESCALE_INTERVAL, MAX_COLLISIONS = 4, 5_000
 """Collisions per disc after which velocities are rescaled, and after which the discs count as jammed."""
 
 
 class Growing(NamedTuple):
-    """N discs that grow. Times count from the last rest, when all discs were at `origin`.
+    """N growing discs. Times count from the last synchronization, when all discs were at `origin`.
 
     Attributes:
         position: (N, 2) f8, where each disc was at its last collision, length.
         velocity: (N, 2) f8, length/time.
         time: (N,) f8, time of the last collision.
-        origin: (N, 2) f8, position at the last rest, length.
+        origin: (N, 2) f8, position at the last synchronization, length.
         radius: (N,) f8, radius at the end of the compression, length.
         period: (2,) f8, width and height of the box, length.
         first: (N + 1,) i8, where the neighbours of each disc begin in `neighbour`.
-        neighbour: i8, discs that a disc may meet before the next rest.
+        neighbour: i8, discs that a disc may meet before the next synchronization.
         next_time: (N,) f8, time of the next event of each disc.
-        partner: (N,) i8, disc that it then collides with; -1 if it then may leave the range of its neighbours.
+        partner: (N,) i8, disc that it then collides with; -1 if it may then leave the range of its neighbours.
         collisions: (N,) i8, number of collisions of each disc.
         known: (N,) i8, number of collisions of the partner for which the event was predicted.
     """
@@ -62,16 +62,16 @@ class Growing(NamedTuple):
 
 
 def loose_scale(radius: np.ndarray, box: tuple[float, float]) -> float:
-    """Part of their radii that discs have at the start of the compression; 1 if they are loose as they are."""
+    """Fraction of their final radii at which the discs start; 1 if these are loose enough already."""
     return min(math.sqrt(LOOSE * box[0] * box[1] / (math.pi * float(radius @ radius))), 1.0)
 
 
 def compress(
     position: np.ndarray, radius: np.ndarray, box: tuple[float, float], scale: float, random: np.random.Generator
 ) -> float:
-    """Let discs of radii scale * radius grow to their radii; return the part of them that they reach before they jam.
+    """Let discs grow from scale * radius to radius; return the fraction of the radius reached before they jam.
 
-    position: (N, 2), changed in place, length. radius: (N,), length. random: for the velocities at the start.
+    position: (N, 2), changed in place, length. radius: (N,), length. random: for the initial velocities.
     """
     n, period = len(radius), np.array(box)
     velocity, rate = random.standard_normal((n, 2)), RATE / float(radius.mean())
@@ -82,7 +82,7 @@ def compress(
         slack = min(SLACK * 2 * float(radius.max()), (min(box) / 2 - 2 * float(radius.max())) / 2)
         reach = 2 * float(radius.max()) * scale + 2 * slack  # discs come nearer by `slack`, and grow by as much
         longest = min((end - scale) / rate, slack / (2 * float(radius.max()) * rate))
-        discs = _at_rest(position, velocity, radius, period, reach)
+        discs = _synchronised(position, velocity, radius, period, reach)
         events, time = _grow(discs, scale, rate, slack / 2, longest, RESCALE_INTERVAL * n)
         moved = discs.position + velocity * (time - discs.time)[:, None]
         position[:] = np.minimum(moved % period, np.nextafter(period, 0.0))
@@ -91,7 +91,7 @@ def compress(
     return min(scale, 1.0)
 
 
-def _at_rest(
+def _synchronised(
     position: np.ndarray, velocity: np.ndarray, radius: np.ndarray, period: np.ndarray, reach: float
 ) -> Growing:
     """Discs at their positions, with the neighbours of each that are nearer than `reach` (length)."""
@@ -140,7 +140,7 @@ def _time_to_contact(discs, i, j, scale, rate):
     root = b * b - a * c
     if b < 0:
         return now + c / (math.sqrt(root) - b) if root >= 0 else np.inf
-    return now + (b + math.sqrt(max(root, 0.0))) / -a if a < 0 else np.inf  # they part more slowly than they grow
+    return now + (b + math.sqrt(max(root, 0.0))) / -a if a < 0 else np.inf  # they separate more slowly than they grow
 
 
 @inline
@@ -161,7 +161,7 @@ def _predict(discs, i, scale, rate, range_):
 
 @inline
 def _collide(discs, i, j, time, rate):
-    """Collide discs i and j: along their centres they part as fast as they came, seen from the growing contact."""
+    """Collide discs i and j elastically in the frame of their growing surfaces."""
     for k in (i, j):
         discs.position[k, 0] += discs.velocity[k, 0] * (time - discs.time[k])
         discs.position[k, 1] += discs.velocity[k, 1] * (time - discs.time[k])
@@ -172,11 +172,11 @@ def _collide(discs, i, j, time, rate):
     distance = math.hypot(dx, dy)
     nx, ny = dx / distance, dy / distance
     apart = (discs.velocity[j, 0] - discs.velocity[i, 0]) * nx + (discs.velocity[j, 1] - discs.velocity[i, 1]) * ny
-    push = rate * (discs.radius[i] + discs.radius[j]) - apart
-    discs.velocity[i, 0] -= push * nx
-    discs.velocity[i, 1] -= push * ny
-    discs.velocity[j, 0] += push * nx
-    discs.velocity[j, 1] += push * ny
+    impulse = rate * (discs.radius[i] + discs.radius[j]) - apart
+    discs.velocity[i, 0] -= impulse * nx
+    discs.velocity[i, 1] -= impulse * ny
+    discs.velocity[j, 0] += impulse * nx
+    discs.velocity[j, 1] += impulse * ny
 
 
 @njit

@@ -29,7 +29,7 @@ FARTHEST = 1000
 """Largest exponent k of a unit, in size: 2^k and 2^-k are floats."""
 
 U = np.uintp
-BATCH = 64  # terms that wait for each other
+BATCH = 64  # terms added together
 SMALL = 2.0**62  # terms that are one word
 FITS = SMALL / BATCH  # terms of which BATCH are one word
 LARGEST = 2.0**100
@@ -40,7 +40,7 @@ ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 
 class SumRangeError(Exception):
-    """A term of a sum is not a number or too large, or so many terms are that the sum may not go on."""
+    """A term of a sum is not a number or too large, or the sum exceeds its range."""
 
 
 @inline
@@ -81,7 +81,7 @@ def add_large(total, units):
 def add_all(total, terms):
     """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most BATCH.
 
-    Few processors turn several floats at a time into whole numbers; rounded by a sum, their bits are read as such.
+    Few processors convert several floats to integers at once, so adding a constant rounds them and their bits are read.
     """
     number = np.int64(terms.shape[0])
     upper = number * -ROUNDER_BITS
@@ -139,7 +139,7 @@ def stored(sums: np.ndarray) -> np.ndarray:
 
 
 def restore(sums: np.ndarray, entry: np.ndarray) -> None:
-    """Set sums to what `stored` gave, units included. Raises SumRangeError where that is more than a sum may be."""
+    """Set sums and their units to the result of `stored`; SumRangeError if one exceeds the range of a sum."""
     for one, (high, low, k) in zip(sums, entry.tolist(), strict=True):
         number = (high << WORD) + low
         if abs(number >> 64) > 2 * FULL or abs(k) > FARTHEST:

@@ -107,13 +107,12 @@ class Point:
 class Sweep:
     """A whole sweep.
 
-    analyses: names of the analyses of each point. keep_logs: whether logs are kept. axes: keys of the axes. points: all
-    runs. seed: from which their seeds follow. text: the file of the sweep, for its folder.
+    analyses: names of the analyses of each point. keep_logs: whether logs are kept. points: all runs. seed: from which
+    their seeds follow. text: the file of the sweep, for its folder.
     """
 
     analyses: tuple[str, ...]
     keep_logs: bool
-    axes: tuple[str, ...]
     points: tuple[Point, ...]
     seed: int
     text: str
@@ -135,14 +134,8 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     if found := list(_errors(tables)):
         raise SceneError(origin.report(found))
     points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
-    return Sweep(
-        tables.sweep.analyses,
-        tables.sweep.keep_logs,
-        tuple(axis.key for axis in tables.axis),
-        points,
-        tables.sweep.seed,
-        f"# {len(points)} points\n{text}",
-    )
+    settings, text = tables.sweep, f"# {len(points)} points\n{text}"
+    return Sweep(settings.analyses, settings.keep_logs, points, settings.seed, text)
 
 
 Base = tuple[dict[str, Any], Origin]

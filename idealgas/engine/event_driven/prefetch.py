@@ -1,9 +1,9 @@
-"""Memory of discs whose events come soon, fetched while others happen: for a gas too large for the caches.
+"""Prefetching the memory of discs whose events come soon: for a gas too large for the caches.
 
-The disc that becomes the first of its part of the schedule has an event soon: of 8 to 64 parts, two levels below the
-root, some ten events later. (Right below the root there may be two, and the first of one is often next.) Each step
-needs what the one before has fetched, so it is done an event later: first the disc's record, prediction and place in
-the schedule; then the cells around it, and its partner; then the discs in the cells that its event will ask.
+The disc that becomes the first in its part of the schedule has an event soon: with 8 to 64 parts, two levels below the
+root, about ten events later. (Directly below the root there may be only two, and the first of one is often next.) Each
+step needs what the previous one has fetched, so it follows an event later: first the disc's record, prediction and node
+of the schedule; then the cells around it, and its partner; then the discs in the cells that its event will search.
 """
 
 import numpy as np
@@ -12,10 +12,10 @@ from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 from idealgas.jit import aligned, inline, prefetch
 
 FROM = 6_000
-"""Least number of discs at which that is faster."""
+"""Number of discs from which prefetching is faster."""
 
 NEAR = 32_768
-"""Most discs for which the parts right below the root do, if there are three: memory is not so far then."""
+"""Largest number of discs for which the parts directly below the root suffice, if there are at least three."""
 
 U = np.uintp
 
@@ -62,7 +62,7 @@ def cell_around(cells, disc):
 
 @inline
 def fetch_cells(cells, disc):
-    """Fetch the cells around a disc, those that it may come within reach of included."""
+    """Fetch the cells around a disc, including those that may come within its reach."""
     cell = cell_around(cells, disc)
     for row in range(-2, 3):
         prefetch(cells.head, U(cell + row * cells.columns))
@@ -87,7 +87,7 @@ def fetch_block(cells, record, cell):
 
 @inline
 def fetch_candidates(cells, record, disc, prediction):
-    """Fetch the first discs of the cells that a disc's next event will ask."""
+    """Fetch the first discs of the cells that a disc's next event will search."""
     cell = cell_around(cells, disc)
     code = prediction.crossing_code
     if prediction.crossing < prediction.contact and code < SIDE_OF_BOX:
@@ -104,7 +104,7 @@ def fetch_candidates(cells, record, disc, prediction):
 
 @inline
 def prefetch_next(pipeline, record, state, i):
-    """Fetch memory for the disc that comes first in disc i's part now that this was withdrawn, and for those before."""
+    """Fetch memory for the new first disc of disc i's part, whose event was removed, and for the previous two."""
     if pipeline is not None:
         third, second = pipeline[0], pipeline[1]
         first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # a piston is no disc

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from idealgas.initial import compression
 from idealgas.initial.build import make_gas
-from idealgas.initial.compression import GAP, _at_rest, _grow, compress
+from idealgas.initial.compression import GAP, _grow, _synchronised, compress
 from idealgas.scene import SceneError, parse_scene
 
 PERIODIC = "".join(f"box.{side} = 'periodic'\n" for side in ("left", "right", "bottom", "top"))
@@ -53,7 +53,7 @@ def test_no_two_discs_overlap_on_the_way():
     radius, box = np.full(16, 0.1), np.array((1.0, 1.0))
     now, velocity = (np.array([(x, y) for x in range(4) for y in range(4)]) + 0.5) / 4, rng.standard_normal((16, 2))
     for _ in range(12):
-        discs, hits, time = _at_rest(now % 1, velocity, radius, box, 0.4), 1, 0.0
+        discs, hits, time = _synchronised(now % 1, velocity, radius, box, 0.4), 1, 0.0
         while hits and scale + rate * time < 0.9:
             before = discs.collisions.copy()
             hits, time = _grow(discs, scale, rate, 0.1, 1.0, 1)
