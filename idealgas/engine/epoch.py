@@ -7,11 +7,11 @@ import numpy as np
 
 from idealgas.effects.bundle import Effects
 from idealgas.physics.collision_rates import collisions_per_length
+from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.state import Gas
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
 FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs
-MAX_DISPLACEMENT = 6144  # of the fastest disc, in diameters: it limits a contact's error to 2**-54 of it for each disc
 MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
 FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc
 UNDECIDED = 1e-6  # so close to a power of two, the sum of the speeds is taken exactly; NumPy's is far closer to that

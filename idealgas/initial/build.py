@@ -102,7 +102,7 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
     if scene.disc:
         position[ids[0]] = [disc.position for disc in scene.disc]
-        placement.insert(grid, position, radius, ids[0])
+        placement.insert_given(grid, position, ids[0])
     lattices: dict[tuple[float, ...], list[int]] = {}
     triangular: list[int] = []
     at_random: list[int] = []

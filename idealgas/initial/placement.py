@@ -166,6 +166,13 @@ def _is_clear(grid, cell, x, y, reach):
 
 
 @njit
+def insert_given(grid, position, ids):
+    """Insert discs whose positions have been checked; those in contact may overlap by rounding."""
+    for i in ids:
+        _insert(grid, position, i)
+
+
+@njit
 def insert(grid, position, radius, ids):
     """Insert discs at their positions; return their number before the first that would overlap."""
     for n, i in enumerate(ids):

@@ -23,11 +23,11 @@ from hypothesis import HealthCheck, example, given, settings
 from idealgas.columns import FIRST_SEGMENT, EventBatch
 from idealgas.effects.bundle import Effects, inner_energy
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.epoch import MAX_DISPLACEMENT
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
 from idealgas.physics.exact_sum import make_sums
+from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution

@@ -16,6 +16,7 @@ from idealgas.scene.checks.discs import (
     overlap_issues,
     placement_issues,
     room_issues,
+    rounding,
     species_issues,
 )
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
@@ -102,7 +103,7 @@ def _discs_in_walls(scene: Document) -> Iterator[Issue]:
     for k, d in _valid(scene.disc):
         for i, wall in walls:
             distance = min(distance_to_wall(centre, wall) for centre in images(d.position, d.radius, box))
-            if wall.there_at_start and distance < d.radius:
+            if wall.there_at_start and distance < d.radius - rounding(max(box.size), 2 * d.radius):
                 keys: tuple[Key, ...] = (("disc", k, "position"), ("disc", k, "radius"), ("wall", i))
                 yield Issue(keys, f"overlaps wall {i}", f"a distance of {distance} to it", f">= {d.radius}, the radius")
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
+from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.scene.checks.piston import CLOSE_PACKING
 from idealgas.scene.lattice import triangular_lattice
 from idealgas.toml.issues import Issue, Key
@@ -23,6 +24,9 @@ RANDOM_PACKING = 0.65
 
 RESOLUTION = 1e-9
 """Smallest radius in units of the longer side of the box, so that floats distinguish contact from gap."""
+
+ROUNDINGS = 16
+"""Number of roundings of a coordinate at a contact: of two positions, two flights, and the time of the event."""
 
 MOST_OVERLAPS = 1_000
 """Largest number of overlaps that are reported."""
@@ -56,11 +60,21 @@ def species_issues(kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
             yield Issue(keys, "not one velocity for each disc", str(len(s.velocities)), f"{s.count}, as count says")
 
 
+def rounding(extent: float, reach: float) -> float:
+    """Largest overlap (length) that rounding explains; the engine takes such discs for discs in contact.
+
+    extent: largest coordinate, length. reach: distance of the centres at contact, or the diameter of a disc at a wall,
+    length. The clock of an epoch adds the rounding of the path of its fastest disc.
+    """
+    return ROUNDINGS * 2.0**-53 * (extent + MAX_DISPLACEMENT * reach)
+
+
 def overlap_issues(discs: list[tuple[int, Disc]], box: Box | None) -> Iterator[Issue]:
     """Report explicit discs that overlap, also through periodic sides, at most MOST_OVERLAPS pairs."""
     placed = [(i, d.radius, centre) for i, d in discs for centre in images(d.position, d.radius, box)]
+    extent = max(box.size) if box else max((abs(x) for _, d in discs for x in d.position), default=0.0)
     found: dict[tuple[int, int], float] = {}
-    for a, b, distance in overlaps([(centre, radius) for _, radius, centre in placed]):
+    for a, b, distance in overlaps([(centre, radius) for _, radius, centre in placed], extent):
         pair = placed[a][0], placed[b][0]
         if pair[0] != pair[1] and len(found) < MOST_OVERLAPS:
             found.setdefault(pair, distance)
@@ -121,13 +135,14 @@ def _discs_outside(box: Box, space: Rectangle, discs: list[tuple[int, Disc]]) ->
             continue
         allowed = []
         inside = True
+        slack = rounding(max(box.size), 2 * d.radius)
         for axis, name in enumerate("xy"):
             low, high = space[axis] + d.radius, space[axis + 2] - d.radius
             if box.periodic[axis]:
                 inside &= 0 <= d.position[axis] < box.size[axis]
                 allowed.append(f"0 <= {name} < {box.size[axis]}")
             else:
-                inside &= low <= d.position[axis] <= high
+                inside &= low - slack <= d.position[axis] <= high + slack
                 allowed.append(f"{low} <= {name} <= {high}")
         if not inside:
             keys = (("disc", i, "position"), ("disc", i, "radius"), *others)
@@ -227,8 +242,10 @@ def images(centre: Point, radius: float, box: Box | None) -> Iterator[Point]:
             yield centre[0] + dx, centre[1] + dy
 
 
-def overlaps(discs: Sequence[tuple[Point, float]]) -> Iterator[tuple[int, int, float]]:
+def overlaps(discs: Sequence[tuple[Point, float]], extent: float) -> Iterator[tuple[int, int, float]]:
     """Indices of two discs that overlap, the lower one first, and their distance; each disc is (centre, radius).
+
+    extent: largest coordinate, length, from which it follows what counts as rounding.
 
     Discs of about one radius, from a power of two to the next, share a grid with cells no smaller than their diameter.
     Each disc is compared with those of the nine cells around it in the grids of its own size and of larger ones, so
@@ -246,6 +263,7 @@ def overlaps(discs: Sequence[tuple[Point, float]]) -> Iterator[tuple[int, int, f
             for cell in ((column + c, row + r) for c in (-1, 0, 1) for r in (-1, 0, 1)):
                 for k in grid.get(cell, ()):
                     other, reach = discs[k][0], radius + discs[k][1]
+                    reach -= rounding(extent, reach)
                     dx, dy = centre[0] - other[0], centre[1] - other[1]
                     if dx * dx + dy * dy < reach * reach and (k < i or level > size[i]):
                         yield min(i, k), max(i, k), math.hypot(dx, dy)

@@ -9,11 +9,11 @@ import pytest
 from idealgas.engine.epoch import (
     EVENTS_PER_DISC,
     FEWEST_PER_DISC,
-    MAX_DISPLACEMENT,
     MOST_CROSSINGS,
     encounters_per_length,
     epoch_length,
 )
+from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.state import Gas
 
 
