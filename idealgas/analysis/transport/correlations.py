@@ -4,17 +4,27 @@ import numpy as np
 from scipy import fft
 
 
-def autocorrelation(velocities: np.ndarray) -> np.ndarray:
-    """Velocity autocorrelation ⟨v(t)·v(t + lag)⟩ (segments, L), averaged over discs and the times t of each segment.
+def correlation(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Correlation ⟨a(t)·b(t + lag)⟩ (segments, L) of two series, averaged over discs and the times t of each segment.
 
-    velocities: (segments, L, discs, 2), at equal steps.
+    first, second: (segments, L, discs, 2), at equal steps.
     """
-    length = velocities.shape[1]
+    length = first.shape[1]
     padded = fft.next_fast_len(2 * length - 1, real=True)
-    spectrum = np.fft.rfft(velocities, padded, axis=1)
-    power = (spectrum.real**2 + spectrum.imag**2).sum(axis=3).mean(axis=2)
-    raw = np.fft.irfft(power, padded, axis=1)[:, :length]
-    return raw / np.arange(length, 0, -1)
+    one, other = (np.fft.rfft(series, padded, axis=1) for series in (first, second))
+    power = (one.conj() * other).sum(axis=3).mean(axis=2)
+    return np.fft.irfft(power, padded, axis=1)[:, :length] / np.arange(length, 0, -1)
+
+
+def velocity_integral(velocities: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Integral of ⟨v(t)·v(t + lag)⟩ (segments, L) from 0 to each lag, length²/time.
+
+    It is the sum of ⟨v(t)·[r(t + lag + step) - r(t + lag)]⟩, which is exact however long the steps are.
+
+    velocities, places: (segments, L, discs, 2), at equal steps.
+    """
+    steps = correlation(velocities[:, :-1], np.diff(places, axis=1))
+    return np.concatenate((np.zeros_like(steps[:, :1]), steps.cumsum(axis=1)), axis=1)
 
 
 def mean_square_displacement(places: np.ndarray) -> np.ndarray:
@@ -29,4 +39,4 @@ def mean_square_displacement(places: np.ndarray) -> np.ndarray:
     both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
     steps = np.arange(length)
     first, last = both[:, length - steps], both[:, -1:] - both[:, steps]
-    return (first + last) / (length - steps) - 2 * autocorrelation(places)
+    return (first + last) / (length - steps) - 2 * correlation(places, places)

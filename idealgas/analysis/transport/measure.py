@@ -29,7 +29,7 @@ from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
-from idealgas.analysis.transport.correlations import autocorrelation, mean_square_displacement
+from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral
 from idealgas.analysis.transport.enskog import Enskog, enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.errors import NotApplicableError, UserError
@@ -54,7 +54,8 @@ class Diffusion:
     correlation at late times by theory; None for several species or above freezing. running, running_error: (L,), a
     quarter of the slope of the displacement, length²/time, and its standard error. coefficient: diffusion coefficient
     D, a quarter of the slope of the displacement at late lags, length²/time; its theory is Enskog's.
-    velocity_correlation_time: integral of the correlation up to the last lag, time; its theory is that of mD/T.
+    velocity_correlation_time: integral of the correlation up to the same lags, their mean, time; its theory is that of
+    mD/T.
     """
 
     species: str
@@ -294,19 +295,19 @@ def _of_species(
     memory: Theory | None,
 ) -> Diffusion:
     """Diffusion of one species from positions and velocities (segments, L, discs, 2), with theories of D and mD/T."""
-    correlation = autocorrelation(velocities)
-    square = correlation[:, 0].mean()
+    remembered = correlation(velocities, velocities)
+    square = remembered[:, 0].mean()
     displacement = mean_square_displacement(places)
     late = slice(int(FITTED_FROM * LAGS), None)
     slope = np.polyfit(lag[late], displacement[:, late].T, 1)[0] / 4
     running = np.gradient(displacement, lag, axis=1) / 4
-    correlation_time = np.trapezoid(correlation, lag, axis=1) / square
+    correlation_time = velocity_integral(velocities, places)[:, late].mean(axis=1) / square
     count = math.sqrt(len(places))
     return Diffusion(
         name,
         lag,
-        correlation.mean(axis=0) / square,
-        correlation.std(axis=0, ddof=1) / square / count,
+        remembered.mean(axis=0) / square,
+        remembered.std(axis=0, ddof=1) / square / count,
         displacement.mean(axis=0),
         displacement.std(axis=0, ddof=1) / count,
         tail=np.append(math.inf, _tail(lag[1:], expected)) if expected else None,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from idealgas.analysis.core.stream import sample_trajectories
-from idealgas.analysis.transport.correlations import autocorrelation, mean_square_displacement
+from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.pair_distribution import chance_within
 from idealgas.log import open_log
@@ -46,13 +46,38 @@ def test_trajectories_are_those_of_the_frames(log):
 def test_correlations_are_plain_averages():
     random = np.random.default_rng(1)
     series = random.normal(size=(2, 30, 3, 2)).cumsum(axis=1)
-    correlation, displacement = autocorrelation(series), mean_square_displacement(series)
+    remembered, displacement = correlation(series, series), mean_square_displacement(series)
     for lag in range(30):
         early, late = series[:, : 30 - lag], series[:, lag:]
-        assert correlation[:, lag] == pytest.approx((early * late).sum(axis=3).mean(axis=(1, 2)), rel=1e-9, abs=1e-9)
+        assert remembered[:, lag] == pytest.approx((early * late).sum(axis=3).mean(axis=(1, 2)), rel=1e-9, abs=1e-9)
         assert displacement[:, lag] == pytest.approx(
             ((late - early) ** 2).sum(axis=3).mean(axis=(1, 2)), rel=1e-9, abs=1e-9
         )
+
+
+def test_velocity_integral_of_a_known_motion():
+    """v = (cos t, 0): v(t)·v(t + s) has the integral cos t [sin(t + lag) - sin t], at steps as long as a radian."""
+    t = np.arange(7.0)
+    velocities, places = np.zeros((2, 1, 7, 1, 2))
+    velocities[0, :, 0, 0], places[0, :, 0, 0] = np.cos(t), np.sin(t)
+    found = velocity_integral(velocities, places)[0]
+    assert found[0] == 0
+    for k in range(1, 7):
+        step = np.cos(t[: 7 - k]) * (np.sin(t[k:]) - np.sin(t[k - 1 : -1]))
+        assert found[k] - found[k - 1] == pytest.approx(step.mean(), abs=1e-14)
+
+
+def test_velocity_correlation_time_at_any_lag(tmp_path):
+    """It is 2D/⟨v²⟩ by Green's and Kubo's relation, even where steps are five mean free times; four standard errors."""
+    scene = SCENE.format(x="periodic", y="periodic").replace("count = 12", "count = 30").replace("[6, 5]", "[9, 9]")
+    simulate(parse_scene(scene, overrides=["run.collisions_per_disc=16000"]), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        short, long = (transport(log, start=0.0, lag=lag).diffusion[0] for lag in (20.0, 1000.0))
+    square = 2 * 1.0 * (1 - 1 / 30)  # ⟨v²⟩ at T = 1 without momentum
+    expected = 2 * short.coefficient.value / square
+    for one in (short.velocity_correlation_time, long.velocity_correlation_time):
+        assert one.standard_error < 0.2 * one.value
+        assert abs(one.value - expected) < 4 * one.standard_error
 
 
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
