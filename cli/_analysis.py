@@ -117,7 +117,7 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
     words = "Print the rows of the tables as CSV with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.is_checked():
-        words = "Exit with code 1 if measurement and theory differ by more than 4 standard errors, 0 without a theory."
+        words = "Exit with code 1 if measurement and theory differ by more than chance allows, 0 without a theory."
         yield click.option("--check", is_flag=True, help=words)
 
 
@@ -145,9 +145,9 @@ def _analyse(
     except NotApplicableError as error:
         if not check or plot or as_csv:
             raise
-        from idealgas.analysis.core.statistics import CheckResult
+        from idealgas.analysis.core.check import CheckResult
 
-        inapplicable = CheckResult(None, why_not=str(error))
+        inapplicable = CheckResult(why_not=str(error))
         if as_json:
             print_json(inapplicable.as_dict())
         else:
@@ -172,6 +172,7 @@ def _analyse(
         if text := analysis.text(result):
             echo(text)
         if checked:
+            print_tables(checked.tables())
             echo(f"{checked}")
     if plot:
         written(plot, err=as_json or as_csv)

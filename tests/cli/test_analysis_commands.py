@@ -96,11 +96,14 @@ def test_window(path):
 
 
 def test_check_names_what_it_compares(path):
-    line = output_of("pressure", path, "--check").splitlines()[-1]
-    assert "agree within 4 standard errors" in line
-    assert line.endswith("in walls, virial; pairs, virial.")
+    shown = output_of("pressure", path, "--check")
+    assert shown.splitlines()[-1].startswith("Measurement and theory agree. In each row a correct gas exceeds")
+    table = shown[shown.index("Check: difference between measurement and theory") :]
+    assert table.count(": virial series to B10, resummed, for this N and box") == 2
     found = json.loads(called("pressure", path, "--check", "--json").stdout)
-    assert (found["agrees"], found["compared"], found["no_theory"]) == (True, ["walls, virial", "pairs, virial"], None)
+    assert (found["agrees"], found["no_theory"]) == (True, None)
+    assert [row["name"] for row in found["compared"]] == ["walls, virial", "pairs, virial"]
+    assert all(abs(row["difference"]) < row["allowed"] < row["detectable"] for row in found["compared"])
 
 
 @pytest.mark.parametrize(
@@ -133,11 +136,12 @@ def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
     checked = output_of("pressure", *logs[:2], "--check").splitlines()[-1]
     assert checked.startswith("No theory here: there is none for a gas of packing fraction 0.")
     output_of("pressure", *logs[:2])
-    assert output_of("pressure", *logs, "--check").splitlines()[-1].count("φ = ") == 1
+    (row,) = json.loads(output_of("pressure", *logs, "--check", "--json"))["compared"]
+    assert row["name"].startswith("φ = ")
 
 
 def test_check_that_fails_exits_with_one(path, monkeypatch):
-    monkeypatch.setattr("idealgas.analysis.core.statistics.TOLERANCE", 1e-9)
+    monkeypatch.setattr("idealgas.analysis.core.check.FALSE_ALARM", 1.0)
     result = called("pressure", path, "--check")
     assert result.returncode == 1
     assert "do not agree" in result.stdout

@@ -5,17 +5,16 @@ decorrelated samples are, come from autoregressive models (`autoregression`).
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from scipy import special
 
 from idealgas.analysis.core.autoregression import changes, error_of_mean, inefficiency
-from idealgas.analysis.core.fields import Key, as_dict, reported
+from idealgas.analysis.core.fields import as_dict, reported
 from idealgas.analysis.theory.values import Theory
-from idealgas.errors import UserError
 
 ENOUGH_REPLICATES = 20
 """Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
@@ -25,9 +24,6 @@ LEAST_DOUBT = 1e-4
 
 FULL = 40.0
 """Times in which the change of a store has grown to all that it can be, to the last bit."""
-
-TOLERANCE = 4.0
-"""Largest allowed deviation between measurement and theory in a check, in errors of both together."""
 
 
 @dataclass(frozen=True)
@@ -84,48 +80,6 @@ class Estimate:
     def as_dict(self) -> dict[str, float | None]:
         """Fields and deviation by name, ready for JSON; None for numbers that are not finite."""
         return as_dict(self)
-
-
-@dataclass(frozen=True)
-class CheckResult:
-    """Result of a check of measurement against theory.
-
-    agrees: whether they agree; None if theory has no value. compared: names of the quantities that were compared.
-    why_not: why theory has no value, as part of a sentence.
-    """
-
-    agrees: bool | None
-    compared: tuple[str, ...] = ()
-    why_not: Annotated[str | None, Key("no_theory")] = None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
-        return as_dict(self)
-
-    def __str__(self) -> str:
-        """One sentence for people."""
-        if self.agrees is None:
-            return f"No theory here: {self.why_not}."
-        checked = "agree" if self.agrees else "do not agree"
-        return f"Measurement and theory {checked} within {TOLERANCE:g} standard errors in {'; '.join(self.compared)}."
-
-
-def check_theory(found: Iterable[tuple[str, Estimate]], why_not: str | None = None) -> CheckResult:
-    """Check that every estimate with a theory agrees with it within TOLERANCE.
-
-    Args:
-        found: estimates by name.
-        why_not: why theory has no value, for the case that no estimate has one.
-
-    Raises:
-        UserError: if an estimate with a theory has no error bar.
-    """
-    known = {name: one.deviation for name, one in found if one.theory is not None}
-    if not known:
-        return CheckResult(None, why_not=why_not)
-    if any(deviation is None or not math.isfinite(deviation) for deviation in known.values()):
-        raise UserError("nothing to check: too few events for an error bar")
-    return CheckResult(all(abs(deviation or 0.0) <= TOLERANCE for deviation in known.values()), tuple(known))
 
 
 def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
@@ -187,8 +141,16 @@ def mean_of_flux(
     if not whole > 0:
         return Estimate(float(flux.mean()), whole, samples, *_said(theory))
     share = (error / whole) ** 2
-    doubt = share**2 / max(samples - 1, 1.0) + (1 - share) ** 2 / max(known, 1.0)  # Welch-Satterthwaite
-    return Estimate(float(flux.mean()), whole, 1 + 1 / doubt if doubt > LEAST_DOUBT else math.inf, *_said(theory))
+    doubt = share**2 / max(samples - 1, 1.0) + (1 - share) ** 2 / max(known, 1.0)
+    return Estimate(float(flux.mean()), whole, _samples_of(doubt), *_said(theory))
+
+
+def _samples_of(doubt: float) -> float:
+    """Independent samples that know an error as well as its parts do together, by Welch and Satterthwaite.
+
+    doubt: sum of (share of the variance)²/(degrees of freedom) over the parts.
+    """
+    return math.inf if doubt < LEAST_DOUBT else 1 + 1 / doubt
 
 
 def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, float]:
@@ -252,9 +214,10 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
     theory = None if expected is None else Theory(expected, shared, "mean of runs")
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory=theory)
-    error = math.sqrt(sum(r.standard_error**2 for r in replicates)) / len(values)
-    samples = float(sum(r.independent_samples for r in replicates))
-    return Estimate(float(values.mean()), error, samples, *_said(theory))
+    errors = np.array([r.standard_error for r in replicates])
+    whole = math.hypot(*errors)
+    doubt = sum((errors / whole) ** 4 / [max(r.independent_samples - 1, 1.0) for r in replicates]) if whole > 0 else 0.0
+    return Estimate(float(values.mean()), whole / len(values), _samples_of(doubt), *_said(theory))
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:

@@ -6,9 +6,10 @@ from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.check import CheckResult, check_theory
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import CheckResult, Estimate, check_theory, mean_of_replicates
+from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import SOLID, crystal
@@ -80,7 +81,7 @@ class EquationOfState(Result):
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
         why_not = f"there is none for a gas of packing fraction {self.states[0].packing_fraction:.5g}"
-        return check_theory(zip(names, (s.infinite for s in self.states), strict=True), why_not)
+        return check_theory(((n, s.source, s.infinite) for n, s in zip(names, self.states, strict=True)), why_not)
 
     @property
     def kinds(self) -> tuple[str, ...]:

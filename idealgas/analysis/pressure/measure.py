@@ -8,11 +8,12 @@ discs one radius inside the box.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.check import CheckResult, check_theory
 from idealgas.analysis.core.collisions import (
     CollisionRate,
     FreePath,
@@ -28,7 +29,7 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import SampledImpacts, sampled
-from idealgas.analysis.core.statistics import CheckResult, Estimate, check_theory, mean, mean_of_flux
+from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
 from idealgas.analysis.core.walls import SampledWalls, WallGauge, moving_wall
 from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
@@ -46,11 +47,15 @@ WALLS, PAIRS = "walls, virial", "pairs, virial"
 
 @dataclass(frozen=True)
 class Route:
-    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring."""
+    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring.
+
+    source: which theory both have; None without one.
+    """
 
     name: Annotated[str, Key("route")]
     pressure: Estimate
     compressibility_factor: Estimate
+    source: Annotated[str | None, OMITTED] = None
 
 
 @dataclass(frozen=True)
@@ -96,8 +101,8 @@ class Pressure(Result):
         Raises:
             UserError: if a route with a theory has no error bar.
         """
-        compared = ((route.name, route.compressibility_factor) for route in self.routes if route.name in (WALLS, PAIRS))
-        return check_theory(compared, self.no_theory)
+        virials = (route for route in self.routes if route.name in (WALLS, PAIRS))
+        return check_theory(((r.name, r.source, r.compressibility_factor) for r in virials), self.no_theory)
 
 
 def pressure(
@@ -261,7 +266,7 @@ def _routes(
         moment = temperature * float((gas.mass[:, None] * reach**2).sum()) / 12 / window.width**2
         routes.append(_wall(WALLS, virial, inner, unit, moment, ideal, theory.walls))
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
-    return (*routes, _of(PAIRS, z, ideal))
+    return (*routes, _of(PAIRS, z, ideal, theory.pairs))
 
 
 def _wall(
@@ -274,13 +279,15 @@ def _wall(
     wall, which grows evenly from 0 at one wall to 1 at the other.
     """
     if not flux.any():  # walls that were never hit tell nothing of their error
-        return _of(name, Estimate(0.0, math.nan, 0.0, *((theory.value, theory.error) if theory else ())), ideal)
-    return _of(name, mean_of_flux(flux / unit, bulk / unit, theory, stored / unit**2), ideal)
+        z = Estimate(0.0, math.nan, 0.0, *((theory.value, theory.error) if theory else ()))
+    else:
+        z = mean_of_flux(flux / unit, bulk / unit, theory, stored / unit**2)
+    return _of(name, z, ideal, theory)
 
 
-def _of(name: str, z: Estimate, ideal: float) -> Route:
-    """Route with Z, whose theory is not repeated for the pressure."""
-    return Route(name, replace(z, theory=None, theory_error=0.0).times(ideal), z)
+def _of(name: str, z: Estimate, ideal: float, theory: Theory | None) -> Route:
+    """Route with Z and with the pressure, Z times that of the ideal gas."""
+    return Route(name, z.times(ideal), z, theory.source if theory else None)
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:

@@ -11,7 +11,7 @@ from idealgas import heat_capacity, histogram
 from idealgas.analysis.core.ensemble import composition
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.statistics import Estimate, check_theory
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import save
 from idealgas.analysis.heat_capacity import CLOSED, HeatCapacityAnalysis
 from idealgas.analysis.histogram import QUANTITIES
@@ -169,10 +169,6 @@ def test_an_error_of_theory_counts_like_one_of_measurement():
     assert found.deviation == pytest.approx(2.0)
     assert found.times(-2.0).deviation == pytest.approx(-2.0)
     assert Estimate.from_dict(found.as_dict()) == found
-    checked = check_theory([("a", found), ("b", Estimate(1.0, 0.1, 10.0))])
-    assert checked.agrees is True
-    assert checked.compared == ("a",)  # the other has no theory
-    assert str(checked) == "Measurement and theory agree within 4 standard errors in a."
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

@@ -115,6 +115,13 @@ def test_bootstrap_error_of_a_mean():
     assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(30), rel=0.06)  # 4/√(2·2000) resamples
 
 
+def test_degrees_of_freedom_of_a_mean_of_runs():
+    """Four runs of three samples have 4·2 of them; a run with all of the variance has its own two (Welch 1947)."""
+    run = Estimate(1.0, 0.2, 3.0)
+    assert statistics.mean_of_replicates([run] * 4) == Estimate(1.0, pytest.approx(0.1), pytest.approx(1 + 8))
+    assert statistics.mean_of_replicates([run] * 3 + [Estimate(1.0, 1e6, 3.0)]).independent_samples == pytest.approx(3)
+
+
 def test_statistics_import_little_of_scipy():
     """The rest of it would be half of the time in which most analyses start."""
     code = (
