@@ -36,7 +36,8 @@ _BEGINNINGS = {
     ".pdf": rb"%PDF-",
     ".png": rb"\x89PNG\r\n\x1a\n",
     ".svg": rb"<\?xml.*<svg",
-    ".toml": rb"# \d+ points",
+    ".toml": rb"# sweep of \d+ points by idealgas\n",
+    "results.csv": rb"point,replicate,seed,",
     "scene": rb"#:schema scene",
     "scene.schema.json": rb'\{\s*"\$defs"',
 }

@@ -12,15 +12,19 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from idealgas.errors import OutputError, UserError
-from idealgas.files import is_of_kind, lock, replacing, storage_error
-from idealgas.scene import Scene, parse_scene
+from idealgas.files import LOG, check_output, lock, open_regular, regular, replacing, storage_error
+from idealgas.log import open_log
+from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep, seed_of
-from idealgas.sweep.point import points_folder
-from idealgas.sweep.results import done_points
+from idealgas.sweep.point import COMMAND, log_path, points_folder, result_path
+from idealgas.sweep.results import done_points, stored_scene, table_paths
 from idealgas.toml.dump import dump_document
 
 LOCK, PLAN = ".lock", "sweep.toml"
-"""Names of the lock file and of the copy of the sweep's own file."""
+"""Names of the lock file, by whose contents a folder is that of a sweep, and of the copy of the sweep's own file."""
+
+MARK = b"idealgas sweep\n"
+"""Contents of the lock file."""
 
 Entry = TypeVar("Entry")
 
@@ -29,17 +33,21 @@ Entry = TypeVar("Entry")
 def hold_folder(folder: Path) -> Iterator[None]:
     """Create the folder of a sweep if it is missing, and lock it until the block ends.
 
+    Nothing in a folder is opened for writing before its lock file shows that it is the folder of a sweep.
+
     Raises:
         UserError: if another process has locked it, or if it contains other files.
         OutputError: if it cannot be written.
     """
     try:
-        plan = folder / PLAN
-        ours = (folder / LOCK).exists() or (plan.exists() and is_of_kind(plan, ".toml"))
-        if not ours and folder.exists() and any(folder.iterdir()):
-            raise UserError(f"{folder}: exists and is not the folder of a sweep")
-        points_folder(folder).mkdir(parents=True, exist_ok=True)
-        file = (folder / LOCK).open("w")
+        folder.mkdir(parents=True, exist_ok=True)
+        if not _is_marked(folder):
+            if any(folder.iterdir()):
+                raise UserError(f"{folder}: exists and is not the folder of a sweep")
+            with replacing(folder / LOCK, force=False) as part:
+                part.write_bytes(MARK)
+        points_folder(folder).mkdir(exist_ok=True)
+        file = open(folder / LOCK, "r+b", opener=regular)  # noqa: SIM115
     except OSError as error:
         raise storage_error(folder, error) from error
     with file:
@@ -48,6 +56,28 @@ def hold_folder(folder: Path) -> Iterator[None]:
         except BlockingIOError:
             raise UserError(f"{folder}: another sweep is running in this folder") from None
         yield
+
+
+def _is_marked(folder: Path) -> bool:
+    """Whether a folder has the lock file of a sweep."""
+    try:
+        with open_regular(folder / LOCK) as file:
+            return file.read(len(MARK) + 1) == MARK
+    except FileNotFoundError:
+        return False
+
+
+def check_outputs(folder: Path, points: Iterable[int]) -> None:
+    """Raise UserError if another file has the name of one that the sweep writes. points: numbers of open points."""
+    for path, kind in zip((folder / PLAN, *table_paths(folder)), (".toml", "results.csv", ".parquet"), strict=True):
+        if os.path.lexists(path):
+            check_output(path, kind, force=True)
+    for path in (log_path(folder, index) for index in points):
+        if os.path.lexists(path):
+            check_output(path, LOG, force=True)
+            with open_log(path) as log:
+                if log.command != COMMAND:
+                    raise OutputError(f"{path}: not a log of this sweep, which does not overwrite it")
 
 
 def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
@@ -71,12 +101,13 @@ def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
             numbers[point.combination] = next(free)
         combination = numbers[point.combination]
         scene = _with_seed(point.scene, seed_of(sweep.seed, combination, point.replicate))
-        if found and not _matches(found, scene, sweep):
+        if found and not _matches(folder, found, scene, sweep):
             raise _foreign_point(folder, found)
         index = found["point"] if found else next(free_indices)
         points.append(replace(point, index=index, combination=combination, scene=scene))
     for found in done.values():
         raise _foreign_point(folder, found)
+    check_outputs(folder, (p.index for p in points if not result_path(folder, p.index).exists()))
     with replacing(folder / PLAN) as part:
         part.write_text(sweep.text, encoding="utf-8")
     return replace(sweep, points=tuple(points))
@@ -114,8 +145,8 @@ def _foreign_point(folder: Path, found: dict[str, Any]) -> UserError:
     )
 
 
-def _matches(found: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
+def _matches(folder: Path, found: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
     """Whether stored results belong to this scene and contain the analyses of the sweep."""
     if set(found["analyses"]) != set(sweep.analyses):
         return False
-    return found["scene"] == dump_document(scene) or parse_scene(found["scene"]) == scene
+    return found["scene"] == dump_document(scene) or stored_scene(folder, found) == scene

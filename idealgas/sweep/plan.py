@@ -134,7 +134,7 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     if found := list(_errors(tables)):
         raise SceneError(origin.report(found))
     points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
-    settings, text = tables.sweep, f"# {len(points)} points\n{text}"
+    settings, text = tables.sweep, f"# sweep of {len(points)} points by idealgas\n{text}"
     return Sweep(settings.analyses, settings.keep_logs, points, settings.seed, text)
 
 

@@ -9,6 +9,9 @@ from idealgas.files import replacing
 from idealgas.sweep.plan import Point
 from idealgas.toml.dump import dump_document
 
+COMMAND = "idealgas sweep"
+"""Command in the logs of all points."""
+
 
 def points_folder(folder: str | os.PathLike[str]) -> Path:
     """Folder of the files of all points of a sweep."""
@@ -37,7 +40,7 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
     if not keep_log:  # the log is removed, so compression would only cost time
         scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
     part = log.with_name(f"{log.name}.part")
-    simulate(scene, part, force=True, command="idealgas sweep")
+    simulate(scene, part, force=True, command=COMMAND)
     with open_log(part) as opened:
         summary = {name: value for name, value in opened.summary.items() if not name.endswith("seconds")}
         results = {name: registry.analyse(opened, name).as_dict() for name in analyses}

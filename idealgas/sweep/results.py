@@ -6,20 +6,48 @@ import os
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from idealgas.analysis.core.caveats import origin_of
 from idealgas.analysis.core.result import Origin
 from idealgas.errors import UserError
-from idealgas.files import replacing
-from idealgas.scene import parse_scene
-from idealgas.sweep.point import points_folder
+from idealgas.files import regular, replacing
+from idealgas.scene import Scene, SceneError, parse_scene
+from idealgas.sweep.point import points_folder, result_path
 
-KEYS = {"point", "seed", "combination", "replicate", "values", "scene", "summary", "analyses"}
-"""Keys of the result file of a point."""
+MOST_BYTES = 2**26
+"""Largest size of the result file of a point."""
 
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
 
+
+_Count = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+class _StoredResult(BaseModel):
+    """Contents of the result file of a point."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    point: _Count
+    seed: _Count
+    combination: _Count
+    replicate: _Count
+    values: dict[str, Any]
+    scene: str
+    summary: dict[str, bool | int | float | str | None]
+    analyses: dict[str, dict[str, Any]]
+
+
+class _Caveats(BaseModel):
+    """The part that the results of all analyses have in common."""
+
+    caveats: list[str]
+
+
+_estimate = TypeAdapter(dict[str, float | None], config=ConfigDict(allow_inf_nan=False))
 
 RESULT = ("analysis", "quantity", *ESTIMATE, "caveats")
 """Columns of results.csv after those that identify the point."""
@@ -38,15 +66,48 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
 
 def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Like `read_points`, but an empty list if the sweep has no results yet."""
-    paths = sorted(points_folder(folder).glob("[0-9]*.json"), key=lambda path: int(path.stem))
     try:
-        found = [json.loads(path.read_text()) for path in paths]
-    except (OSError, ValueError) as error:
-        raise UserError(f"{folder}: damaged results ({error})") from None
-    for path, point in zip(paths, found, strict=True):
-        if not isinstance(point, dict) or set(point) != KEYS:
-            raise UserError(f"{path}: damaged results (allowed {', '.join(sorted(KEYS))})")
+        paths = sorted(path for path in points_folder(folder).glob("*.json") if path.stem.isdecimal())
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be read: {error.strerror}") from None
+    return sorted(map(_read_point, paths), key=lambda found: found["point"])
+
+
+def _read_point(path: Path) -> dict[str, Any]:
+    """Contents of the result file of a point. Raises UserError if they are not those of a finished point."""
+    try:
+        with open(path, "rb", opener=regular) as file:
+            text = file.read(MOST_BYTES + 1)
+        if len(text) > MOST_BYTES:
+            raise ValueError(f"more than {MOST_BYTES:,} bytes")
+        found = json.loads(text.decode(), parse_constant=_refuse_constant)
+        _StoredResult.model_validate(found)
+        for result in found["analyses"].values():
+            _Caveats.model_validate(result)
+            for _, estimate in _estimates(result):
+                _estimate.validate_python(estimate)
+        if path.name != result_path("", found["point"]).name:
+            raise ValueError(f"point {found['point']} under another name")
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"])) or "contents"
+        raise UserError(f"{path}: damaged results ({where}: {first['msg']})") from None
+    except (OSError, ValueError, OverflowError, RecursionError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error).splitlines()[0]
+        raise UserError(f"{path}: damaged results ({reason})") from None
     return found
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a number of JSON")
+
+
+def stored_scene(folder: str | os.PathLike[str], found: dict[str, Any]) -> Scene:
+    """Scene of a stored point. Raises UserError if it is invalid."""
+    try:
+        return parse_scene(found["scene"], f"{result_path(folder, found['point'])}: scene")
+    except SceneError as error:
+        raise UserError(error.errors[0]) from None
 
 
 def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:
@@ -59,7 +120,7 @@ def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tu
         if analysis not in point["analyses"]:
             raise UserError(f'{folder}: the sweep does not include the analysis "{analysis}"')
         label = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
-        run = origin_of(parse_scene(point["scene"]), f"{folder}, point {point['point']}")
+        run = origin_of(stored_scene(folder, point), f"{folder}, point {point['point']}")
         yield label, point["analyses"][analysis], run
 
 
@@ -72,14 +133,20 @@ def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     return [row for point in read_points(folder) for row in _rows(point)]
 
 
+def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:
+    """Paths of `results.csv` and `results.parquet`."""
+    return Path(folder) / "results.csv", Path(folder) / "results.parquet"
+
+
 def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
     """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files; return their paths."""
     rows = result_rows(folder)
     names = list(dict.fromkeys(name for row in rows for name in row))
     identify = [name for name in names if name not in RESULT]
     names = [*identify, *(name for name in RESULT if name in names)]
-    tables = [Path(folder) / "results.csv"]
-    with replacing(tables[0]) as part, part.open("w", newline="", encoding="utf-8") as file:
+    table, columnar = table_paths(folder)
+    tables = [table]
+    with replacing(table) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, names, restval="")
         writer.writeheader()
         writer.writerows(rows)
@@ -87,9 +154,9 @@ def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
         import pyarrow
         from pyarrow import parquet
 
-        tables.append(Path(folder) / "results.parquet")
+        tables.append(columnar)
         columns = {name: [row.get(name) for row in rows] for name in names}
-        with replacing(tables[-1]) as part:
+        with replacing(columnar) as part:
             parquet.write_table(pyarrow.table(columns), part)
     return tables
 

@@ -10,7 +10,7 @@ JSON show.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import wraps
 from inspect import signature
 from numbers import Integral, Real
@@ -215,10 +215,19 @@ class Analysis:
             found: plain values of the result.
             label: name of the point.
             origin: run of the point.
+
+        Raises:
+            UserError: if they are not those of a result.
         """
         assert cls.restore is not None
         title = origin.title if origin else label
-        return replace(cls.restore(found, label), caveats=tuple(found["caveats"]), origin=origin, title=title)
+        try:
+            result = replace(cls.restore(found, label), caveats=tuple(found["caveats"]), origin=origin, title=title)
+            if all(isinstance(getattr(result, f.name), Real) for f in fields(result) if f.type in (float, int)):
+                return result
+            raise TypeError
+        except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, StopIteration):
+            raise UserError(f"{label}: damaged results of the analysis {cls.key}") from None
 
     @classmethod
     def shown_tables(cls, combined: Any) -> list[Table]:

@@ -7,9 +7,10 @@ import sys
 import pytest
 
 from idealgas.errors import UserError
+from idealgas.run.simulate import simulate
 from idealgas.sweep.folder import hold_folder, resume_numbering
 from idealgas.sweep.plan import load_sweep
-from idealgas.sweep.point import points_folder, result_path
+from idealgas.sweep.point import log_path, points_folder, result_path
 from idealgas.toml.dump import dump_document
 
 PLAN = """
@@ -62,7 +63,7 @@ def finish(sweep, folder, points):
         found = {
             "point": point.index, "seed": point.scene.scene.seed, "combination": point.combination,
             "replicate": point.replicate, "values": point.values, "scene": dump_document(point.scene), "summary": {},
-            "analyses": dict.fromkeys(sweep.analyses),
+            "analyses": {name: {"caveats": []} for name in sweep.analyses},
         }  # fmt: skip
         result_path(folder, point.index).write_text(json.dumps(found))
 
@@ -133,3 +134,34 @@ def test_a_folder_of_others_is_left_alone(tmp_path, name):
     with pytest.raises(UserError, match="exists and is not the folder of a sweep"), hold_folder(tmp_path):
         pass
     assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+@pytest.mark.parametrize("text", ["", "precious", "idealgas sweep"])
+def test_a_lock_file_of_others_makes_no_sweep_folder_and_is_left_as_it_is(tmp_path, text):
+    folder, elsewhere = tmp_path / "folder", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.write_text(text)
+    (folder / ".lock").symlink_to(elsewhere)
+    with pytest.raises(UserError, match="exists and is not the folder of a sweep"), hold_folder(folder):
+        pass
+    assert elsewhere.read_text() == text
+    assert [path.name for path in folder.iterdir()] == [".lock"]
+
+
+@pytest.mark.parametrize("name", ["results.csv", "sweep.toml", "points/0000.h5", "points/0001.h5"])
+@pytest.mark.parametrize("text", ["a,b\n1,2\n", "# 5 points\n[sweep]\n"])
+def test_files_of_others_are_not_replaced(plan, folder, name, text):
+    with hold_folder(folder / "new"):
+        (folder / "new" / name).write_text(text)
+        with pytest.raises(UserError, match=rf"{name}: is not a .* of idealgas"):
+            resume_numbering(plan(), folder / "new")
+        assert (folder / "new" / name).read_text() == text
+
+
+def test_a_log_of_another_command_is_not_replaced(plan, folder):
+    sweep = plan()
+    simulate(sweep.points[0].scene, log_path(folder, 0), command="idealgas run")
+    before = log_path(folder, 0).read_bytes()
+    with pytest.raises(UserError, match=r"0000.h5: not a log of this sweep"):
+        resume_numbering(sweep, folder)
+    assert log_path(folder, 0).read_bytes() == before
