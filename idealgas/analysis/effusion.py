@@ -12,13 +12,14 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.ensemble import composition, ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import INLINE, OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, estimates
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.scene.walls import NumberedWall, walls_inside

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity, composition
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 
 

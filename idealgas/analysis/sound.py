@@ -12,7 +12,7 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.caveats import narrow
-from idealgas.analysis.core.ensemble import composition, ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
@@ -20,6 +20,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.core.tables import Table, describe, estimates
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.theory.waves import Decay, Fluid, fit, sound_of_discs
 from idealgas.errors import UserError
 from idealgas.log import Log

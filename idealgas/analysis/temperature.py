@@ -1,5 +1,6 @@
-"""Measure the temperature of every degree of freedom and species; by equipartition all are E/N."""
+"""Measure the temperature of every direction of motion and species, and compare it with equipartition."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
@@ -7,7 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Section
-from idealgas.analysis.core.ensemble import composition, known_ensemble, nonequilibrium_reason, nonstationary_reason
+from idealgas.analysis.core.ensemble import (
+    conserved_momentum,
+    known_ensemble,
+    nonequilibrium_reason,
+    nonstationary_reason,
+)
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, reported
 from idealgas.analysis.core.flights import Moments
@@ -15,6 +21,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.theory.conserved import is_ergodic
+from idealgas.analysis.theory.ensemble import Ensemble, composition
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -51,12 +58,14 @@ class SpeciesTemperature:
 class Temperature(Result):
     """Temperatures of each species, and last of all discs.
 
-    window: the time that was used. expected: E/N in equilibrium, energy; None if it is not known beforehand. species:
-    temperatures of each species and of all discs.
+    window: the time that was used. expected: mean m v²/2 of all discs in equilibrium, energy; None if it is not known
+    beforehand. law: equipartition of this gas in words; None where it is not known. species: temperatures of each
+    species and of all discs.
     """
 
     window: Window
     expected: float | None
+    law: str | None
     species: tuple[SpeciesTemperature, ...]
 
     @property
@@ -79,8 +88,8 @@ def temperature(
 ) -> Temperature:
     """Measure the temperature of every direction of motion, species by species, between two times of a log.
 
-    By equipartition all are the same in equilibrium: m⟨vx²⟩ = m⟨vy²⟩ = m⟨v²⟩/2 = T, with k_B = 1, less what a conserved
-    momentum takes away in a finite gas.
+    By equipartition m⟨v²⟩ of a disc is the same along both axes, T = 2E/D with k_B = 1 and D degrees of freedom, and
+    T(1 - m/M) along an axis whose total momentum is conserved, with the mass M of all discs.
 
     start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
     events are read. Raises UserError if there are no events in the window, and NotApplicableError if no start is given
@@ -95,25 +104,35 @@ def temperature(
     window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
     equilibrium = known_ensemble(log)
-    shares: list[float] | list[None] = [None] * len(discs.name)
-    expected = None
-    if equilibrium is not None:
-        shares = equilibrium.of_species.tolist()
-        expected = float(discs.number @ equilibrium.of_species / discs.number.sum())
     sums, shared = moments.flights[:, :, 1:3] / window.width, is_ergodic(log.scene, log.discs)
 
-    def entry(name: str, number: int, expected: float | None, directions: np.ndarray) -> SpeciesTemperature:
-        """Temperatures of one species from sums (B, 2) of m vx² and m vy² over its discs."""
-        means = directions / number
+    def entry(name: str, chosen: slice) -> SpeciesTemperature:
+        """Temperatures of the discs of some species."""
+        members = discs.number[chosen]
+        number = int(members.sum())
+        means = sums[:, chosen].sum(axis=1) / number
         x, y = means[window.first :].T
-        along = expected if shared else None
-        return SpeciesTemperature(name, number, mean(x, along), mean(y, along), mean((x + y) / 2, expected), means)
+        along_x = along_y = both = None
+        if equilibrium is not None:
+            axes = members @ equilibrium.of_axes[chosen] / number
+            along_x, along_y = axes.tolist() if shared else (None, None)
+            both = float(axes.mean())
+        return SpeciesTemperature(name, number, mean(x, along_x), mean(y, along_y), mean((x + y) / 2, both), means)
 
-    entries = [
-        entry(name, int(number), shares[s], sums[:, s])
-        for s, (name, number) in enumerate(zip(discs.name, discs.number, strict=True))
-    ]
-    return Temperature(window, expected, (*entries, entry("all discs", len(log.discs), expected, sums.sum(axis=1))))
+    entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
+    entries.append(entry("all discs", slice(None)))
+    law = None if equilibrium is None else _equipartition(log, equilibrium)
+    return Temperature(window, entries[-1].both.theory, law, tuple(entries))
+
+
+def _equipartition(log: Log, equilibrium: Ensemble) -> str:
+    """Equipartition of a gas in words: T, where it comes from, and along which axes momentum is conserved."""
+    source = f"2E/D with D = {equilibrium.dof}"
+    if math.isinf(equilibrium.dof):
+        source = "of the walls" if log.scene.properties.bath is None else "of the heat bath"
+    conserved = [letter for letter, kept in zip("xy", conserved_momentum(log), strict=True) if kept]
+    along = f", T(1 - m/M) along {' and '.join(conserved)}" if conserved else ""
+    return f"T = {equilibrium.temperature:.6g} ({source}){along}"
 
 
 def temperature_tables(result: Temperature) -> list[Table]:
@@ -123,7 +142,8 @@ def temperature_tables(result: Temperature) -> list[Table]:
         for entry in result.species
         for direction, estimate in (("m vx²", entry.x), ("m vy²", entry.y), ("m v²/2", entry.both))
     ]
-    return [estimates("Temperatures (energy, k_B = 1), theory E/N", rows, (describe(result.window),))]
+    notes = (describe(result.window), f"theory: {result.law or 'none for this scene'}")
+    return [estimates("Temperatures (energy, k_B = 1)", rows, notes)]
 
 
 def temperature_summary(result: Temperature) -> list[str]:
@@ -139,14 +159,15 @@ def temperature_figure(result: Temperature) -> "Figure":
     edges = result.window.edges
     if len(result.apart) == 1:
         x, y = result.apart[0].directions.T
-        curves = {"m vx²": x, "m vy²": y}
+        curves = {"m vx²": (x, result.apart[0].x), "m vy²": (y, result.apart[0].y)}
     else:
-        curves = {f"{entry.species} (N = {entry.number})": entry.history for entry in result.apart}
-    for k, (name, values) in enumerate(curves.items()):
+        curves = {f"{entry.species} (N = {entry.number})": (entry.history, entry.both) for entry in result.apart}
+    for k, (name, (values, _)) in enumerate(curves.items()):
         colour, line, _ = curve_style(k)
         ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
-    if result.expected is not None:
-        ax.axhline(result.expected, color=BLACK, linestyle="--", label="theory: E/N")
+    theories = sorted({found.theory for _, found in curves.values() if found.theory is not None})
+    for k, theory in enumerate(theories):
+        ax.axhline(theory, color=BLACK, linestyle="--", label="theory" if k == 0 else None)
     if result.window.first:
         ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
     ax.time_axis()

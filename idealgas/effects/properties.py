@@ -115,7 +115,8 @@ class Properties:
     def conserves_momentum(self) -> tuple[bool, bool]:
         """Along which axes nothing takes momentum from the discs: smooth walls take none along themselves."""
         free = self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
-        return self.periodic[0] and free, self.periodic[1] and free
+        x, y = (free and on and g == 0 for on, g in zip(self.periodic, self.acceleration, strict=True))
+        return x, y
 
     def __and__(self, other: "Properties") -> "Properties":
         """Properties of a gas with the effects of both."""

@@ -21,10 +21,10 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 
 from idealgas.analysis.core.bond_order import bond_order
-from idealgas.analysis.core.ensemble import composition
 from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
 from idealgas.analysis.theory.conserved import centre_of_mass_velocity
 from idealgas.analysis.theory.distributions import SpeedLaw
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import LogState
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.piston_track import PistonTrack

@@ -12,9 +12,10 @@ import numpy as np
 from matplotlib import colormaps
 
 from idealgas.analysis.core.bond_order import bond_order
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity, composition
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import Log

@@ -39,6 +39,24 @@ def million(request, tmp_path_factory):
     path.unlink()
 
 
+@pytest.fixture(scope="module")
+def channel(tmp_path_factory):
+    """Six discs of the energy 1 each, in a frame where the momentum along the periodic axis is zero."""
+    path = tmp_path_factory.mktemp("channel") / "run.h5"
+    simulate(
+        parse_scene("""
+            scene.seed = 3
+            box = { size = [6, 6], left = "periodic", right = "periodic" }
+            species = [{ name = "gas", count = 6, radius = 0.3, temperature = 1 }]
+            run.collisions_per_disc = 5000
+        """),
+        path,
+    )
+    with open_log(path) as log:
+        yield log
+    path.unlink()
+
+
 def test_every_collision_is_a_contact_and_energy_does_not_drift(million):
     """To 1e-12 of a diameter: clocks are rounded by u times the way in an epoch, up to 6144 diameters.
 
@@ -129,6 +147,23 @@ def test_mixture(run):
         assert abs(rate.rate.deviation) < STANDARD_ERRORS, (rate.species, rate.other)
         assert rate.rate.standard_error < 0.01 * rate.rate.value
     assert pressures.check().agrees
+
+
+@pytest.mark.parametrize("quantity", ["vx", "vy", "speed", "energy"])
+def test_few_discs_with_momentum_along_one_axis(channel, quantity):
+    """Six equal discs have 11 degrees of freedom: 2E/11 across, and 5/6 of it along the periodic axis."""
+    (gas,) = histogram(channel, quantity).distributions
+    fixed_energy = gas.tests[-1]
+    assert fixed_energy.law_name == "fixed energy, D = 11"
+    assert fixed_energy.p_value > LEAST_P
+    if quantity != "energy":
+        return
+    found = temperature(channel)
+    assert (found.species[0].x.theory, found.species[0].y.theory) == pytest.approx((10 / 11, 12 / 11), rel=1e-9)
+    for estimate in (found.species[0].x, found.species[0].y):
+        assert estimate.standard_error < 0.01
+        assert abs(estimate.deviation) < STANDARD_ERRORS
+    assert found.law == "T = 1.09091 (2E/D with D = 11), T(1 - m/M) along x"
 
 
 def test_few_discs_in_a_heat_bath(tmp_path):

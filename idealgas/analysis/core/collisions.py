@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import Composition, Ensemble
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.theory import conserved, hard_discs
+from idealgas.analysis.theory.ensemble import Composition, Ensemble
 from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
 from idealgas.log import Log
 
@@ -120,10 +120,10 @@ def free_paths(
     """
     counts = window.of(impacts.collisions)
     paths = []
-    for i, (name, mass, number) in enumerate(zip(discs.name, discs.mass, discs.number, strict=True)):
+    for i, (name, number) in enumerate(zip(discs.name, discs.number, strict=True)):
         own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
         speeds = window.of(moments.flights)[:, i, 0] / number
-        speed = hard_discs.mean_speed(equilibrium.of_species[i], mass, equilibrium.dof)
+        speed = float(equilibrium.mean_speed[i])
         free_time = _inverse(expected.of(i))
         paths.append(
             FreePath(

@@ -2,41 +2,16 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from scipy import special
 
 from idealgas.analysis.core.statistics import mean
 from idealgas.analysis.theory import conserved
-from idealgas.analysis.theory.barometric import barometric_temperature
+from idealgas.analysis.theory import ensemble as ensembles
+from idealgas.analysis.theory.ensemble import Ensemble, composition
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
-from idealgas.state import Gas
-
-
-class Composition(NamedTuple):
-    """Names, radii (length), masses (mass) and numbers of discs of the S species of a gas.
-
-    name: S names. radius, mass, number: arrays of shape (S,), one entry for each species.
-    """
-
-    name: tuple[str, ...]
-    radius: np.ndarray
-    mass: np.ndarray
-    number: np.ndarray
-
-    def packing_fraction(self, density: np.ndarray) -> float:
-        """Packing fraction φ of a gas whose species have the number densities `density` (S,), in 1/length²."""
-        return float(np.pi * (density * self.radius**2).sum())
-
-
-def composition(gas: Gas) -> Composition:
-    """Composition of a gas; all discs of one species have the same radius and the same mass."""
-    _, first, number = np.unique(gas.species, return_index=True, return_counts=True)
-    return Composition(gas.species_names, gas.radius[first], gas.mass[first], number)
-
 
 UNLIKELY = 1e-5
 """Probability that a gas in equilibrium is refused because of its mean temperatures."""
@@ -49,28 +24,6 @@ Beyond it, energy is exchanged more slowly than the log is long, and error bars 
 
 ROUNDING = 1e-9
 """Relative change below which a quantity is constant."""
-
-
-@dataclass(frozen=True)
-class Ensemble:
-    """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath.
-
-    centre_of_mass_velocity: (2,), subtracted from all velocities, length/time; 0 along axes of no conserved momentum.
-    dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
-    temperature: T = 2E/D, energy (k_B = 1).
-    of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
-    not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs.
-    """
-
-    centre_of_mass_velocity: np.ndarray
-    dof: float
-    temperature: float
-    of_axes: np.ndarray
-
-    @property
-    def of_species(self) -> np.ndarray:
-        """Mean kinetic energy of translation (S,) of a disc of each species, energy."""
-        return self.of_axes.mean(axis=1)
 
 
 def conserved_momentum(log: Log) -> np.ndarray:
@@ -90,7 +43,7 @@ def centre_of_mass_energy(log: Log) -> float:
 
 def degrees_of_freedom(log: Log) -> int:
     """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
-    return 2 * len(log.discs) - int(conserved_momentum(log).sum())
+    return conserved.degrees_of_freedom(log.scene, len(log.discs))
 
 
 def ensemble(log: Log) -> Ensemble:
@@ -108,52 +61,20 @@ def ensemble(log: Log) -> Ensemble:
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
-    """Ensemble of the gas of a log; None if the energy is neither conserved nor set by heat of one temperature.
-
-    None too for a single disc whose momentum is conserved, as none of its energy is heat, or whose spin has some of it.
-    """
-    properties, gas, mass = log.scene.properties, log.discs, composition(log.discs).mass
-    if not properties.conserves_energy or len(properties.temperatures) > 1:
-        return None
-    kept, frame = conserved_momentum(log), centre_of_mass_velocity(log)
-    dof = 2 * len(gas) - int(kept.sum())
-    energy = float((gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum())  # twice
-    if log.inertia is not None:
-        dof += len(gas)
-        spin = log.state_at(log.start_time).angular_velocity
-        energy += 0.0 if spin is None else float((log.inertia * spin**2).sum())
-    if dof == 0 or (len(gas) == 1 and properties.isolated and log.inertia is not None):
-        return None
-    share = 1 - kept * mass[:, None] / gas.mass.sum()
-    if properties.temperatures:  # a heat bath has no limit to its energy
-        (temperature,) = properties.temperatures
-        return Ensemble(frame, math.inf, temperature, temperature * share)
-    temperature = energy / dof
-    return Ensemble(frame, dof, temperature, temperature * share)
+    """Ensemble of the gas of a log; None if its scene leaves it unknown (`theory.ensemble.equilibrium`)."""
+    return ensembles.equilibrium(log.scene, log.discs, _spin_energy(log))
 
 
-def column_temperature(log: Log, axis: int, discs: Composition) -> float | None:
-    """Equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
+def column_temperature(log: Log, axis: int) -> float | None:
+    """Temperature of the gas of a log under gravity along `axis`; None if unknown (`theory.ensemble`)."""
+    return ensembles.column_temperature(log.scene, log.discs, _spin_energy(log), axis)
 
-    It is the temperature of thermal walls or a thermostat or, without them, the one at which a dilute gas has the
-    conserved energy of the start: kinetic energy, spin and height in the barometric distribution. None if other effects
-    leave it unknown, and for a single disc, which cannot share its energy.
-    """
-    properties, gas = log.scene.properties, log.discs
-    if not properties.fixed_walls or not properties.lossless or log.periodic[1 - axis] or len(gas) == 1:
-        return None
-    if baths := properties.temperatures:
-        return min(baths) if len(baths) == 1 else None
-    g = log.gravity[axis]
-    start = log.state_at(log.start_time)
-    freedom, energy = 2.0 * len(gas), gas.kinetic_energy
-    if log.inertia is not None and start.angular_velocity is not None:
-        energy += float(log.inertia @ start.angular_velocity**2) / 2
-        freedom += len(gas)
-    above = start.position[:, axis] if g < 0 else log.box[axis] - start.position[:, axis]
-    energy += abs(g) * float(gas.mass @ (above - gas.radius))
-    height = log.box[axis] - 2 * discs.radius
-    return barometric_temperature(energy, freedom, discs.mass, discs.number, abs(g), height)
+
+def _spin_energy(log: Log) -> float:
+    """Energy of the spins of all discs at the start, energy."""
+    if log.inertia is None or (spin := log.state_at(log.start_time).angular_velocity) is None:
+        return 0.0
+    return float(log.inertia @ spin**2) / 2
 
 
 def nonstationary_reason(log: Log) -> str:

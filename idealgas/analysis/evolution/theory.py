@@ -8,12 +8,12 @@ import numpy as np
 from idealgas.analysis.core.ensemble import (
     centre_of_mass_velocity,
     column_temperature,
-    composition,
-    conserved_momentum,
+    degrees_of_freedom,
     known_ensemble,
 )
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.theory import granular, hard_discs
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 
 SLOW = 0.05
@@ -79,7 +79,7 @@ def expected_law(log: Log, time: np.ndarray) -> Law | None:
         return _at_rest(log, one) if log.scene.piston and log.scene.piston.mass else _adiabat(log, time)
     if any(log.gravity):
         axis = int(log.gravity[1] != 0)
-        t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis, discs)
+        t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis)
         return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t)
     if (equilibrium := known_ensemble(log)) is None:
         return None
@@ -97,7 +97,7 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     gas, table, kinetic = log.discs, log.scene.restitution, _kinetic(log)
     if table is None or table.wall < 1 or table.normal < granular.TESTED_FROM or not gas.kinetic_energy > 0:
         return None
-    n, share = len(gas), 1 - conserved_momentum(log).mean() / len(gas)
+    n, share = len(gas), degrees_of_freedom(log) / (2 * len(gas))
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
     tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)

@@ -13,7 +13,7 @@ from scipy import stats
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
 from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.ensemble import composition, nonstationary_reason
+from idealgas.analysis.core.ensemble import degrees_of_freedom, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
@@ -21,8 +21,9 @@ from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
 from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates
-from idealgas.analysis.histogram.laws import FEW, expectation, free_flight_rates
+from idealgas.analysis.histogram.laws import FEW, expectation, free_flight_rates, velocity_laws
 from idealgas.analysis.theory import distributions
+from idealgas.analysis.theory.ensemble import composition, ensemble_at
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -251,12 +252,13 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     window = measure(log, [tally, *moments], start, end, progress)
     measured = None
     if moments:
-        measured = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean()) / (2 * len(gas))
+        energy = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean())  # twice
+        measured = ensemble_at(log.scene, gas, energy / degrees_of_freedom(log), np.inf)
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
-        possible = known.laws(quantity, discs, s, measured)
+        possible = velocity_laws(quantity, known, s, measured)
         # A light disc among heavy ones keeps its speed for longer than its direction.
         spacing = int(np.ceil(max(inefficiency(snapshots), inefficiency(snapshots**2))))
         expected = list(possible.values())[-1].mean if possible and measured is None else None

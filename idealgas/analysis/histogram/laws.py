@@ -5,14 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.collisions import expected_rates, theory_of
-from idealgas.analysis.core.ensemble import (
-    Composition,
-    Ensemble,
-    centre_of_mass_energy,
-    known_ensemble,
-    nonequilibrium_reason,
-)
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, known_ensemble, nonequilibrium_reason
 from idealgas.analysis.theory import distributions
+from idealgas.analysis.theory.ensemble import Composition, Ensemble, ensemble_at
 from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -30,32 +25,18 @@ FEW = 30
 class Expectation:
     """What is known before the events of a log are read: its ensemble, or whether it reaches an equilibrium.
 
-    ensemble: of a gas whose energy of motion is conserved or set by walls; None for others. temperature: of the walls
-    that set it, energy; None if it must be measured. scale: temperature that sets the range of histograms, energy.
-    why_not: why no law holds, as part of a sentence; empty if one does.
+    ensemble: of a gas of known temperature; None if it must be measured, or no law holds. scale: temperature that sets
+    the range of histograms, energy. why_not: why no law holds, as part of a sentence; empty if one does.
     """
 
     ensemble: Ensemble | None
-    temperature: float | None
     scale: float
     why_not: str
 
     @property
     def needs_temperature(self) -> bool:
         """Whether a law holds at a temperature that must be measured."""
-        return not self.why_not and self.temperature is None
-
-    def laws(
-        self, quantity: str, discs: Composition, species: int, measured: float | None
-    ) -> dict[str, distributions.Law]:
-        """Laws of a quantity of one species by name; measured: temperature, if it was measured."""
-        if self.why_not:
-            return {}
-        mass = discs.mass[species]
-        if self.ensemble:
-            return velocity_laws(quantity, self.ensemble.of_species[species], mass, self.ensemble.dof)
-        temperature, name = (self.temperature, MAXWELL) if measured is None else (measured, f"{MAXWELL}, measured T")
-        return {name: velocity_laws(quantity, temperature or 0.0, mass, np.inf)[MAXWELL]}
+        return not self.why_not and self.ensemble is None
 
 
 def expectation(log: Log, start: float | None, end: float | None) -> Expectation:
@@ -70,13 +51,15 @@ def expectation(log: Log, start: float | None, end: float | None) -> Expectation
             raise UserError(f"{log.path}: no disc moves")
         if ensemble.dof <= FEWEST_DOF:
             few = f"{ensemble.dof} degrees of freedom are too few for a law"
-            return Expectation(None, None, ensemble.temperature, few)
-        return Expectation(ensemble, ensemble.temperature, ensemble.temperature, "")
+            return Expectation(None, ensemble.temperature, few)
+        return Expectation(ensemble, ensemble.temperature, "")
     why_not = nonequilibrium_reason(log)
     if len(log.discs) == 1 and not why_not:
         why_not = "a single disc shares its energy with no other"
-    temperature = None if why_not else min(log.scene.properties.temperatures, default=None)
-    return Expectation(None, temperature, _highest(log, start, end), why_not)
+    scale, baths = _highest(log, start, end), log.scene.properties.temperatures
+    if why_not or not baths:
+        return Expectation(None, scale, why_not)
+    return Expectation(ensemble_at(log.scene, log.discs, min(baths), np.inf), scale, "")
 
 
 def _highest(log: Log, start: float | None, end: float | None) -> float:
@@ -91,21 +74,21 @@ def _highest(log: Log, start: float | None, end: float | None) -> float:
     return highest
 
 
-def velocity_laws(quantity: str, temperature: float, mass: float, dof: float) -> dict[str, distributions.Law]:
-    """Laws of a velocity quantity: Maxwell-Boltzmann's, and that of an isolated gas with `dof` degrees of freedom.
+def velocity_laws(
+    quantity: str, known: Expectation, species: int, measured: Ensemble | None
+) -> dict[str, distributions.Law]:
+    """Laws of a velocity quantity of one species by name: Maxwell-Boltzmann's, and that of a gas at fixed energy.
 
-    dof: D; infinite in a heat bath, where both are one.
+    measured: ensemble at the measured temperature, if it was measured.
     """
-
-    def law(dof: float) -> distributions.Law:
-        if quantity == "energy":
-            return distributions.EnergyLaw(temperature, dof)
-        if quantity == "speed":
-            return distributions.SpeedLaw(temperature, mass, dof)
-        return distributions.ComponentLaw(temperature, mass, dof)
-
-    finite = {f"fixed energy, D = {dof}": law(dof)} if FEWEST_DOF < dof < np.inf else {}
-    return {MAXWELL: law(np.inf), **finite}
+    if known.why_not:
+        return {}
+    if known.ensemble is None:
+        return {f"{MAXWELL}, measured T": measured.velocity_law(quantity, species)} if measured else {}
+    laws = {MAXWELL: known.ensemble.velocity_law(quantity, species, np.inf)}
+    if (dof := known.ensemble.dof) < np.inf:
+        laws[f"fixed energy, D = {dof}"] = known.ensemble.velocity_law(quantity, species)
+    return laws
 
 
 def free_flight_rates(
@@ -127,9 +110,8 @@ def free_flight_rates(
         gas = known.ensemble
         theory = theory_of(log, discs) if log.has_positions else None
         rates = expected_rates(discs, log.box, gas, theory).rate
-        share = discs.mass * gas.temperature / gas.of_species
         if (rates.sum(axis=1) > 0).all():
-            return gas.temperature, rates, mean_speed(gas.temperature, share, gas.dof), ""
+            return gas.temperature, rates, gas.mean_speed, ""
         why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
     time, collisions = log.observables["disc_collisions"]
     if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):

@@ -22,7 +22,7 @@ from idealgas.analysis.core.collisions import (
     free_paths,
     theory_of,
 )
-from idealgas.analysis.core.ensemble import Composition, composition, known_ensemble, nonstationary_reason
+from idealgas.analysis.core.ensemble import known_ensemble, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
 from idealgas.analysis.core.flights import Moments
@@ -34,6 +34,7 @@ from idealgas.analysis.core.walls import SampledWalls, WallGauge, moving_wall
 from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import Composition, composition
 from idealgas.analysis.theory.values import SOLID, BoxTheory, NoTheoryError, Theory, crystal, fluid, mixture_error
 from idealgas.columns import OUTWARD, SIDES, axis_of
 from idealgas.errors import NotApplicableError, UserError

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity, composition
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
@@ -21,6 +21,7 @@ from idealgas.analysis.core.stream import frames
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import Composition, column_temperature, composition, known_ensemble
+from idealgas.analysis.core.ensemble import column_temperature, known_ensemble
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import Composition, composition
 from idealgas.analysis.theory.values import Theory
 from idealgas.columns import sides_across
 from idealgas.log import Log
@@ -111,7 +112,7 @@ def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve
     if len(properties.temperatures) == 2 and low is not None and high is not None:
         return None if low == high else _conduction(log, axis, places, (low, high))
     if log.gravity[axis]:
-        if (t := column_temperature(log, axis, discs)) is None:
+        if (t := column_temperature(log, axis)) is None:
             return None
         few = FEW_ERROR / len(log.discs) if properties.isolated else 0.0
         weight = np.exp(discs.mass[:, None, None] * log.gravity[axis] * (places - log.box[axis] / 2) / t)

@@ -7,11 +7,12 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import composition, ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Cell, Number, Table, estimates
 from idealgas.analysis.theory import conserved, hard_discs
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed

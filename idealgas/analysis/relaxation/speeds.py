@@ -11,13 +11,13 @@ from typing import Annotated
 import numpy as np
 from scipy import optimize
 
-from idealgas.analysis.core.ensemble import Ensemble, ensemble
+from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.tables import Cell, Number, Table
 from idealgas.analysis.relaxation.acceptance import last_trial
-from idealgas.analysis.theory.distributions import SpeedLaw
+from idealgas.analysis.theory.ensemble import Ensemble, composition
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -82,10 +82,10 @@ def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
 
 
 def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
-    """Reduced energy m v²/2T of every disc (no unit), with its mean kinetic energy T in equilibrium."""
+    """Reduced energy m vx²/2Tx + m vy²/2Ty of every disc (no unit), with its temperatures in equilibrium."""
     gas = log.discs
-    square = ((velocity - equilibrium.centre_of_mass_velocity) ** 2).sum(axis=1)
-    return gas.mass * square / (2 * equilibrium.of_species[gas.species])
+    square = (velocity - equilibrium.centre_of_mass_velocity) ** 2 / equilibrium.of_axes[gas.species]
+    return gas.mass * square.sum(axis=1) / 2
 
 
 def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
@@ -209,10 +209,9 @@ def speed_distributions(
         counts.append(np.histogram(speed, [*edges, math.inf])[0])
         distance.append(ks_distance(reduced_energy(log, state.velocity, equilibrium), reduced_energy_cdf))
     expected = np.zeros(len(edges))
-    for s, temperature in enumerate(equilibrium.of_species):
-        members = gas.species == s
-        law = SpeedLaw(float(temperature), float(gas.mass[members][0]))
-        expected += members.sum() * np.diff(law.cdf(edges), append=1.0)
+    for s, number in enumerate(composition(gas).number):
+        law = equilibrium.velocity_law("speed", s, math.inf)
+        expected += number * np.diff(law.cdf(edges), append=1.0)
     collisions = collisions_per_disc(log, time)
     return SpeedDistributions(time, trials, collisions, np.array(distance), rms, edges, np.array(counts), expected)
 

@@ -39,6 +39,11 @@ def centre_of_mass_energy(scene: Scene, gas: Gas) -> float:
     return float(gas.mass.sum() * (velocity @ velocity) / 2)
 
 
+def degrees_of_freedom(scene: Scene, number: int) -> int:
+    """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
+    return 2 * number - int(conserved_momentum(scene).sum())
+
+
 def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
     """Velocity (2,) of the whole gas at its start that is no heat, length/time.
 

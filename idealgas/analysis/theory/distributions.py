@@ -33,6 +33,26 @@ class Law(Protocol):
 
 
 @dataclass(frozen=True)
+class MeanLaw:
+    """Mean of several distributions of one quantity: one of them, by chance, holds for each value."""
+
+    parts: tuple[Law, ...]
+
+    @property
+    def mean(self) -> float:
+        """Mean of the quantity, in its unit."""
+        return sum(part.mean for part in self.parts) / len(self.parts)
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density at the values x."""
+        return np.mean([part.pdf(x) for part in self.parts], axis=0)
+
+    def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a value of at most x."""
+        return np.mean([part.cdf(x) for part in self.parts], axis=0)
+
+
+@dataclass(frozen=True)
 class EnergyLaw:
     """Distribution of the kinetic energy of a disc: exponential; at fixed total energy P(> e) = (1 - 2e/TD)^(D/2 - 1).
 

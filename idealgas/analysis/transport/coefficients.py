@@ -7,12 +7,13 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import Ensemble, centre_of_mass_velocity
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import INLINE, Key
 from idealgas.analysis.core.samples import in_blocks
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import stream
+from idealgas.analysis.theory.ensemble import Ensemble
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.currents import (
     APART_X,

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.core.collisions import ExpectedRates
-from idealgas.analysis.core.ensemble import Composition, Ensemble, conserved_momentum
+from idealgas.analysis.core.ensemble import conserved_momentum
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import Composition, Ensemble
 from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.log import Log
 

@@ -18,7 +18,7 @@ from idealgas.analysis.core.collisions import (
     free_paths,
     theory_of,
 )
-from idealgas.analysis.core.ensemble import Composition, Ensemble, centre_of_mass_velocity, composition, ensemble
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
@@ -27,6 +27,7 @@ from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import Composition, Ensemble, composition
 from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
 from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral

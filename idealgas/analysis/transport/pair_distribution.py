@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from idealgas.analysis.core.ensemble import Composition
+from idealgas.analysis.theory.ensemble import Composition
 from idealgas.log import Log
 
 FRAMES = 64  # number of instants

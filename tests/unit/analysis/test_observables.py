@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from idealgas import heat_capacity, histogram
-from idealgas.analysis.core.ensemble import composition
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.statistics import Estimate
@@ -19,6 +18,7 @@ from idealgas.analysis.info import info
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature import temperature, temperature_figure
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.transport.measure import transport
 from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.errors import OutputError, UserError

@@ -1,0 +1,165 @@
+"""Equilibrium of a gas from its conserved quantities: the temperature and the velocities of each species and axis.
+
+Total energy, and total momentum along the axes where nothing takes it, are conserved; angular momentum never is, as
+sides and periodic images exert torques.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.analysis.theory import conserved, distributions
+from idealgas.analysis.theory.barometric import barometric_temperature
+from idealgas.scene import Scene
+from idealgas.state import Gas
+
+DIRECTIONS = 128
+"""Number of directions over which speeds are averaged where the axes have different temperatures."""
+
+
+class Composition(NamedTuple):
+    """Names, radii (length), masses (mass) and numbers of discs of the S species of a gas.
+
+    name: S names. radius, mass, number: arrays of shape (S,), one entry for each species.
+    """
+
+    name: tuple[str, ...]
+    radius: np.ndarray
+    mass: np.ndarray
+    number: np.ndarray
+
+    def packing_fraction(self, density: np.ndarray) -> float:
+        """Packing fraction φ of a gas whose species have the number densities `density` (S,), in 1/length²."""
+        return float(np.pi * (density * self.radius**2).sum())
+
+    @property
+    def mass_share_of_others(self) -> np.ndarray:
+        """Part 1 - m/M (S,) of the total mass M that is not in one disc of a species, no unit.
+
+        The other masses are added, so that no digits are lost where one disc is far heavier than all others.
+        """
+        all_of = self.number * self.mass
+        lower = np.append(0.0, np.cumsum(all_of[:-1]))
+        higher = np.append(0.0, np.cumsum(all_of[:0:-1]))[::-1]
+        others = lower + higher + (self.number - 1) * self.mass
+        return others / (others + self.mass)
+
+
+def composition(gas: Gas) -> Composition:
+    """Composition of a gas; all discs of one species have the same radius and the same mass."""
+    _, first, number = np.unique(gas.species, return_index=True, return_counts=True)
+    return Composition(gas.species_names, gas.radius[first], gas.mass[first], number)
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath.
+
+    centre_of_mass_velocity: (2,), subtracted from all velocities, length/time; 0 along axes of no conserved momentum.
+    dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
+    temperature: T = 2E/D, energy (k_B = 1). mass: (S,), of a disc of each species.
+    of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
+    not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs.
+    """
+
+    centre_of_mass_velocity: np.ndarray
+    dof: float
+    temperature: float
+    mass: np.ndarray
+    of_axes: np.ndarray
+
+    @property
+    def of_species(self) -> np.ndarray:
+        """Mean kinetic energy of translation (S,) of a disc of each species, energy."""
+        return self.of_axes.mean(axis=1)
+
+    @property
+    def mean_speed(self) -> np.ndarray:
+        """Mean speed (S,) of a disc of each species, length/time."""
+        return np.array([self.velocity_law("speed", s).mean for s in range(len(self.mass))])
+
+    def of_directions(self, species: int) -> np.ndarray:
+        """Temperatures T(θ) = Tx cos² θ + Ty sin² θ of a species at evenly spaced angles, energy; one if all are equal.
+
+        Velocities are √(T(θ)/m) times a vector that has all directions alike, so that speeds are means over θ.
+        """
+        x, y = self.of_axes[species]
+        if x == y:
+            return np.array([x])
+        angle = (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS * math.pi / 2
+        return x * np.cos(angle) ** 2 + y * np.sin(angle) ** 2
+
+    def velocity_law(self, quantity: str, species: int, dof: float | None = None) -> distributions.Law:
+        """Distribution of vx, vy, speed or energy of a disc of a species.
+
+        dof: D; by default that of the ensemble. Infinite for the Maxwell-Boltzmann distribution.
+        """
+        dof, mass = self.dof if dof is None else dof, float(self.mass[species])
+        if quantity in ("vx", "vy"):
+            return distributions.ComponentLaw(float(self.of_axes[species, "xy".index(quantity[1])]), mass, dof)
+        parts = tuple(
+            distributions.SpeedLaw(t, mass, dof) if quantity == "speed" else distributions.EnergyLaw(t, dof)
+            for t in self.of_directions(species).tolist()
+        )
+        return parts[0] if len(parts) == 1 else distributions.MeanLaw(parts)
+
+
+def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
+    """Ensemble of a gas; None if the energy is neither conserved nor set by heat of one temperature.
+
+    None too for a single disc whose momentum is conserved, as none of its energy is heat, or whose spin has some of it.
+
+    Args:
+        scene: scene of the gas.
+        gas: at the start.
+        spin_energy: of all discs at the start, energy.
+    """
+    properties = scene.properties
+    if not properties.conserves_energy or len(properties.temperatures) > 1:
+        return None
+    dof, energy = _shared(scene, gas, spin_energy)
+    if dof == 0 or (len(gas) == 1 and properties.isolated and properties.spins):
+        return None
+    if properties.temperatures:  # a heat bath has no limit to its energy
+        return ensemble_at(scene, gas, min(properties.temperatures), math.inf)
+    return ensemble_at(scene, gas, 2 * energy / dof, dof)
+
+
+def ensemble_at(scene: Scene, gas: Gas, temperature: float, dof: float) -> Ensemble:
+    """Ensemble of a gas of a known temperature T, energy, and number of degrees of freedom."""
+    discs = composition(gas)
+    share = np.where(conserved.conserved_momentum(scene), discs.mass_share_of_others[:, None], 1.0)
+    return Ensemble(conserved.centre_of_mass_velocity(scene, gas), dof, temperature, discs.mass, temperature * share)
+
+
+def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) -> float | None:
+    """Equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
+
+    It is the temperature of thermal walls or a thermostat or, without them, the one at which a dilute gas has the
+    conserved energy of the start: kinetic energy, spin and height in the barometric distribution. None if other effects
+    leave it unknown, and for a single disc, which cannot share its energy.
+    """
+    properties = scene.properties
+    if not properties.fixed_walls or not properties.lossless or len(gas) == 1:
+        return None
+    if baths := properties.temperatures:
+        return min(baths) if len(baths) == 1 else None
+    dof, energy = _shared(scene, gas, spin_energy)
+    g, place = properties.acceleration[axis], gas.position[:, axis]
+    above = place if g < 0 else gas.box[axis] - place
+    energy += abs(g) * float(gas.mass @ (above - gas.radius))
+    discs = composition(gas)
+    height = gas.box[axis] - 2 * discs.radius
+    return barometric_temperature(energy, dof, discs.mass, discs.number, abs(g), height) if energy > 0 else None
+
+
+def _shared(scene: Scene, gas: Gas, spin_energy: float) -> tuple[int, float]:
+    """Number D of degrees of freedom that share the energy of motion and spin, and this energy."""
+    dof = conserved.degrees_of_freedom(scene, len(gas))
+    frame = conserved.centre_of_mass_velocity(scene, gas)
+    energy = float(gas.mass @ ((gas.velocity - frame) ** 2).sum(axis=1)) / 2
+    if scene.properties.spins:
+        return dof + len(gas), energy + spin_energy
+    return dof, energy

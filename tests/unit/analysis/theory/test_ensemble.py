@@ -1,0 +1,96 @@
+"""Equilibrium of a gas by its conserved quantities, against exact sums and against points of the energy surface."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from helpers.support import gas_of
+from scipy import stats
+
+from idealgas.analysis.theory.ensemble import Ensemble, composition, equilibrium
+from idealgas.initial.build import make_gas
+from idealgas.scene import parse_scene
+
+MIXTURE = """
+box.size = [8, 6]
+run.until = 1
+species = [
+    { name = "heavy", count = 2, radius = 0.2, mass = 5, temperature = 1 },
+    { name = "light", count = 4, radius = 0.1, mass = 1, temperature = 2 },
+]
+"""
+ALONG_X = ("box.left=periodic", "box.right=periodic")
+ALL = (*ALONG_X, "box.bottom=periodic", "box.top=periodic")
+HEAVY, LIGHT = 9 / 14, 13 / 14  # 1 - m/M with M = 2 * 5 + 4 * 1
+
+
+def found(*overrides):
+    """Ensemble of the mixture, and its kinetic energy in the frame of the conserved momentum."""
+    scene = parse_scene(MIXTURE, overrides=overrides)
+    gas = make_gas(scene)
+    ensemble = equilibrium(scene, gas, 0.0)
+    relative = gas.velocity - ensemble.centre_of_mass_velocity
+    return ensemble, float(gas.mass @ (relative**2).sum(axis=1)) / 2
+
+
+@pytest.mark.parametrize(
+    ("overrides", "dof", "heavy", "light"),
+    [
+        ((), 12, (1, 1), (1, 1)),
+        (ALONG_X, 11, (HEAVY, 1), (LIGHT, 1)),
+        (ALL, 10, (HEAVY, HEAVY), (LIGHT, LIGHT)),
+        ((*ALONG_X, "box.top={ thermal = 3 }"), math.inf, (1, 1), (1, 1)),
+        ((*ALL, "thermostat={ temperature = 3, rate = 1 }"), math.inf, (1, 1), (1, 1)),
+        ((*ALONG_X, "wall=[{ from = [4, 1], to = [4, 2] }]"), 12, (1, 1), (1, 1)),
+        ((*ALL, "rotation.roughness=1"), 16, (HEAVY, HEAVY), (LIGHT, LIGHT)),
+        ((*ALONG_X, "rotation={ roughness = -1, wall_roughness = 1 }"), 18, (1, 1), (1, 1)),
+    ],
+)
+def test_conserved_momentum_by_axis(overrides, dof, heavy, light):
+    """T = 2E/D, and T(1 - m/M) along the axes where the total momentum is conserved; 3 in a heat bath."""
+    ensemble, energy = found(*overrides)
+    temperature = 3.0 if math.isinf(dof) else 2 * energy / dof
+    assert ensemble.dof == dof
+    assert ensemble.temperature == pytest.approx(temperature, rel=1e-12)
+    assert ensemble.of_axes == pytest.approx(temperature * np.array([heavy, light]), rel=1e-12)
+    if math.isfinite(dof) and "rotation" not in str(overrides):  # the parts are the whole
+        assert np.array([2, 4]) @ ensemble.of_species == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("mass", [1e3, 1e12, 1e16, 1e30])
+def test_no_digits_are_lost_beside_a_heavy_disc(mass):
+    """Against exact fractions, to rounding: four additions and one division."""
+    gas = gas_of((9, 9), np.zeros((6, 2)), 0.0, 0.1, mass=[mass, 0.3, 0.3, 0.3, 0.7, 0.7])
+    gas = gas.__class__(**{**vars(gas), "species": np.array([0, 1, 1, 1, 2, 2]), "species_names": ("a", "b", "c")})
+    whole = sum(map(Fraction, gas.mass))
+    exact = [float((whole - Fraction(m)) / whole) for m in (mass, 0.3, 0.7)]
+    assert composition(gas).mass_share_of_others == pytest.approx(exact, rel=1e-15)
+
+
+@pytest.mark.parametrize("conserved", [(False, False), (True, False), (True, True)])
+@pytest.mark.parametrize("quantity", ["vx", "vy", "speed", "energy"])
+def test_velocities_are_those_of_points_on_the_energy_surface(conserved, quantity):
+    """Momenta at random, without their sum along conserved axes, scaled to the energy; KS of 40 000 at 0.001."""
+    mass, dof = np.array([5.0, 1.0, 1.0, 1.0]), 8 - sum(conserved)
+    velocity = np.random.default_rng(sum(conserved)).normal(size=(40_000, 4, 2)) / np.sqrt(mass)[:, None]
+    velocity -= np.array(conserved) * (mass @ velocity)[:, None] / mass.sum()
+    velocity /= np.sqrt((mass @ velocity**2).sum(axis=1) / dof)[:, None, None]  # T = 2E/D = 1
+    axes = np.where(conserved, 1 - mass[:2, None] / mass.sum(), 1.0)
+    ensemble = Ensemble(np.zeros(2), dof, 1.0, mass[:2], axes)
+    for s in range(2):
+        x, y = velocity[:, s].T
+        sample = {"vx": x, "vy": y, "speed": np.hypot(x, y), "energy": mass[s] * (x**2 + y**2) / 2}[quantity]
+        law = ensemble.velocity_law(quantity, s)
+        assert stats.kstest(sample, law.cdf).pvalue > 0.001
+        assert abs(sample.mean() - law.mean) < 4 * sample.std() / 200
+    if quantity == "speed":
+        assert ensemble.mean_speed[1] == law.mean
+
+
+def test_speed_of_a_disc_that_moves_along_one_axis_only():
+    """The mean over directions, at its worst: half a normal distribution, whose P(< v) is erf(v/√2)."""
+    law = Ensemble(np.zeros(2), math.inf, 1.0, np.ones(1), np.array([[0.0, 1.0]])).velocity_law("speed", 0)
+    speed = np.linspace(0, 4, 100)
+    assert np.abs(law.cdf(speed) - (2 * stats.norm.cdf(speed) - 1)).max() < 2e-3
+    assert law.mean == pytest.approx(math.sqrt(2 / math.pi), rel=1e-4)
