@@ -4,7 +4,9 @@ Minutes for each state; run by hand.
 """
 
 import math
+from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
@@ -97,3 +99,42 @@ def test_two_species_in_each_other(run, mass, radius):
     assert abs(ratio.value - 1) < STANDARD_ERRORS * math.hypot(ratio.standard_error, error)
     apart = mean_of_replicates([one.difference for one in found])
     assert abs(apart.value) < STANDARD_ERRORS * apart.standard_error
+
+
+def test_a_heavy_disc_among_few_light_ones(run):
+    """A disc that has half of the mass, in a dilute periodic gas, where Enskog's friction γ is right.
+
+    m⟨v²⟩/2 is T(1 - m/M), and as the others recoil, the velocity decays at γ/(1 - m/M): twice as fast as among many.
+    Twelve windows of one run; three standard errors.
+    """
+    sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
+    log = run(
+        parse_scene(f"""
+            scene.seed = 1
+            box = {{size = [40, 40], {sides}}}
+            species = [
+                {{name = "heavy", count = 1, radius = 0.5, mass = 20, temperature = 1}},
+                {{name = "light", count = 20, radius = 0.5, temperature = 1}},
+            ]
+            log.compression = "none"
+            run.collisions_per_disc = 40_000
+        """)
+    )
+    edges = np.linspace(0, log.end_time, 13)
+    found = [transport(log, *window).diffusion[0] for window in pairwise(edges)]
+    temperature, light = 2 * log.discs.kinetic_energy / 40, 20 / 1600
+    reduced = 20 / 21
+    rate = (
+        2 * light * 1.0163 * math.sqrt(math.pi * temperature / (2 * reduced))
+    )  # χ = (1 - 7φ/16)/(1 - φ)² at φ = .0103
+    time = 0.5 / (2 * reduced / 20 * rate)
+    for estimates, theory in (
+        ([one.velocity_correlation_time for one in found], time),
+        ([one.coefficient for one in found], temperature * 0.5 / 20 * time),
+    ):
+        assert estimates[0].theory == pytest.approx(theory, rel=0.02)  # terms of 1/D
+        assert estimates[0].theory_error < 0.05 * theory
+        measured = mean_of_replicates(estimates)
+        assert measured.standard_error < 0.15 * theory
+        assert abs(measured.value - theory) < STANDARD_ERRORS * measured.standard_error
+        print(measured, theory)

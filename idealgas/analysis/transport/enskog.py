@@ -34,13 +34,18 @@ def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: E
 
     Discs of species i lose their velocity at the rate γ_i = Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and
     collision rates Γ_ij: the friction of a Brownian disc among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
-    None where theory has no rates. The error is that of equal discs, that of the rates, what the others recoil, and
-    that of the first approximation. Momentum that is conserved takes a part m/M of D.
+
+    Along an axis whose momentum is conserved, with the mass M of all discs, m_i⟨v²⟩ is T(1 - m/M), and the others
+    recoil with -m v/(M - m), so that the relative velocity decays at γ/(1 - m/M). That is exact at the start, as the
+    covariance of a velocity with a relative velocity is T/m as without the condition. Both take a factor 1 - m/M of D.
+
+    None where theory has no rates. The error is that of equal discs, that of the rates, that of the first
+    approximation, the momentum that discs of the same species take up, and the recoil where walls stop it.
     """
     found: list[Theory | None] = []
-    whole, kept = log.discs.mass.sum(), conserved_momentum(log).mean()
+    whole, walled = log.discs.mass.sum(), 1 - conserved_momentum(log).mean()
     error = enskog_error("diffusion", log.discs.packing_fraction)
-    for i, mass in enumerate(discs.mass):
+    for i, (mass, others) in enumerate(zip(discs.mass, discs.mass_share_of_others, strict=True)):
         reduced = mass * discs.mass / (mass + discs.mass)
         parts = 2 * reduced * rates.rate[i]
         resistance = float(parts.sum())
@@ -48,8 +53,9 @@ def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: E
             found.append(None)
             continue
         first = float(parts @ first_order_error(mass, discs.mass)) / resistance
-        relative = error + float(rates.relative_error[i].max()) + 2 * mass / whole + first
-        value = equilibrium.temperature * (1 - kept * mass / whole) / resistance
+        shared = (discs.number[i] - 1) * (mass / whole / others) ** 2
+        relative = error + float(rates.relative_error[i].max()) + 2 * walled * mass / whole + shared + first
+        value = float((equilibrium.of_axes[i] ** 2).mean()) / equilibrium.temperature / resistance
         found.append(Theory(value, relative * value, "Enskog") if math.isfinite(value) else None)
     return found
 

@@ -139,7 +139,7 @@ def transport(
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
     alone = [enskogs.diffusion] if enskogs else self_diffusion(log, discs, equilibrium, expected)
-    diffusion = _diffusion(log, discs, window, longest, (enskogs, alone, equilibrium.temperature))
+    diffusion = _diffusion(log, discs, window, longest, (enskogs, alone, equilibrium.of_species))
     whole = None
     if all(log.periodic):
         theories = enskogs, box.pairs, mutual_diffusion(log, discs, equilibrium, expected)
@@ -261,9 +261,9 @@ def _diffusion(
     discs: Composition,
     window: Window,
     longest: float,
-    expected: tuple[Enskog | None, Sequence[Theory | None], float],
+    expected: tuple[Enskog | None, Sequence[Theory | None], np.ndarray],
 ) -> tuple[Diffusion, ...]:
-    """Diffusion of each species up to the longest lag, time; expected: Enskog's theory, D of each species, and T."""
+    """Diffusion of each species up to the longest lag, time; expected: Enskog's theory, D and T of each species."""
     segments = min(int(window.duration / longest), MOST_SEGMENTS)
     lag = np.linspace(0.0, longest, LAGS + 1)
     starts = np.linspace(window.start, window.end - longest, segments)
@@ -278,10 +278,10 @@ def _diffusion(
     places = places - lag[:, None, None] * centre_of_mass_velocity(log)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), strict=True)
-    whole, coefficients, temperature = expected
+    whole, coefficients, temperatures = expected
     theories = [
-        (whole, alone, alone and alone.times(float(mass) / temperature))
-        for alone, mass in zip(coefficients, discs.mass, strict=True)
+        (whole, alone, alone and alone.times(float(mass / temperature)))
+        for alone, mass, temperature in zip(coefficients, discs.mass, temperatures, strict=True)
     ]
     return tuple(_of_species(*part, lag, *theory) for part, theory in zip(parts, theories, strict=True))
 
