@@ -65,12 +65,13 @@ def restore_transport(found: dict[str, Any], label: str) -> Sample:
     whole, diffusion = found["collective"] or {}, found["diffusion"]
     coefficients = {DIFFUSION: diffusion[0]["coefficient"]} if len(diffusion) == 1 else {}
     coefficients |= {symbol: whole[name]["coefficient"] for name, symbol in SYMBOLS.items() if name in whole}
-    estimates = {symbol: Estimate.from_dict(one) for symbol, one in coefficients.items()}
+    estimates = {symbol: Estimate.from_dict(one) for symbol, one in coefficients.items() if one}
     return Sample(found["packing_fraction"], found["number"], _over_theory(estimates))
 
 
 def _sample_of(found: Transport) -> Sample:
-    coefficients = {DIFFUSION: found.diffusion[0].coefficient} if len(found.diffusion) == 1 else {}
+    alone = found.diffusion[0].coefficient if len(found.diffusion) == 1 else None
+    coefficients = {DIFFUSION: alone} if alone else {}
     if found.collective:
         coefficients |= {SYMBOLS[name]: one.value for name, one in found.collective.coefficients.items()}
     return Sample(found.packing_fraction, found.number, _over_theory(coefficients), origin=found.origin)

@@ -10,7 +10,7 @@ from idealgas.analysis.core.style import COLOURS, GREY, curve_style, panels
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.combine import DIFFUSION, States
-from idealgas.analysis.transport.measure import FITTED_FROM, Transport
+from idealgas.analysis.transport.measure import Transport
 
 FAINTEST = 1e-4
 """Smallest velocity correlation in the picture."""
@@ -68,15 +68,16 @@ def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) ->
     """Draw velocity correlation and mean square displacement of each species."""
     for k, entry in enumerate(result.diffusion):
         _band(correlation, entry.lag, entry.correlation, entry.correlation_error, k, entry.species)
-        if entry.coefficient.theory is not None and entry.tail is not None:
+        if entry.tail is not None:
             rate = result.free_paths[0].time.value ** -1
             correlation.plot(entry.lag, np.exp(-rate * entry.lag), "--", color=GREY, label="Enskog: exp(-Γt)")
             late = rate * entry.lag > 5
             correlation.plot(entry.lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
         name = f"{entry.species}, measured"
         _band(displacement, entry.lag, entry.displacement, entry.displacement_error, k, name)
-        d = entry.coefficient.value
-        displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
+        if entry.coefficient:
+            d = entry.coefficient.value
+            displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
     if all((entry.correlation > -3 * entry.correlation_error).all() for entry in result.diffusion):
         correlation.set(yscale="log", ylim=(FAINTEST, 1.5))  # without a number below zero that is resolved
     correlation.set(xlabel="t (time)", ylabel="⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)")
@@ -112,23 +113,21 @@ def _draw_pairs(ax: Axes, result: Transport) -> None:
 
 
 def _draw_coefficients(ax: Axes, result: Transport) -> None:
-    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or, where there is none, over their own values."""
+    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or else over their own values."""
     whole = result.collective.coefficients if result.collective else {}
     curves = [
         (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient)
         for entry in result.diffusion
     ] + [(SYMBOLS[name], one.times, one.running, one.running_error, one.value) for name, one in whole.items()]
-    by_theory = all(value.theory for *_, value in curves)
+    values = [value for *_, value in curves if value]
+    by_theory = all(value.theory for value in values)
     for k, (name, times, running, error, value) in enumerate(curves):
-        one = (by_theory and value.theory) or value.value
-        _band(ax, times, running / one, error / one, k, name)
-    if result.collective:
-        first, last = result.collective.plateau
-    else:
-        last = float(result.diffusion[0].lag[-1])
-        first = FITTED_FROM * last
-    ax.axvspan(first, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
+        one = (by_theory and value.theory) or value.value if value else running.max()
+        _band(ax, times, running / one, error / one, k, name if value else f"{name}: no plateau")
+    plateaus = [result.collective.plateau] if result.collective else [one.plateau for one in result.diffusion]
+    for first, last in filter(None, plateaus[:1]):
+        ax.axvspan(first, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
     ax.axhline(1.0, color=GREY, linewidth=0.8)
     ax.set_ylim(0.0, 1.6)
-    over = "Enskog's" if by_theory else "its mean in the plateau"
+    over = "its maximum" if not values else "Enskog's" if by_theory else "its mean in the plateau"
     ax.set(xlabel="t (time)", ylabel=f"coefficient at time t over {over}")

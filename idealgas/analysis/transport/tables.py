@@ -38,19 +38,19 @@ def _of_log(result: Transport) -> list[Table]:
     """Tables of collisions, pair distribution at contact, diffusion of each species, and of the currents of the gas."""
     rates, paths = collision_tables(result.collision_rates, result.free_paths)
     contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in result.contacts]
-    diffusion = [
-        row
-        for entry in result.diffusion
-        for row in (
-            (f"{entry.species}: D by displacement, length²/time", entry.coefficient),
-            (f"{entry.species}: velocity correlation time, time", entry.velocity_correlation_time),
-        )
-    ]
+    diffusion, lags = [], []
+    for entry in result.diffusion:
+        if entry.plateau and entry.coefficient and entry.velocity_correlation_time:
+            diffusion += [
+                (f"{entry.species}: D by displacement, length²/time", entry.coefficient),
+                (f"{entry.species}: velocity correlation time, time", entry.velocity_correlation_time),
+            ]
+            lags.append(f"{entry.species}: lags t = {entry.plateau[0]:.4g} to {entry.plateau[1]:.4g}")
     tables = [replace(rates, notes=(describe(result.window),)), paths, estimates("g(r) at contact (no unit)", contacts)]
-    tables.append(estimates("Diffusion, theory Enskog's", diffusion, () if result.collective else (WALLS,)))
+    tables.append(estimates("Diffusion, theory Enskog's", diffusion, (*lags, *([] if result.collective else [WALLS]))))
     if result.collective:
         tables += _of_currents(result.collective, result.free_times)
-    return [table for table in tables if table.rows]
+    return [table for table in tables if table.rows or table.notes]
 
 
 def _of_currents(found: Collective, free_times: float) -> list[Table]:

@@ -263,7 +263,9 @@ def test_diffusion_takes_time(made):
 
 
 def test_diffusion_takes_a_wide_box(made):
-    assert "in an infinite gas D is larger" in only(registry.analyse(made(), "transport"), "Walls reflect discs of gas")
+    assert "Periodic sides give one, or a box" in only(
+        registry.analyse(made(), "transport"), "Walls reflect discs of gas"
+    )
     assert silent(registry.analyse(made(PERIODIC), "transport"), "Walls")
 
 

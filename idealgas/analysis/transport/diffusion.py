@@ -1,0 +1,238 @@
+"""Diffusion of single discs, from their exact positions and velocities at evenly spaced instants."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.analysis.core.collisions import CollisionRate
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.analysis.core.equilibration import Window
+from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.stream import sample_trajectories
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.ensemble import Composition, Ensemble
+from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral
+from idealgas.analysis.transport.enskog import Enskog
+from idealgas.log import Log
+
+LAGS = 200  # number of steps of the correlation functions
+MOST_SEGMENTS = 64
+MOST_SAMPLES = 2**21  # largest number of discs times instants
+FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
+LEAST_LAG = 10.0  # mean free times; D from shorter lags is too small, as velocities still remember where they came from
+LEAST_MEMORIES = 4.0  # velocity correlation times; the same for discs that keep their velocity for longer
+FREE_SHARE = 0.05  # largest displacement, relative to the way between two walls, that walls hardly change
+FALL = 0.1  # largest part by which D may fall from the quarter before the plateau to the plateau
+FEWEST_LAGS = 4  # steps between which D is taken
+SURE = 0.9999  # level at which it falls without doubt
+
+
+@dataclass(frozen=True)
+class Diffusion:
+    """Velocity correlation and diffusion of one species at L lags.
+
+    species: name. lag: (L,), time. correlation, correlation_error: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩ and its standard error (no
+    unit). displacement, displacement_error: (L,), mean square displacement and its standard error, length². tail: (L,),
+    correlation at late times by theory; None for several species or above freezing. running, running_error: (L,), a
+    quarter of the slope of the displacement, length²/time, and its standard error. plateau: first and last lag over
+    which D is taken. coefficient: diffusion coefficient D, a quarter of the slope of the displacement there,
+    length²/time; its theory is Enskog's. velocity_correlation_time: mean there of the integral of the correlation up to
+    a lag, time; its theory is that of mD/T. All three are None where D has no plateau: where walls reflect the discs
+    before they diffuse, or where it falls with the lag.
+    """
+
+    species: str
+    lag: np.ndarray
+    correlation: np.ndarray
+    correlation_error: np.ndarray
+    displacement: np.ndarray
+    displacement_error: np.ndarray
+    tail: np.ndarray | None
+    running: np.ndarray
+    running_error: np.ndarray
+    plateau: tuple[float, float] | None
+    coefficient: Estimate | None
+    velocity_correlation_time: Estimate | None
+
+
+class Limits(NamedTuple):
+    """Times and lengths between which discs of a species diffuse.
+
+    rate: collision rate of a disc, 1/time. needed: least lag that D takes. friction_d: D by the friction of these
+    collisions, length²/time. ways: free lengths of a disc between two walls.
+    """
+
+    rate: float
+    needed: float
+    friction_d: float
+    ways: tuple[float, ...]
+
+    @property
+    def reach(self) -> float:
+        """Largest displacement that walls hardly change, length."""
+        return FREE_SHARE * min(self.ways, default=math.inf)
+
+    def within(self, displacement: np.ndarray) -> int:
+        """Last lag at which a mean square displacement (L,) is not beyond reach."""
+        return int(np.flatnonzero(displacement <= self.reach**2)[-1])
+
+    def are_walls(self, lag: np.ndarray, displacement: np.ndarray) -> bool:
+        """Whether discs are beyond reach before they diffuse."""
+        last = self.within(displacement)
+        return last < len(lag) - 1 and (lag[last] < self.needed or last < FEWEST_LAGS)
+
+    def lost(self, displacement: float) -> float:
+        """Part of D that walls take, by the law of diffusion between them, at a mean square displacement 4Dt.
+
+        Between walls at a distance a half the slope of ⟨Δx²⟩ is (8D/π²) Σ exp(-n²π²Dt/a²)/n² over odd n, which is
+        D [1 - (4/√π) √(Dt)/a] at first; walls along one axis take half of that.
+        """
+        return sum(math.sqrt(displacement / math.pi) / way for way in self.ways)
+
+
+def diffusion_limits(
+    log: Log, discs: Composition, rates: Sequence[CollisionRate], equilibrium: Ensemble
+) -> list[Limits]:
+    """Limits of the diffusion of each species, from measured collision rates.
+
+    A disc of species i forgets its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij.
+    """
+    count, found = len(discs.name), []
+    each = np.array([one.rate.value for one in rates]).reshape(count, count)
+    for rate, mass, radius in zip(each, discs.mass, discs.radius, strict=True):
+        friction = float(rate @ (2 * discs.mass / (mass + discs.mass)))
+        whole = float(rate.sum())
+        needed = max(LEAST_LAG / whole, LEAST_MEMORIES / friction) if whole else math.inf
+        friction_d = equilibrium.temperature / mass / friction if whole else math.inf
+        sides = [side for side, is_periodic in zip(log.box, log.periodic, strict=True) if not is_periodic]
+        found.append(Limits(whole, needed, friction_d, tuple(side - 2 * float(radius) for side in sides)))
+    return found
+
+
+def diffusion(
+    log: Log,
+    discs: Composition,
+    window: Window,
+    longest: float,
+    limits: Sequence[Limits],
+    expected: tuple[Enskog | None, Sequence[Theory | None], np.ndarray],
+) -> tuple[Diffusion, ...]:
+    """Diffusion of each species up to the longest lag, time, or between walls up to the one that they allow.
+
+    expected: Enskog's theory, D and T of each species.
+    """
+    longest = min(longest, max(max(one.needed, one.reach**2 / (4 * one.friction_d)) for one in limits))
+    segments = min(int(window.duration / longest), MOST_SEGMENTS)
+    lag = np.linspace(0.0, longest, LAGS + 1)
+    starts = np.linspace(window.start, window.end - longest, segments)
+    times = (starts[:, None] + lag).ravel()
+    times = np.minimum(np.maximum.accumulate(times), window.end)
+    most = max(MOST_SAMPLES // len(times) // len(discs.name), 1)
+    members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
+    chosen = [ids[:: -(-len(ids) // most)] for ids in members]
+    places, velocities = sample_trajectories(log, times, np.concatenate(chosen))
+    shape = (segments, len(lag), -1, 2)
+    places, velocities = places.reshape(shape), velocities.reshape(shape) - centre_of_mass_velocity(log)
+    places = places - lag[:, None, None] * centre_of_mass_velocity(log)
+    cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
+    parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), limits, strict=True)
+    whole, coefficients, temperatures = expected
+    return tuple(
+        _of_species(*part, lag, (whole, alone, float(mass / temperature)))
+        for part, alone, mass, temperature in zip(parts, coefficients, discs.mass, temperatures, strict=True)
+    )
+
+
+def _of_species(
+    name: str,
+    places: np.ndarray,
+    velocities: np.ndarray,
+    limits: Limits,
+    lag: np.ndarray,
+    expected: tuple[Enskog | None, Theory | None, float],
+) -> Diffusion:
+    """Diffusion of one species from positions and velocities (segments, L, discs, 2); expected: theories, and m/T."""
+    remembered = correlation(velocities, velocities)
+    square = remembered[:, 0].mean()
+    displacement = mean_square_displacement(places)
+    running = np.gradient(displacement, lag, axis=1) / 4
+    count = math.sqrt(len(places))
+    enskog, alone, inertia = expected
+    found = Diffusion(
+        name,
+        lag,
+        remembered.mean(axis=0) / square,
+        remembered.std(axis=0, ddof=1) / square / count,
+        displacement.mean(axis=0),
+        displacement.std(axis=0, ddof=1) / count,
+        tail=np.append(math.inf, _tail(lag[1:], enskog)) if enskog else None,
+        running=running.mean(axis=0),
+        running_error=running.std(axis=0, ddof=1) / count,
+        plateau=None,
+        coefficient=None,
+        velocity_correlation_time=None,
+    )
+    if limits.are_walls(lag, found.displacement):
+        return found
+    last = limits.within(found.displacement)
+    first = int(FITTED_FROM * last)
+    late, slope = slice(first, last + 1), _slope(lag, displacement, first, last)
+    if _falls(_slope(lag, displacement, int(FITTED_FROM * first), first), slope):
+        return found
+    if alone:
+        lost = limits.lost(float(found.displacement[late].mean()))
+        alone = replace(alone, error=alone.error + lost * alone.value)
+    integral = velocity_integral(velocities, places)[:, late].mean(axis=1) / square
+    return replace(
+        found,
+        plateau=(float(lag[first]), float(lag[last])),
+        coefficient=mean(slope, theory=alone),
+        velocity_correlation_time=mean(integral, theory=alone and alone.times(inertia)),
+    )
+
+
+def _slope(lag: np.ndarray, displacement: np.ndarray, first: int, last: int) -> np.ndarray:
+    """A quarter of the slope of mean square displacements (segments, L) between two lags, by segment."""
+    part = slice(first, last + 1)
+    return np.polyfit(lag[part], displacement[:, part].T, 1)[0] / 4
+
+
+def _falls(early: np.ndarray, late: np.ndarray) -> bool:
+    """Whether D falls without doubt, and by much, between an early and a late part of the lags, by segment."""
+    fall = mean(early - late)
+    return fall.value > FALL * early.mean() and fall.interval(SURE)[0] > 0
+
+
+def _tail(lag: np.ndarray, expected: Enskog) -> np.ndarray:
+    return hard_discs.long_time_tail(lag, expected.density, expected.diffusion.value, expected.kinematic_viscosity)
+
+
+def diffusion_caveats(entry: Diffusion, limits: Limits) -> Iterator[str]:
+    """Sentence on a species that has no diffusion coefficient, or whose discs are followed for too short a time."""
+    longest, name = float(entry.lag[-1]), entry.species
+    if limits.are_walls(entry.lag, entry.displacement):
+        far = math.sqrt(entry.displacement[entry.lag <= limits.needed][-1])
+        width = math.sqrt(4 * limits.friction_d * limits.needed) / FREE_SHARE
+        yield (
+            f"Walls reflect discs of {name}, which move {far:.3g} in the time of {limits.needed:.3g} that a diffusion "
+            f"coefficient takes; none in this box. Periodic sides give one, or a box about {width:.2g} wide and high."
+        )
+    elif entry.plateau is None:
+        yield (
+            f"No diffusion coefficient of {name}: D falls with the lag, to {entry.running[-1]:.3g} at {longest:.3g}. "
+            "Discs in single file or in a crystal do not diffuse; in a dense fluid a larger --lag may give one."
+        )
+    elif longest * limits.rate < LEAST_LAG:
+        yield (
+            f"The window is short: {name} is followed for {longest * limits.rate:.2g} mean free times at most; its "
+            f"diffusion coefficient and velocity correlation time take {LEAST_LAG:g}."
+        )
+    elif longest < limits.needed:
+        yield (
+            f"{name} is followed for {longest:.3g}, and keeps its velocity for a time: its diffusion coefficient and "
+            f"velocity correlation time take {limits.needed:.3g}, by a larger --lag."
+        )

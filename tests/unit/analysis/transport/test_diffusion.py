@@ -1,0 +1,88 @@
+"""Where D has a plateau, and where it has none: between walls, in single file, and in a crystal."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.analysis.transport.combine import combine_transport, restore_transport
+from idealgas.analysis.transport.diffusion import Limits
+from idealgas.analysis.transport.figure import transport_figure
+from idealgas.analysis.transport.measure import transport
+from idealgas.analysis.transport.tables import transport_tables
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+box = {{size = {size}, left = "{x}", right = "{x}", bottom = "{y}", top = "{y}"}}
+species = [{{name = "gas", count = {count}, radius = 0.5, temperature = 1.0, placement = "{placement}"}}]
+run.collisions_per_disc = {collisions}
+"""
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """Transport in a gas at some lags."""
+
+    def run(size, count, collisions, *lags, x="reflecting", y="reflecting", placement="random"):
+        scene = SCENE.format(size=size, x=x, y=y, count=count, placement=placement, collisions=collisions)
+        simulate(parse_scene(scene), tmp_path / "run.h5")
+        with open_log(tmp_path / "run.h5") as log:
+            return [transport(log, start=0.0, lag=lag) for lag in lags]
+
+    return run
+
+
+def test_walls_at_a_few_free_paths_leave_no_coefficient(measured):
+    """A box of 30 free paths; one of Langevin's displacement √(4Dt) over FREE_SHARE would do, D = T/mΓ by theory."""
+    (found,) = measured([20, 20], 51, 200, 20.0)
+    (gas,), (rate,) = found.diffusion, found.collision_rates
+    assert (gas.plateau, gas.coefficient, gas.velocity_correlation_time) == (None, None, None)
+    width = math.sqrt(4 * 10) / rate.rate.value / 0.05
+    (sentence,) = [each for each in found.caveats if each.startswith("Walls reflect discs of gas")]
+    assert f"or a box about {width:.2g} wide" in sentence
+    assert not any("D by displacement" in str(row) for table in transport_tables(found) for row in table.rows)
+    *_, coefficients = transport_figure(found).axes
+    assert [text.get_text() for text in coefficients.get_legend().get_texts()] == ["D, gas: no plateau"]
+    stored = json.loads(json.dumps(found.as_dict(), allow_nan=False))
+    assert restore_transport(stored, "point").coefficients == {}
+    assert combine_transport([found, found]).states[0].coefficients == {}
+
+
+def test_the_longest_lag_fits_the_box(measured):
+    """Lags end where discs have gone a twentieth of the box, whatever was asked; D is Enskog's within its error."""
+    found = measured([32, 32], 521, 200, 20.0, 100.0)
+    for one in found:
+        (gas,), (rate,) = one.diffusion, one.collision_rates
+        first, last = gas.plateau
+        assert first == pytest.approx(last / 2, rel=0.02)
+        assert 10 / rate.rate.value <= last <= gas.lag[gas.displacement <= (0.05 * 31) ** 2][-1]
+        assert abs(gas.coefficient.deviation) < 4
+        assert gas.coefficient.standard_error < 0.05 * gas.coefficient.value
+
+
+def test_a_channel_of_single_file_has_no_coefficient(measured):
+    """1.8 diameters wide, discs cannot pass: ⟨Δx²⟩ grows like √t, Harris, J. Appl. Prob. 2, 323 (1965)."""
+    found = measured([40, 1.8], 20, 2000, 20.0, 200.0, x="periodic")
+    assert [one.diffusion[0].coefficient for one in found] == [None, None]
+    assert all(any("Walls reflect discs of gas" in sentence for sentence in one.caveats) for one in found)
+
+
+def test_a_crystal_has_no_coefficient(measured):
+    size = [14 * 1.1, 16 * 1.1 * math.sqrt(3) / 2]
+    (found,) = measured(size, 224, 1000, 20.0, x="periodic", y="periodic", placement="triangular")
+    (gas,) = found.diffusion
+    assert gas.coefficient is None
+    assert gas.running[-1] < 0.5 * gas.running.max()
+    assert any(sentence.startswith("No diffusion coefficient of gas: D falls") for sentence in found.caveats)
+
+
+def test_what_walls_take():
+    """Against the law of diffusion between reflecting walls, half the slope of ⟨Δx²⟩."""
+    n, way, time = np.arange(1, 2001, 2), 7.0, 0.01 * 7.0**2
+    left = 8 / math.pi**2 * (np.exp(-((n * math.pi / way) ** 2) * time) / n**2).sum()
+    one, both = (Limits(1.0, 1.0, 1.0, ways).lost(4 * time) for ways in ((way,), (way, way)))
+    assert both == pytest.approx(1 - left, rel=1e-3)
+    assert one == pytest.approx(both / 2)
