@@ -20,7 +20,7 @@ from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
-TRAJECTORY = 1
+TRAJECTORY = 2
 """Version of the trajectory, to be raised by hand whenever a change of the program changes the log of a scene."""
 
 

@@ -6,8 +6,8 @@ elastic discs they run in any precision, see `arithmetic`. A record is any objec
 
 import math
 
-from idealgas.jit import inline
-from idealgas.physics.arithmetic import number, root
+from idealgas.jit import inline, noinline
+from idealgas.physics.arithmetic import changed, correction, number, root
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.restitution import restitution_factor
@@ -91,16 +91,20 @@ def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
 
     Touching discs whose collision would change no digit of any velocity count as having collided. The result differs
     from `collision_time` only if that is the time of a record.
-
     """
     touched = collision_time(a, b, gravity, periodic, images)
-    if touched == max(a.t, b.t):
-        _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-        factor = restitution_factor(restitution, a_id, b_id, touched)
-        a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, x, y, vx, vy, factor)
-        if (a_vx == a.vx) & (a_vy == a.vy) & (b_vx == b.vx) & (b_vy == b.vy):
-            return number(NEVER, touched)
+    if (touched == max(a.t, b.t)) and changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
+        return number(NEVER, touched)
     return touched
+
+
+@noinline
+def changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
+    """Whether a collision at the later time of two records would change no digit of any velocity."""
+    time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
+    factor = restitution_factor(restitution, a_id, b_id, time)
+    a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, x, y, vx, vy, factor)
+    return (a_vx == a.vx) & (a_vy == a.vy) & (b_vx == b.vx) & (b_vy == b.vy)
 
 
 @inline
@@ -110,8 +114,15 @@ def velocities_after(a, b, x, y, vx, vy, factor):
     x, y: position of a relative to b, length. vx, vy: velocity of a relative to b, length/time. factor: 1 + the
     coefficient of restitution, no unit.
     """
-    k = number(factor, x) * (x * vx + y * vy) / ((x * x + y * y) * (a.m + b.m))
-    return a.vx - k * b.m * x, a.vy - k * b.m * y, b.vx + k * a.m * x, b.vy + k * a.m * y
+    f = number(factor, x)
+    k = f * (x * vx + y * vy) / ((x * x + y * y) * (a.m + b.m))
+    to_a, to_b = number(0.0, k) - k * b.m, k * a.m
+    a_dx, a_dy, b_dx, b_dy = to_a * x, to_a * y, to_b * x, to_b * y
+    a_excess = (f * a.vx + a_dx) * a_dx + (f * a.vy + a_dy) * a_dy
+    b_excess = (f * b.vx + b_dx) * b_dx + (f * b.vy + b_dy) * b_dy
+    work = a.m * (a_dx * a_dx + a_dy * a_dy) + b.m * (b_dx * b_dx + b_dy * b_dy)
+    c = correction(a.m * a_excess + b.m * b_excess, work)
+    return changed(a.vx, a_dx, c), changed(a.vy, a_dy, c), changed(b.vx, b_dx, c), changed(b.vy, b_dy, c)
 
 
 @inline

@@ -5,7 +5,7 @@ normal of the wall towards the disc.
 """
 
 from idealgas.jit import inline
-from idealgas.physics.arithmetic import number
+from idealgas.physics.arithmetic import changed, correction, number
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, time_to_plane
 from idealgas.physics.restitution import wall_restitution_factor
@@ -56,13 +56,16 @@ def side_contact(disc, side, length, gravity):
 
 
 @inline
-def reflection_factor(disc, own, nx, ny, restitution):
-    """Multiple of (nx, ny) that a reflection subtracts from a disc's velocity, length/time.
+def reflected_velocity(disc, own, nx, ny, restitution):
+    """Velocity (vx, vy) of a disc after the normal impulse of a wall at rest, length/time.
 
     It is correct although (nx, ny) has unit length only up to rounding.
     """
-    speed = disc.vx * nx + disc.vy * ny
-    return wall_restitution_factor(restitution, own, disc.t) * speed / (nx * nx + ny * ny)
+    factor = wall_restitution_factor(restitution, own, disc.t)
+    k = factor * (disc.vx * nx + disc.vy * ny) / (nx * nx + ny * ny)
+    dx, dy = -k * nx, -k * ny
+    c = correction((factor * disc.vx + dx) * dx + (factor * disc.vy + dy) * dy, dx * dx + dy * dy)
+    return changed(disc.vx, dx, c), changed(disc.vy, dy, c)
 
 
 @inline
@@ -73,6 +76,4 @@ def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
         return
     if rotation is not None:
         tangential_impulse_at_wall(disc, own, nx, ny, rotation)
-    k = reflection_factor(disc, own, nx, ny, restitution)
-    disc.vx -= k * nx
-    disc.vy -= k * ny
+    disc.vx, disc.vy = reflected_velocity(disc, own, nx, ny, restitution)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import inline
+from idealgas.physics.arithmetic import changed, correction
 
 
 class Rotation(NamedTuple):
@@ -50,13 +51,31 @@ def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
     slip = (a.vx - b.vx) * tx + (a.vy - b.vy) * ty + (a.r * rotation.omega[u] + b.r * rotation.omega[w])
     a_mobility = 1.0 / a.m + a.r * a.r / rotation.inertia[u]
     b_mobility = 1.0 / b.m + b.r * b.r / rotation.inertia[w]
-    impulse = -(1.0 + rotation.roughness) * slip / (a_mobility + b_mobility)
-    a.vx += impulse / a.m * tx
-    a.vy += impulse / a.m * ty
-    b.vx -= impulse / b.m * tx
-    b.vy -= impulse / b.m * ty
-    rotation.omega[u] += a.r / rotation.inertia[u] * impulse
-    rotation.omega[w] += b.r / rotation.inertia[w] * impulse
+    factor = 1.0 + rotation.roughness
+    impulse = -factor * slip / (a_mobility + b_mobility)
+    a_excess, a_work = _rounding(a, u, tx, ty, impulse, factor, rotation)
+    b_excess, b_work = _rounding(b, w, -tx, -ty, impulse, factor, rotation)
+    c = correction(a_excess + b_excess, a_work + b_work)
+    _apply(a, u, tx, ty, impulse, c, rotation)
+    _apply(b, w, -tx, -ty, impulse, c, rotation)
+
+
+@inline
+def _rounding(disc, u, tx, ty, impulse, factor, rotation):
+    """Excess of a disc's energy by rounding, and its derivative, as `correction` takes them."""
+    dx, dy = impulse / disc.m * tx, impulse / disc.m * ty
+    spin = disc.r / rotation.inertia[u] * impulse
+    motion = (factor * disc.vx + dx) * dx + (factor * disc.vy + dy) * dy
+    excess = disc.m * motion + rotation.inertia[u] * ((factor * rotation.omega[u] + spin) * spin)
+    return excess, disc.m * (dx * dx + dy * dy) + rotation.inertia[u] * (spin * spin)
+
+
+@inline
+def _apply(disc, u, tx, ty, impulse, correction, rotation):
+    """Change a disc's velocity and spin by an impulse along (tx, ty) with a relative correction."""
+    disc.vx = changed(disc.vx, impulse / disc.m * tx, correction)
+    disc.vy = changed(disc.vy, impulse / disc.m * ty, correction)
+    rotation.omega[u] = changed(rotation.omega[u], disc.r / rotation.inertia[u] * impulse, correction)
 
 
 @inline
@@ -67,7 +86,7 @@ def tangential_impulse_at_wall(disc, own, nx, ny, rotation):
     ty = -nx
     slip = disc.vx * tx + disc.vy * ty + disc.r * rotation.omega[u]
     mobility = (nx * nx + ny * ny) / disc.m + disc.r * disc.r / rotation.inertia[u]
-    impulse = -(1.0 + rotation.wall_roughness) * slip / mobility
-    disc.vx += impulse / disc.m * tx
-    disc.vy += impulse / disc.m * ty
-    rotation.omega[u] += disc.r / rotation.inertia[u] * impulse
+    factor = 1.0 + rotation.wall_roughness
+    impulse = -factor * slip / mobility
+    c = correction(*_rounding(disc, u, tx, ty, impulse, factor, rotation))
+    _apply(disc, u, tx, ty, impulse, c, rotation)

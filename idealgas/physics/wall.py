@@ -10,7 +10,7 @@ import numpy as np
 
 from idealgas.jit import inline
 from idealgas.physics.disc_disc import collision_delay, collision_discriminant
-from idealgas.physics.disc_wall import reflection_factor
+from idealgas.physics.disc_wall import reflected_velocity
 from idealgas.physics.motion import NEVER, position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.polynomial import first_contact_root, parabola
@@ -154,8 +154,8 @@ def segment_normal(disc, segment, periodic, images):
 @inline
 def reflection_changes(disc, own, nx, ny, restitution):
     """Whether a reflection would change a digit of a disc's velocity; if not, it counts as done."""
-    k = reflection_factor(disc, own, nx, ny, restitution)
-    return (disc.vx - k * nx != disc.vx) | (disc.vy - k * ny != disc.vy)
+    vx, vy = reflected_velocity(disc, own, nx, ny, restitution)
+    return (vx != disc.vx) | (vy != disc.vy)
 
 
 @inline

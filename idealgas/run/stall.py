@@ -25,6 +25,13 @@ HOPELESS = 1e-9
 QUIET_SAMPLES = 64
 """Number of consecutive epochs without an event that are sampled; later ones are not."""
 
+WEDGED = 1000
+"""Collisions of a disc per contact duration, on average over an epoch, above which it is wedged; one at rest has 1/e.
+
+Between walls, or under an arch of other discs, the gaps may be so small that all collisions count as contacts at rest.
+They are elastic, so the disc keeps its speed.
+"""
+
 OVERDUE = 8
 """Ratio of events to those for which an epoch is planned above which the busiest discs are looked for."""
 
@@ -83,6 +90,16 @@ class StallDetector:
         if self._missed >= EXPECTED:
             return f"no collision between discs although about {EXPECTED:,} were expected".replace(",", " ")
         return ""
+
+    def wedged(self) -> int:
+        """Id of an inelastic disc that is wedged; -1 if there is none."""
+        simulation, restitution = self._simulation, self._simulation.effects.restitution
+        if restitution is None or simulation.method.single_epoch:
+            return -1
+        discs, elapsed = simulation.method.discs, simulation.last_event_time - simulation.time
+        most = int(discs.record.count.argmax())
+        allowed = WEDGED * (1 + elapsed / restitution.contact_duration)
+        return int(discs.id[most]) if discs.record.count[most] > allowed else -1
 
     def busy(self) -> str:
         """Notice, once per run, that few discs have most events of an epoch with far too many; else empty."""

@@ -184,3 +184,20 @@ def test_a_gas_is_never_called_busy(monkeypatch, tmp_path):
     """Not even where it has more events than its epochs are made for."""
     monkeypatch.setattr(stall, "OVERDUE", 0.1)
     assert notices(FALL, tmp_path / "run.h5", "restitution=", "run.until=100") == []
+
+
+def test_a_wedged_disc_ends_the_run_with_one_line(tmp_path):
+    """Between two walls, in a gap that it crosses ten thousand times per contact duration."""
+    scene = parse_scene("""
+        box.size = [1.000001, 20]
+        gravity.acceleration = [0, -1]
+        restitution = { normal = 0.7, wall = 0.7, contact_duration = 0.01 }
+        run.until = 200
+        disc = [{ position = [0.5000005, 1], velocity = [1, 0], radius = 0.5 }]
+    """)
+    with pytest.raises(
+        UserError, match=r"run\.h5: disc 0 is wedged at t = 0\.\d+: more than 1000 collisions per contact"
+    ):
+        simulate(scene, tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert log.n_events > 10_000
