@@ -113,8 +113,8 @@ def temperature(
         means = sums[:, chosen].sum(axis=1) / number
         x, y = means[window.first :].T
         along_x = along_y = both = None
-        if equilibrium is not None:
-            axes = members @ equilibrium.of_axes[chosen] / number
+        axes = np.zeros(2) if equilibrium is None else members @ equilibrium.of_axes[chosen] / number
+        if axes.any():  # not of fixed discs
             along_x, along_y = axes.tolist() if shared else (None, None)
             both = float(axes.mean())
         return SpeciesTemperature(name, number, mean(x, along_x), mean(y, along_y), mean((x + y) / 2, both), means)

@@ -15,7 +15,7 @@ def make_gas(scene: Scene) -> Gas:
     """Discs of a scene at time 0: the explicit ones have the first ids, then each species in the order of the file.
 
     Each species of the gas has one radius and one mass: explicit discs are the species "disc" or, if they differ, "disc
-    1", "disc 2", ... in order of appearance. SceneError if the discs cannot be placed, or if one is in static contact
+    K" with the id K of the first of its discs. SceneError if the discs cannot be placed, or if one is in static contact
     with a wall or the piston to which it is pressed.
     """
     radius, mass, species, names = disc_constants(scene)
@@ -46,7 +46,7 @@ def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tu
     number = {kind: k for k, kind in enumerate(kinds)}
     explicit = np.array([number[disc.radius, disc.mass] for disc in scene.disc], np.uint16)
     others = np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count)
-    names = ["disc"] if len(kinds) == 1 else [f"disc {k + 1}" for k in range(len(kinds))]
+    names = ["disc"] if len(kinds) == 1 else [f"disc {k}" for k in np.unique(explicit, return_index=True)[1]]
     return (
         np.concatenate(([disc.radius for disc in scene.disc], radius)),
         np.concatenate(([disc.mass for disc in scene.disc], mass)),

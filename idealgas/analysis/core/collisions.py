@@ -128,9 +128,9 @@ def free_paths(
         paths.append(
             FreePath(
                 name,
-                path=ratio(speeds, own, theory=free_time and free_time.times(speed)),
+                path=ratio(speeds, own, theory=free_time.times(speed) if free_time and speed else None),
                 time=estimate(lambda rate: 1 / rate, own, theory=free_time),
-                speed=mean(speeds, theory=speed),
+                speed=mean(speeds, theory=speed or None),
             )
         )
     return tuple(paths)

@@ -43,7 +43,7 @@ def centre_of_mass_energy(log: Log) -> float:
 
 def degrees_of_freedom(log: Log) -> int:
     """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
-    return conserved.degrees_of_freedom(log.scene, len(log.discs))
+    return conserved.degrees_of_freedom(log.scene, log.discs)
 
 
 def ensemble(log: Log) -> Ensemble:
@@ -121,6 +121,8 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
     for s, name in enumerate(names):
         for axis, letter in enumerate("xy"):
             theory = float(expected[s, axis] / number[s, 0])
+            if theory == 0:  # of fixed discs
+                continue
             found = mean(energies[:, s, axis] / number[s], theory)
             dof, deviation = max(found.independent_samples - 1, 1.0), abs(found.deviation or 0.0)
             far = FAR * theory * math.sqrt(2.0 / number[s, 0]) + ROUNDING * ensemble.temperature

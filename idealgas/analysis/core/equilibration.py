@@ -31,6 +31,8 @@ from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
 from idealgas.analysis.core.flights import DensityBins, Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import Tally, block_edges, stream
+from idealgas.analysis.theory.conserved import are_fixed
+from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 
@@ -160,7 +162,7 @@ class TimeSeries:
 
     def __init__(self, log: Log, present: Iterable[Tally] = ()) -> None:
         """Take the gas of a log; of the tallies that are `present` in an analysis those that fit are used."""
-        self.tallies = list(present)
+        self.tallies, self.mobile = list(present), ~are_fixed(composition(log.discs).mass)
         self.moments = self._get(Moments, lambda: Moments(log.gravity))
         self.impacts: Impacts | None = None
         self.bins: DensityBins | None = None
@@ -179,7 +181,7 @@ class TimeSeries:
         """Series (B,): fourth moment, energy of each species, along x less along y, numbers of events, virial."""
         yield self.moments.flights[:, :, 3].sum(axis=1)
         energies = self.moments.flights[:, :, 1:3]
-        yield from energies.sum(axis=2).T
+        yield from energies.sum(axis=2).T[self.mobile]  # those of fixed discs rise without end
         yield energies.sum(axis=1) @ (1.0, -1.0)
         yield from self.moments.events.T.astype(float)
         if self.impacts is not None:

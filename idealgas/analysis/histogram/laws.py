@@ -81,13 +81,14 @@ def velocity_laws(
 
     measured: ensemble at the measured temperature, if it was measured.
     """
-    if known.why_not:
+    ensemble = known.ensemble or measured
+    if known.why_not or ensemble is None or not ensemble.of_axes[species].any():  # fixed discs have no law
         return {}
     if known.ensemble is None:
-        return {f"{MAXWELL}, measured T": measured.velocity_law(quantity, species)} if measured else {}
-    laws = {MAXWELL: known.ensemble.velocity_law(quantity, species, np.inf)}
-    if (dof := known.ensemble.dof) < np.inf:
-        laws[f"fixed energy, D = {dof}"] = known.ensemble.velocity_law(quantity, species)
+        return {f"{MAXWELL}, measured T": ensemble.velocity_law(quantity, species)}
+    laws = {MAXWELL: ensemble.velocity_law(quantity, species, np.inf)}
+    if (dof := ensemble.dof) < np.inf:
+        laws[f"fixed energy, D = {dof}"] = ensemble.velocity_law(quantity, species)
     return laws
 
 

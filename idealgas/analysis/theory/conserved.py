@@ -14,6 +14,12 @@ CHANCE = 12.0
 Its energy along one axis is T/2 on average, so that a share s occurs with a probability of about exp(-s N).
 """
 
+FIXED = 1e12
+"""Mass, in units of that of the lightest disc, from which on a disc is as good as fixed.
+
+It takes as many collisions until such a disc has its share of the energy, which is more than any run has.
+"""
+
 SAID_FROM = 0.01
 """Least share of the kinetic energy from which on a conserved motion of the whole gas is mentioned."""
 
@@ -39,9 +45,18 @@ def centre_of_mass_energy(scene: Scene, gas: Gas) -> float:
     return float(gas.mass.sum() * (velocity @ velocity) / 2)
 
 
-def degrees_of_freedom(scene: Scene, number: int) -> int:
-    """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
-    return 2 * number - int(conserved_momentum(scene).sum())
+def are_fixed(mass: np.ndarray) -> np.ndarray:
+    """Whether discs, or species, of these masses are too heavy to take part in the motion of the lightest."""
+    return mass >= FIXED * mass.min()
+
+
+def degrees_of_freedom(scene: Scene, gas: Gas) -> int:
+    """Number D of directions of motion of the discs that share energy, without those of a momentum that is conserved.
+
+    Fixed discs take the momentum of the others.
+    """
+    fixed = int(are_fixed(gas.mass).sum())
+    return 2 * (len(gas) - fixed) - (0 if fixed else int(conserved_momentum(scene).sum()))
 
 
 def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:

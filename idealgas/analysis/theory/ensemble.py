@@ -61,7 +61,8 @@ class Ensemble:
     dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
     temperature: T = 2E/D, energy (k_B = 1). mass: (S,), of a disc of each species.
     of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
-    not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs.
+    not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs. 0 for fixed discs
+    (`conserved.are_fixed`), whose energy no run brings to its share.
     """
 
     centre_of_mass_velocity: np.ndarray
@@ -129,8 +130,11 @@ def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
 
 def ensemble_at(scene: Scene, gas: Gas, temperature: float, dof: float) -> Ensemble:
     """Ensemble of a gas of a known temperature T, energy, and number of degrees of freedom."""
-    discs = composition(gas)
-    share = np.where(conserved.conserved_momentum(scene), discs.mass_share_of_others[:, None], 1.0)
+    discs, kept = composition(gas), conserved.conserved_momentum(scene)
+    fixed = conserved.are_fixed(discs.mass) & (scene.properties.bath is None)  # a heat bath gives them its temperature
+    others = discs.mass_share_of_others[:, None]
+    share = np.where(kept, others, 1.0)
+    share[fixed] = np.where(kept & (discs.number[fixed].sum() == 1), others[fixed], 0.0)  # a single one only recoils
     return Ensemble(conserved.centre_of_mass_velocity(scene, gas), dof, temperature, discs.mass, temperature * share)
 
 
@@ -157,9 +161,9 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
 
 def _shared(scene: Scene, gas: Gas, spin_energy: float) -> tuple[int, float]:
     """Number D of degrees of freedom that share the energy of motion and spin, and this energy."""
-    dof = conserved.degrees_of_freedom(scene, len(gas))
+    dof = conserved.degrees_of_freedom(scene, gas)
     frame = conserved.centre_of_mass_velocity(scene, gas)
     energy = float(gas.mass @ ((gas.velocity - frame) ** 2).sum(axis=1)) / 2
     if scene.properties.spins:
-        return dof + len(gas), energy + spin_energy
+        return dof + int((~conserved.are_fixed(gas.mass)).sum()), energy + spin_energy
     return dof, energy

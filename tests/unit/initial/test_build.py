@@ -36,7 +36,7 @@ def test_explicit_discs_come_first_then_species_in_order():
 
 def test_every_species_has_one_radius_and_one_mass():
     gas = gas_of(disc(1, 1), disc(3, 1, radius=0.3), disc(5, 1), disc(7, 1, mass=2), A)
-    assert gas.species_names == ("disc 1", "disc 2", "disc 3", "a")
+    assert gas.species_names == ("disc 0", "disc 1", "disc 3", "a")
     assert gas.species[:5].tolist() == [0, 1, 0, 2, 3]
 
 

@@ -58,6 +58,27 @@ def test_conserved_momentum_by_axis(overrides, dof, heavy, light):
         assert np.array([2, 4]) @ ensemble.of_species == pytest.approx(energy, rel=1e-12)
 
 
+@pytest.mark.parametrize("mass", [1e16, 1e30])
+@pytest.mark.parametrize(
+    ("count", "overrides", "dof", "fixed"),
+    [
+        (1, (), 8, 0),
+        (1, ALL, 8, 1),  # recoils with the momentum of the others, and has 4 T/M
+        (2, ALL, 8, 0),
+        (2, (*ALL, "thermostat={ temperature = 3, rate = 1 }"), math.inf, None),
+    ],
+)
+def test_fixed_discs_take_no_energy(mass, count, overrides, dof, fixed):
+    """Four light discs have 8 degrees of freedom among discs that are too heavy to move in any run."""
+    at_rest = ("species.heavy.temperature=", "species.heavy.speed=0", f"species.heavy.mass={mass}")
+    ensemble, energy = found(*overrides, *at_rest, f"species.heavy.count={count}")
+    temperature = 2 * energy / 8 if fixed is not None else 3
+    assert ensemble.dof == dof
+    assert ensemble.of_axes[1] == pytest.approx(temperature, rel=1e-12)
+    expected = temperature if fixed is None else 4 / mass * temperature * fixed
+    assert ensemble.of_axes[0] == pytest.approx(expected, rel=1e-12)
+
+
 @pytest.mark.parametrize("mass", [1e3, 1e12, 1e16, 1e30])
 def test_no_digits_are_lost_beside_a_heavy_disc(mass):
     """Against exact fractions, to rounding: four additions and one division."""
