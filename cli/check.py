@@ -62,7 +62,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     for sentence in expected.caveats:
         echo(f"caveat: {sentence}")
     if expected.beyond:
-        echo(f"not known: the theory of a uniform gas does not cover {', '.join(expected.beyond)}")
+        what = "not known" if expected.temperature is None else "rates not known"
+        echo(f"{what}: the theory of a uniform gas does not cover {', '.join(expected.beyond)}")
     if expected.rest:
         echo("\n".join(_rest_lines(expected.rest, expected.number)))
     if scene.collapse_risk:
@@ -144,7 +145,7 @@ def _gas_table(expected: "Forecast", until: float | None) -> "Table":
     rows = [
         ("discs N", Number(expected.number, "d")),
         ("packing fraction φ", _number(expected.packing_fraction)),
-        ("temperature T", _number(expected.temperature)),
+        ("temperature T", _number(expected.temperature, rough=rough if expected.collision_rate is None else "")),
         ("collisions per disc and time Γ", _number(expected.collision_rate, rough=rough)),
         ("pair collisions per time", _number(expected.pair_collision_rate, rough=rough)),
         ("wall hits per time", _number(expected.wall_hit_rate, rough=rough)),

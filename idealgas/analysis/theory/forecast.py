@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import conserved, hard_discs, time_steps
-from idealgas.analysis.theory.barometric import DENSEST, barometric_temperature, column_rates
+from idealgas.analysis.theory.barometric import DENSEST, column_rates
+from idealgas.analysis.theory.ensemble import column_temperature, composition, equilibrium
 from idealgas.analysis.theory.values import box_theory
 from idealgas.columns import IMAGES, SPINS, event_columns
 from idealgas.physics.collision_rates import mean_trial_time
@@ -55,11 +56,11 @@ class Forecast:
     number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
     the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
     discs per time. pair_collision_rate, wall_hit_rate, thermostat_collision_rate: pair collisions, wall hits and
-    thermostat collisions of the whole gas
-    per time. duration: simulated time at the end of the run. events: number of events. rows: number of event rows in
-    the log. bytes: size of the log. species: forecast of each species. rough: why rates, and all that follows from
-    them, are approximate; empty if their error is below 2 %. caveats: those of averages over time, by the start
-    of the gas and its method. rest: behaviour of discs that have come to rest; None if none can.
+    thermostat collisions of the whole gas per time. duration: simulated time at the end of the run. events: number of
+    events. rows: number of event rows in the log. bytes: size of the log. species: forecast of each species. rough: why
+    rates, and all that follows from them, or the temperature where no rates are known, are approximate; empty if their
+    error is below 2 %. caveats: those of averages over time, by the start of the gas and its method. rest: behaviour of
+    discs that have come to rest; None if none can.
     """
 
     number: int
@@ -81,8 +82,9 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy")
-"""Properties that a scene needs for the theory to apply; no heat may come from walls either."""
+"""Properties that a scene needs for the theory to apply; no heat of different temperatures may come in either."""
 
+PARTED = "walls inside the box may part the gas, and each part then keeps its own temperature"
 
 SLOW_BATH = 10.0
 """Thermostat collisions of a disc in a run below which a forecast says that the heat bath is slow."""
@@ -97,12 +99,11 @@ ROUGH = 0.02
 class _Rates(NamedTuple):
     """Rates of a gas in equilibrium, in 1/time.
 
-    temperature: energy. per_disc: (S,), collisions of one disc of each species. pairs, hits, trials,
-    thermostat: pair collisions, wall hits, Monte Carlo trials and thermostat collisions of the
-    whole gas. rough: why the rates are approximate; empty if they are not.
+    per_disc: (S,), collisions of one disc of each species. pairs, hits, trials, thermostat: pair collisions, wall hits,
+    Monte Carlo trials and thermostat collisions of the whole gas. rough: why the rates are approximate; empty if they
+    are not.
     """
 
-    temperature: float
     per_disc: np.ndarray
     pairs: float
     hits: float
@@ -121,9 +122,14 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
     Of a gas under gravity they are those of a dilute column.
     """
-    one_bath = scene.properties.temperatures == {scene.properties.bath}
-    beyond = scene.lacking(*KNOWN) if one_bath else scene.lacking(*KNOWN, "isolated")
-    rates = _column(scene, gas) if beyond else _rates(scene, gas)
+    heated = ("isolated",) if len(scene.properties.temperatures) > 1 else ()
+    beyond, temperature = scene.lacking(*KNOWN, *heated), _temperature(scene, gas)
+    rates = None
+    if temperature is not None:
+        rates = _column(scene, gas, temperature) if beyond else _rates(scene, gas, temperature)
+    if rates is None and any(scene.properties.acceleration) and scene.properties.isolated:
+        temperature = None  # the law of a dilute column does not hold
+    parted = "" if rates or temperature is None or scene.properties.empty else PARTED
     duration = _duration(scene, len(gas), rates)
     events = rows = None
     if rates and duration is not None:
@@ -137,7 +143,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         number=len(gas),
         packing_fraction=gas.packing_fraction * gas.area / area,
         beyond=() if rates else beyond,
-        temperature=rates.temperature if rates else None,
+        temperature=temperature,
         collision_rate=2 * rates.pairs / len(gas) if rates else None,
         pair_collision_rate=rates.pairs if rates else None,
         wall_hit_rate=rates.hits if rates else None,
@@ -147,7 +153,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         rows=rows,
         bytes=_bytes(scene, len(gas), rows, duration),
         species=tuple(_species(scene, gas, k, area, rates) for k in range(len(gas.species_names))),
-        rough=rates.rough if rates else "",
+        rough=rates.rough if rates else parted,
         caveats=(
             *conserved.caveats(scene, gas),
             *conserved.lost_motion(scene, gas),
@@ -205,17 +211,21 @@ def _spin_energy(scene: Scene) -> float:
     return energy
 
 
-def _rates(scene: Scene, gas: Gas) -> _Rates | None:
+def _temperature(scene: Scene, gas: Gas) -> float | None:
+    """Temperature in equilibrium; None if it is not known."""
+    properties, spin_energy = scene.properties, _spin_energy(scene)
+    if not any(properties.acceleration):
+        found = equilibrium(scene, gas, spin_energy)
+        return found.temperature if found else None
+    axis = int(properties.acceleration[1] != 0)
+    if properties.acceleration[1 - axis] or properties.periodic[axis] or not properties.empty:
+        return None
+    return column_temperature(scene, gas, spin_energy, axis)
+
+
+def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     """Rates of a uniform gas; None if a disc has no room to move."""
-    freedom = 2 + scene.properties.spins
-    kinetic = gas.kinetic_energy - conserved.centre_of_mass_energy(scene, gas)
-    dof = freedom * len(gas) - int(conserved.conserved_momentum(scene).sum())
-    temperature = 2 * (max(kinetic, 0.0) + _spin_energy(scene)) / max(dof, 1)
-    if scene.properties.bath is not None:
-        temperature = scene.properties.bath
-    number = np.bincount(gas.species)
-    _, first = np.unique(gas.species, return_index=True)
-    radius, mass = gas.radius[first], gas.mass[first]
+    _, radius, mass, number = composition(gas)
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, radius, mass, number)
     if not _has_room(gas, scene.properties.periodic):
@@ -225,39 +235,22 @@ def _rates(scene: Scene, gas: Gas) -> _Rates | None:
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
     thermostat = len(gas) * scene.properties.thermostat_rate
-    return _Rates(
-        temperature,
-        per_disc,
-        float(number @ per_disc) / 2,
-        hits,
-        thermostat=thermostat,
-        rough=rough,
-    )
+    return _Rates(per_disc, float(number @ per_disc) / 2, hits, thermostat=thermostat, rough=rough)
 
 
-def _column(scene: Scene, gas: Gas) -> _Rates | None:
+def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     """Rates of a dilute gas in a closed box under gravity along one axis; None for others."""
     properties, pull = scene.properties, np.abs(scene.properties.acceleration)
-    closed = properties.empty and properties.fixed_walls and not any(properties.periodic)
-    settles = properties.lossless and properties.isolated and len(gas) > 1
-    if not closed or not settles or np.count_nonzero(pull) != 1 or not _has_room(gas, properties.periodic):
+    if any(properties.periodic) or not pull.any() or not temperature > 0 or not _has_room(gas, properties.periodic):
         return None
     axis = int(pull[1] > 0)
-    falls_to_zero = properties.acceleration[axis] < 0
-    above = gas.position[:, axis] if falls_to_zero else gas.box[axis] - gas.position[:, axis]
-    energy = gas.kinetic_energy + _spin_energy(scene) + float(pull[axis] * (gas.mass @ (above - gas.radius)))
-    if not energy > 0:
-        return None
-    number = np.bincount(gas.species)
-    _, first = np.unique(gas.species, return_index=True)
-    radius, mass, length, across = gas.radius[first], gas.mass[first], gas.box[axis], gas.box[1 - axis]
-    freedom = (2 + properties.spins) * len(gas)
-    t = barometric_temperature(energy, freedom, mass, number, float(pull[axis]), length - 2 * radius)
-    found = column_rates(t, mass, radius, number, float(pull[axis]), length, across)
+    _, radius, mass, number = composition(gas)
+    found = column_rates(temperature, mass, radius, number, float(pull[axis]), gas.box[axis], gas.box[1 - axis])
     if found.densest > DENSEST:
         return None
     rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {found.densest:.2g}"
-    return _Rates(t, found.per_disc, found.pairs, found.hits, rough=rough)
+    thermostat = len(gas) * properties.thermostat_rate
+    return _Rates(found.per_disc, found.pairs, found.hits, thermostat=thermostat, rough=rough)
 
 
 def _why_rough(
@@ -293,7 +286,7 @@ def _rates_without_positions(
     fastest = math.sqrt(2 * temperature * math.log(speeds) / mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
-    return _Rates(temperature, per_disc, float(number @ per_disc) / 2, 0.0, trials, rough=rough)
+    return _Rates(per_disc, float(number @ per_disc) / 2, 0.0, trials, rough=rough)
 
 
 def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:

@@ -59,6 +59,32 @@ def test_a_gas_in_a_heat_bath_has_its_temperature_and_thermostat_collisions():
     )
 
 
+@pytest.mark.parametrize(
+    "heated", [("box.top={ thermal = 4 }",), ("box.left={ thermal = 4 }", "box.top={ thermal = 4 }")]
+)
+def test_walls_of_one_temperature_give_it_to_the_gas(heated):
+    """Rates are proportional to √T, and T is 1 without them."""
+    free, hot = forecast_of(), forecast_of(*heated)
+    assert (hot.temperature, hot.beyond) == (4, ())
+    for quantity in ("collision_rate", "pair_collision_rate", "wall_hit_rate"):
+        assert getattr(hot, quantity) == pytest.approx(2 * getattr(free, quantity), rel=1e-12)
+    column = forecast_of(*heated, "gravity.acceleration=[0, -0.2]", "species.radius=0.005", "species.count=100")
+    assert (column.temperature, column.beyond) == (4, ())
+    assert column.collision_rate > 0
+    assert forecast_of(*heated, "box.bottom={ thermal = 1 }").temperature is None
+
+
+@pytest.mark.parametrize("heated", [(), ("box.top={ thermal = 4 }",)])
+def test_walls_inside_leave_the_temperature(heated):
+    """2E/2N = 1, or that of thermal walls; it is approximate, as walls may part the gas."""
+    wall = "wall=[{ from = [1, 1], to = [2, 2] }]"
+    found = forecast_of(wall, *heated)
+    assert (found.temperature, found.beyond) == (pytest.approx(4 if heated else 1, rel=1e-12), ("wall segments",))
+    assert found.collision_rate is None
+    assert "may part the gas" in found.rough
+    assert forecast_of(wall, "gravity.acceleration=[0, -0.2]").temperature is None
+
+
 def test_a_species_cut_in_two_alike_changes_nothing():
     half = '{ name = "%s", count = 500, radius = 0.1, speed = 2, mass = 0.5 }'
     cut = forecast_of(text=GAS[: GAS.index("species")] + f"species = [{half % 'a'}, {half % 'b'}]")
@@ -145,10 +171,8 @@ def test_only_walls_are_hit():
     ("override", "beyond"),
     [
         ("gravity.acceleration=[0, -1]", "gravity"),
-        ("wall=[{ from = [1, 1], to = [2, 2] }]", "wall segments"),
         ("restitution.normal=0.9", "restitution"),
         ("rotation.roughness=0.5", "rotation"),
-        ("box.top={ thermal = 1 }", "thermal walls"),
         ("piston={ mass = 1, pressure = 10 }", "piston"),
     ],
 )
