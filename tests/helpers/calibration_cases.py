@@ -9,7 +9,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature import temperature
 from idealgas.analysis.transport.coefficients import SYMBOLS
-from idealgas.analysis.transport.measure import MOST_SEGMENTS as SEGMENTS
+from idealgas.analysis.transport.diffusion import MOST_SEGMENTS as SEGMENTS
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.pair_distribution import FRAMES as INSTANTS
 

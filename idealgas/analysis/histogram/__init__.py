@@ -1,30 +1,28 @@
 """Measure the distribution of a quantity and test it against theory.
 
 Velocities and energies are weighted with the time that discs spend at them. A waiting time is that between successive
-events of the whole gas. The Kolmogorov-Smirnov tests use decorrelated samples.
+events of the whole gas. The Kolmogorov-Smirnov tests use independent samples.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import stats
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.ensemble import degrees_of_freedom, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
 from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates
+from idealgas.analysis.histogram.distribution import Distribution, distribution_of
 from idealgas.analysis.histogram.laws import FEW, expectation, free_flight_rates, velocity_laws
+from idealgas.analysis.histogram.samples import independent_samples
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.ensemble import composition, ensemble_at
-from idealgas.errors import UserError
 from idealgas.log import Log
 
 if TYPE_CHECKING:
@@ -43,55 +41,11 @@ QUANTITIES = {
 
 BINS = 120
 LINES = 24  # of the histogram in characters; bins are put together
-SAMPLED = 256  # largest number of discs of a species whose velocities are tested
+SAMPLED = 1024  # largest number of discs of a species whose velocities are tested
 INTERVALS = 10_000  # approximate number of intervals that are tested
 FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
 TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
-
-
-@dataclass(frozen=True)
-class Test:
-    """Kolmogorov-Smirnov test of samples against a law.
-
-    law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
-    unit). p_value: probability of at least this distance by chance.
-    """
-
-    law_name: Annotated[str, Key("law")]
-    law: Annotated[distributions.Law, OMITTED]
-    distance: float
-    p_value: float
-
-
-@dataclass(frozen=True)
-class Distribution:
-    """Distribution of one quantity for one species, or for the whole gas.
-
-    name: of the species. edges: (bins + 1,), edges of the bins, in the unit of the quantity. density, error: (bins,),
-    probability density and its standard error, 1/unit. mean: of the quantity. samples: number of decorrelated samples.
-    correlation_time: time between independent samples of one disc; None for intervals. tests: one for each law.
-    """
-
-    name: str
-    edges: np.ndarray
-    density: np.ndarray
-    error: np.ndarray
-    mean: Estimate
-    samples: int
-    correlation_time: float | None
-    tests: tuple[Test, ...]
-
-    @property
-    def middles(self) -> np.ndarray:
-        """Middles (bins,) of the bins, in the unit of the quantity."""
-        return (self.edges[1:] + self.edges[:-1]) / 2
-
-    @property
-    @reported
-    def laws(self) -> dict[str, np.ndarray]:
-        """Probability density (bins,) by each law in the middle of the bins, 1/unit."""
-        return {test.law_name: test.law.pdf(self.middles) for test in self.tests}
 
 
 @dataclass(frozen=True)
@@ -144,7 +98,7 @@ class HistogramAnalysis(Analysis):
 
         Velocities are compared with the Maxwell-Boltzmann distribution and that of N discs at fixed energy, free
         flights with a dilute gas, and waiting times with an exponential distribution. The p-values are those of the
-        Kolmogorov-Smirnov test of decorrelated samples. Under gravity or a piston the temperature of the law is the
+        Kolmogorov-Smirnov test of independent samples. Under gravity or a piston the temperature of the law is the
         measured one. A gas that never reaches equilibrium has no law, and its window is the whole log by default.
 
         Args:
@@ -167,7 +121,7 @@ class HistogramAnalysis(Analysis):
         else:
             window, found, no_law = _flights(log, quantity, start, end, progress)
         few = [
-            f"The tests of {each.name} have {each.samples} decorrelated samples; with fewer than {FEWEST_SAMPLES} they "
+            f"The tests of {each.name} have {each.samples} independent samples; with fewer than {FEWEST_SAMPLES} they "
             "can hardly fail."
             for each in found
             if each.tests and each.samples < FEWEST_SAMPLES
@@ -246,7 +200,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     high = np.full(len(thermal), 12 * known.scale) if quantity == "energy" else 5 * thermal
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [np.flatnonzero(gas.species == s) for s in range(len(thermal))]
-    members = [ids[:: max(4, -(-len(ids) // SAMPLED))] for ids in members]  # the energy of all correlates velocities
+    members = [ids[:: -(-len(ids) // SAMPLED)] for ids in members]
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members), log.gravity)
     moments = [Moments(log.gravity)] if known.needs_temperature else []
     window = measure(log, [tally, *moments], start, end, progress)
@@ -259,13 +213,11 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     found = []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = velocity_laws(quantity, known, s, measured)
-        # A light disc among heavy ones keeps its speed for longer than its direction.
-        spacing = int(np.ceil(max(inefficiency(snapshots), inefficiency(snapshots**2))))
+        samples, spacing = independent_samples(snapshots)
         expected = list(possible.values())[-1].mean if possible and measured is None else None
         average = _mean(window.of(tally.sums)[:, s] / discs.number[s], high[s], expected, confined)
         edges, counts = np.linspace(low[s], high[s], BINS + 1), window.of(tally.counts)[:, s]
-        samples = snapshots[::spacing].ravel()
-        found.append(_distribution(name, edges, counts, average, samples, spacing * window.width, possible))
+        found.append(distribution_of(name, edges, counts, average, samples, spacing * window.width, possible))
     return window, found, known.why_not
 
 
@@ -324,27 +276,4 @@ def _intervals(
     counts = tally.counts[blocks, s].astype(float)
     chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
     average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
-    return _distribution(name, np.linspace(0, high, BINS + 1), counts, average, tally.sample[chosen], None, possible)
-
-
-def _distribution(
-    name: str,
-    edges: np.ndarray,
-    counts: np.ndarray,
-    average: Estimate,
-    samples: np.ndarray,
-    correlation_time: float | None,
-    possible: Mapping[str, distributions.Law],
-) -> Distribution:
-    """Distribution from counts (B, bins + 2) of B blocks; the first and last bin count values outside the edges."""
-    if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
-        raise UserError(f"too few events in the window for a distribution of {name}")
-    share = counts[:, 1:-1].sum(axis=0) / total.sum()
-    spread = counts[:, 1:-1] - share * total[:, None]
-    error = np.sqrt(len(total) * spread.var(axis=0)) / total.sum()
-    tests = []
-    for law_name, law in possible.items():
-        result = stats.kstest(samples, law.cdf)
-        tests.append(Test(law_name, law, float(result.statistic), float(result.pvalue)))
-    width, number = np.diff(edges), len(samples)
-    return Distribution(name, edges, share / width, error / width, average, number, correlation_time, tuple(tests))
+    return distribution_of(name, np.linspace(0, high, BINS + 1), counts, average, tally.sample[chosen], None, possible)

@@ -1,0 +1,90 @@
+"""Distribution of one quantity in bins with their errors, and its tests against laws."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from scipy import stats
+
+from idealgas.analysis.core.fields import OMITTED, Key, reported
+from idealgas.analysis.core.statistics import Estimate, ratio
+from idealgas.analysis.theory import distributions
+from idealgas.errors import UserError
+
+FEWEST_BLOCKS = 10
+"""Effective number of blocks of time with a value in a bin from which on the error of the bin is known."""
+
+
+@dataclass(frozen=True)
+class Test:
+    """Kolmogorov-Smirnov test of samples against a law.
+
+    law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
+    unit). p_value: probability of at least this distance by chance.
+    """
+
+    law_name: Annotated[str, Key("law")]
+    law: Annotated[distributions.Law, OMITTED]
+    distance: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Distribution of one quantity for one species, or for the whole gas.
+
+    name: of the species. edges: (bins + 1,), edges of the bins, in the unit of the quantity. density, error: (bins,),
+    probability density and its standard error, 1/unit; nan for a bin with values in few blocks. mean: of the quantity.
+    samples: number of independent samples. correlation_time: time between the instants of independent samples; None for
+    intervals. tests: one for each law.
+    """
+
+    name: str
+    edges: np.ndarray
+    density: np.ndarray
+    error: np.ndarray
+    mean: Estimate
+    samples: int
+    correlation_time: float | None
+    tests: tuple[Test, ...]
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Middles (bins,) of the bins, in the unit of the quantity."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
+    @property
+    @reported
+    def laws(self) -> dict[str, np.ndarray]:
+        """Probability density (bins,) by each law in the middle of the bins, 1/unit."""
+        return {test.law_name: test.law.pdf(self.middles) for test in self.tests}
+
+
+def distribution_of(
+    name: str,
+    edges: np.ndarray,
+    counts: np.ndarray,
+    average: Estimate,
+    samples: np.ndarray,
+    correlation_time: float | None,
+    possible: Mapping[str, distributions.Law],
+) -> Distribution:
+    """Distribution from counts (B, bins + 2) of B blocks; the first and last bin count values outside the edges."""
+    if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
+        raise UserError(f"too few events in the window for a distribution of {name}")
+    share = counts[:, 1:-1].sum(axis=0) / total.sum()
+    error = np.array([_error(column, total) for column in counts[:, 1:-1].T])
+    tests = []
+    for law_name, law in possible.items():
+        result = stats.kstest(samples, law.cdf)
+        tests.append(Test(law_name, law, float(result.statistic), float(result.pvalue)))
+    width, number = np.diff(edges), len(samples)
+    return Distribution(name, edges, share / width, error / width, average, number, correlation_time, tuple(tests))
+
+
+def _error(count: np.ndarray, total: np.ndarray) -> float:
+    """Standard error of the share of a bin from its counts (B,) and those of all bins; nan if few blocks make it up."""
+    part = count / total.sum()
+    known = part.sum() ** 2 > FEWEST_BLOCKS * (part**2).sum()
+    return ratio(count, total).standard_error if known else np.nan

@@ -1,0 +1,32 @@
+"""Independent samples of a velocity quantity of the discs of one gas."""
+
+import math
+
+import numpy as np
+
+from idealgas.analysis.core.autoregression import inefficiency
+from idealgas.analysis.core.ensemble import ROUNDING
+
+GROUPS = 16
+"""Number of groups of discs that are sampled in turn.
+
+A sixteenth of the discs hardly correlates with itself by the energy and momentum that all discs share, nor a disc with
+itself sixteen statistical inefficiencies later, even where it is confined between walls.
+"""
+
+
+def independent_samples(values: np.ndarray) -> tuple[np.ndarray, int]:
+    """Independent samples (n,) of values (B, M) of M discs at B instants, and the number of instants between samples.
+
+    It is the largest statistical inefficiency of single discs and of their mean, which fluctuates slowly where walls or
+    a thermostat exchange energy with the gas; and of squares, as a light disc among heavy ones keeps its speed for
+    longer than its direction.
+    """
+    memory = 1.0
+    for x in (values, values**2):
+        mean = x.mean(axis=1)
+        conserved = np.ptp(mean) <= ROUNDING * np.abs(x).max()
+        memory = max(memory, inefficiency(x), 1.0 if conserved else inefficiency(mean))
+    spacing, groups = math.ceil(memory), min(GROUPS, values.shape[1])
+    samples = [row[k % groups :: groups] for k, row in enumerate(values[::spacing])]
+    return np.concatenate(samples), spacing

@@ -1,0 +1,48 @@
+"""P-values of right laws are uniform, and bars of bins as large as deviations: `helpers.p_values` has the gases.
+
+`tests/helpers/p_values.csv` is from 400 seeds:
+
+    PYTHONPATH=tests python -m helpers.p_values --seeds 400
+"""
+
+import math
+
+import numpy as np
+import pytest
+from helpers.p_values import GASES, RUN, rows_of
+
+from idealgas import histogram, parse_scene
+
+LEAST_KS_P = 0.01
+SEEDS = 12
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("gas", GASES)
+def test_p_values_are_uniform(gas):
+    """Of 400 runs each; the share below 0.05 scatters by √(0.05·0.95/400) = 1.1 %."""
+    for *name, runs, _, low, ks_p in rows_of(gas, 400):
+        print(*name, low, ks_p)
+        assert ks_p > LEAST_KS_P, name
+        assert low < 0.05 + 4 * math.sqrt(0.05 * 0.95 / runs), name
+
+
+@pytest.mark.parametrize("quantity", ["speed", "vx", "energy"])
+def test_bars_of_bins(quantity, run):
+    """Deviations of some 1000 bins in their bars: the rms is 1 within 10 %, and 95 % hold.
+
+    A disc keeps its speed for some three mean free times, longer than a block.
+    """
+    deviations = []
+    for seed in range(SEEDS):
+        (found,) = histogram(
+            run(parse_scene(f"[scene]\nseed = {seed}\n{GASES['closed']}{RUN}")), quantity
+        ).distributions
+        law = np.diff(found.tests[-1].law.cdf(found.edges)) / np.diff(found.edges)
+        known = found.error > 0
+        assert known.sum() > 40
+        deviations.append((found.density - law)[known] / found.error[known])
+    z = np.concatenate(deviations)
+    print(quantity, len(z), np.sqrt((z**2).mean()), (np.abs(z) < 1.96).mean())
+    assert 0.9 < np.sqrt((z**2).mean()) < 1.1
+    assert 0.93 < (np.abs(z) < 1.96).mean() < 0.97
