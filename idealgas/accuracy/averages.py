@@ -67,7 +67,7 @@ def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
     return Averages(
         rate=_total_rate(found, log),
         z_pairs=routes[PAIRS],
-        z_walls=routes.get(WALLS),
+        z_walls=next((z for name, z in routes.items() if name.startswith(WALLS)), None),
         distance=distance,
         noise=noise,
         drift=summary.energy_drift,

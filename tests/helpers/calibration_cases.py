@@ -75,7 +75,7 @@ def periodic(log: Log) -> Named:
             curve = Estimate(float(one.running[k]), float(one.running_error[k]), SEGMENTS)
             yield f"{SYMBOLS[name]}(t), {when}", curve
     for name in ("xx", "xy"):
-        yield f"pressure tensor, {name}", found.collective.pressure[name]
+        yield f"pressure tensor, {name}", found.pressure[name]
 
 
 def in_each_other(log: Log) -> Named:

@@ -4,6 +4,7 @@ The seeds are fixed. Errors of single runs are their own, those of theory its ow
 """
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -55,6 +56,34 @@ def test_two_discs_pass(radius, sides, measured):
     z = found.routes[-1].compressibility_factor
     assert z.theory_error == 0  # exact
     assert z.standard_error < 0.02 * (z.value - 1)
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.22])
+def test_two_discs_in_a_channel_have_two_pressures(radius, measured):
+    """Along the walls and across them, both exact: see `two_discs`. Walls balance the one across alone."""
+    found = measured(few(radius, 'left = "periodic"\nright = "periodic"\n'))
+    z = {route.name: route.compressibility_factor for route in found.routes}
+    assert {name.removeprefix(WALLS).removeprefix(PAIRS) for name in z if "virial" in name} == {"", ", x", ", y"}
+    for name in (f"{WALLS}, y", f"{PAIRS}, x", f"{PAIRS}, y", PAIRS):
+        assert z[name].theory_error == 0
+        assert abs(z[name].deviation) < 4, name
+        assert z[name].standard_error < (0.1 if name.startswith(WALLS) else 0.02) * (z[name].value - 1)
+    assert (z[f"{PAIRS}, x"].value + z[f"{PAIRS}, y"].value) / 2 == pytest.approx(z[PAIRS].value, rel=1e-9)
+    x, y = z[f"{PAIRS}, x"], z[f"{PAIRS}, y"]
+    assert abs(x.theory - y.theory) > 6 * math.hypot(x.standard_error, y.standard_error)
+    ideal = 2 * found.temperature / found.area
+    assert found.tensor["xx"].value == pytest.approx(x.value * ideal)
+    assert found.check().agrees is True
+    assert len(found.check().compared) == 4
+
+
+def test_shear_stress_of_a_channel_has_the_error_of_a_bounded_store(run):
+    """Σ m y vx is all that can change; rms of deviation over error of 40 windows within four times 1/√80 of 1."""
+    text = gas(20, 0.2, 8200).replace('bottom = "periodic"\ntop = "periodic"\n', "")
+    log = run(parse_scene(text))
+    edges = np.linspace(0.02, 1.0, 41) * log.end_time
+    off = [pressure(log, *window).tensor["xy"].deviation for window in pairwise(edges)]
+    assert abs(math.sqrt(np.mean(np.square(off))) - 1) < 4 / math.sqrt(80)
 
 
 def test_two_discs_without_momentum_have_no_theory(measured):

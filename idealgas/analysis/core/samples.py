@@ -27,7 +27,8 @@ class SampledImpacts:
     """Sums over the events in B blocks of time, as those of `Impacts`, for W walls and S species.
 
     kinetic_flow: (B, 3), ∫ Σ m v_a v_b dt for xx, xy and yy, energy·time. collision_flow: (B, 4), Σ Δp_a r_b over pair
-    collisions for xx, xy, yy and yx, energy·time. pair_virial: (B,), its trace. inner_virial, wall_virial, collisions,
+    collisions for xx, xy, yy and yx, energy·time. flow: (B, 2, 3), both for xx, xy and yy, in the frame of zero
+    momentum. pair_virial: (B,), trace of collision_flow. inner_virial, wall_virial, collisions,
     impulse, hits: as there. push, drag: (B, F), momentum given to each of F faces, into the wall and along it,
     mass·length/time. dragged: whether walls take momentum along themselves.
     """
@@ -43,6 +44,9 @@ class SampledImpacts:
         if "pair_collisions" not in found:  # those of a single species are all there are
             found["pair_collisions"] = in_blocks(*log.observables["disc_collisions"], edges)
         self.kinetic_flow, self.collision_flow = found["kinetic_flow"], found["collision_flow"]
+        still = centre_of_mass_velocity(log)
+        whole = log.discs.mass.sum() * still[[0, 0, 1]] * still[[0, 1, 1]] * np.diff(edges)[:, None]
+        self.flow = np.stack((self.kinetic_flow - whole, self.collision_flow[:, :3]), axis=1)
         self.pair_virial = self.collision_flow[:, 0] + self.collision_flow[:, 2]
         self.inner_virial = self.collision_flow[:, :3:2][:, [not wrapped for wrapped in log.periodic]].sum(axis=1)
         self.wall_virial = found["wall_virial"]

@@ -116,6 +116,11 @@ def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath
     ]
 
 
+def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
+    """Table of the components of the pressure tensor, by their names."""
+    return estimates("Pressure tensor (energy/length²)", [(f"P {name}", one) for name, one in tensor.items()])
+
+
 def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
     """Table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS of the instants."""
     shown = {name: values.tolist() for name, values in columns.items() if values is not None}

@@ -246,7 +246,7 @@ def _mean_energy(energy: np.ndarray) -> Estimate:
 def _closed_box(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Measured:
     """Heat capacity E/T of a gas in a closed box: hard discs have no energy scale, so that E is proportional to T."""
     measured = pressure(log, start, end, progress)
-    walls = next((route.compressibility_factor for route in measured.routes if route.name == WALLS), None)
+    walls = next((route.compressibility_factor for route in measured.routes if route.name.startswith(WALLS)), None)
     if walls is None or walls.theory is None or not walls.value > 0:
         raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory

@@ -22,6 +22,7 @@ from idealgas.analysis.core.collisions import (
     free_paths,
     theory_of,
 )
+from idealgas.analysis.core.currents import Currents, pressure_tensor
 from idealgas.analysis.core.ensemble import known_ensemble, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
@@ -43,7 +44,11 @@ from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
-"""Names of the two routes that `Pressure.check` compares with theory."""
+"""Beginnings of the names of the routes that `Pressure.check` compares with theory.
+
+Where only one axis is periodic, the pressures along both differ, and names of the virials along one end in its name;
+PAIRS alone is the mean of both.
+"""
 
 
 @dataclass(frozen=True)
@@ -66,7 +71,8 @@ class Pressure(Result):
     window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
     packing_fraction: no unit. routes: pressure and Z by each way of measuring. known_theories: Z by the name of
     each theory that applies. collision_rates: of each pair of species. free_paths: of each species; empty without
-    events. no_theory: why there is no theory of this gas in its box, as part of a sentence; None if there is.
+    events. tensor: components xx, yy and xy of the pressure tensor, energy/length².
+    no_theory: why there is no theory of this gas in its box, as part of a sentence; None if there is.
     mechanical: pressure of every wall of a gas without an equation of state; None for others. For such a gas area
     is what it has on average, temperature the mean of m v²/2 over discs and time, and there are no routes,
     theories, rates and paths.
@@ -81,6 +87,7 @@ class Pressure(Result):
     known_theories: Annotated[dict[str, Theory], OMITTED]
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
+    tensor: Annotated[dict[str, Estimate], Key("pressure_tensor")]
     no_theory: str | None = None
     mechanical: Annotated[Mechanical | None, INLINE] = None
 
@@ -102,7 +109,7 @@ class Pressure(Result):
         Raises:
             UserError: if a route with a theory has no error bar.
         """
-        virials = (route for route in self.routes if route.name in (WALLS, PAIRS))
+        virials = (route for route in self.routes if route.name.startswith((WALLS, PAIRS)))
         return check_theory(((r.name, r.source, r.compressibility_factor) for r in virials), self.no_theory)
 
 
@@ -140,24 +147,27 @@ def pressure(
     expected = expected_rates(discs, gas.box, equilibrium, theory)
     impacts: Impacts | SampledImpacts
     if log.has_events:
-        moments, events = Moments(), Impacts(len(log.walls), log.periodic)
-        window, impacts = measure(log, [moments, events], start, end, progress, needs), events
+        moments, events, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
+        window, impacts = measure(log, [moments, events, currents], start, end, progress, needs), events
+        flow = currents.flow
         paths = free_paths(discs, expected, equilibrium, window, moments, events)
         bulk = bulk_in_events(gas, log.periodic, window, moments, events)
     else:
         window, samples = sampled(log, start, end, needs)
-        impacts, paths = samples, ()
+        impacts, paths, flow = samples, (), samples.flow
         bulk = bulk_in_samples(gas, log.periodic, window, samples, log.scene.properties.thermostat_rate > 0)
+    tensor = pressure_tensor(log, equilibrium, theory, window.of(flow))
     return Pressure(
         window=window,
         number=len(gas),
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts),
+        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts, tensor),
         known_theories=hard_disc_theories(discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
+        tensor=tensor,
         no_theory=theory.why_not or None,
         caveats=_slow(gas, window, impacts),
     )
@@ -199,6 +209,7 @@ def _without_theory(
         known_theories={},
         collision_rates=(),
         free_paths=(),
+        tensor={},
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
         mechanical=found,
         caveats=_ends(log),
@@ -244,6 +255,7 @@ def _routes(
     window: Window,
     bulk: Bulk,
     impacts: Impacts | SampledImpacts,
+    tensor: dict[str, Estimate],
 ) -> tuple[Route, ...]:
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
@@ -265,7 +277,12 @@ def _routes(
         inner = virial if bulk.virial is None else bulk.virial
         reach = np.array(gas.box)[~np.array(periodic)] - 2 * gas.radius[:, None]
         moment = temperature * float((gas.mass[:, None] * reach**2).sum()) / 12 / window.width**2
-        routes.append(_wall(WALLS, virial, inner, unit, moment, ideal, theory.walls))
+        along = "xy"[axis_of(sides[0])] if any(periodic) else ""
+        routes.append(_wall(f"{WALLS}, {along}" if along else WALLS, virial, inner, unit, moment, ideal, theory.walls))
+        if along:
+            source = theory.pairs.source if theory.pairs else None
+            virials = {axis: tensor[2 * axis] for axis in "xy"}
+            routes += [Route(f"{PAIRS}, {axis}", p, p.times(1 / ideal), source) for axis, p in virials.items()]
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
     return (*routes, _of(PAIRS, z, ideal, theory.pairs))
 

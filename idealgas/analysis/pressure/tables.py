@@ -1,6 +1,15 @@
 """Tables of the pressure and of the equation of state."""
 
-from idealgas.analysis.core.tables import Cell, Number, Table, collision_tables, describe, estimates, format_estimate
+from idealgas.analysis.core.tables import (
+    Cell,
+    Number,
+    Table,
+    collision_tables,
+    describe,
+    estimates,
+    format_estimate,
+    pressure_table,
+)
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
@@ -53,6 +62,7 @@ def _of_log(result: Pressure) -> list[Table]:
         ),
         Table("Z by theory (no unit)", ("", "value", "± error"), theories, missing),
         estimates("P (energy/length²)", [(route.name, route.pressure) for route in result.routes]),
+        pressure_table(result.tensor),
         *collision_tables(result.collision_rates, result.free_paths),
     ]
 

@@ -128,6 +128,21 @@ class BoxTheory(NamedTuple):
     rate_error: np.ndarray
     why_not: str = ""
 
+    def along_axes(
+        self, radius: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]
+    ) -> tuple[Theory | None, Theory | None]:
+        """Z by the part of the pair virial along x and along y, whose mean is `pairs`; None without a value."""
+        if self.pairs is None or (periodic[0] == periodic[1] and box[0] == box[1]):
+            return self.pairs, self.pairs
+        if periodic[0] != periodic[1] and self.walls is not None:
+            error = 2 * self.pairs.error + self.walls.error
+            other = Theory(2 * self.pairs.value - self.walls.value, error, self.pairs.source)
+            return (other, self.walls) if periodic[0] else (self.walls, other)
+        if any(periodic) or np.ptp(radius) > 0 or None in self.sides:
+            return None, None
+        x, y = (side and side.times((size - 2 * radius[0]) / size) for side, size in zip(self.sides, box, strict=True))
+        return x, y
+
 
 def fluid(packing_fraction: float) -> Theory:
     """Compressibility factor Z of an infinite fluid of equal discs.

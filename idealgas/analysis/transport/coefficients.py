@@ -1,4 +1,4 @@
-"""Viscosities, thermal conductivity, mutual diffusion and pressure tensor of a periodic gas, from its currents."""
+"""Viscosities, thermal conductivity and mutual diffusion of a periodic gas, from its currents."""
 
 import math
 from collections.abc import Callable
@@ -7,6 +7,17 @@ from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.currents import (
+    APART_X,
+    APART_Y,
+    CARRIED,
+    HEAT_X,
+    HEAT_Y,
+    XX,
+    XY,
+    YY,
+    Currents,
+)
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import INLINE, Key
@@ -15,18 +26,6 @@ from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.theory.ensemble import Ensemble
 from idealgas.analysis.theory.values import Theory
-from idealgas.analysis.transport.currents import (
-    APART_X,
-    APART_Y,
-    CARRIED,
-    HEAT_X,
-    HEAT_Y,
-    PASSED_ON,
-    XX,
-    XY,
-    YY,
-    Currents,
-)
 from idealgas.analysis.transport.enskog import Enskog
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.log import Log
@@ -70,12 +69,10 @@ class Collective:
     plateau: first and last time over which coefficients are averaged. coefficients: by name; no thermal conductivity
     for several species, where energy also comes along with discs that diffuse, and from samples without sums
     of the heat; mutual diffusion of two species, from events.
-    pressure: xx, yy and xy component of the pressure tensor, energy/length².
     """
 
     plateau: tuple[float, float]
     coefficients: Annotated[dict[str, Coefficient], INLINE]
-    pressure: Annotated[dict[str, Estimate], Key("pressure_tensor")]
 
 
 def flow_in_events(
@@ -131,19 +128,19 @@ def collective(
     log: Log,
     equilibrium: Ensemble,
     longest: float,
-    theory: tuple[Enskog | None, Theory | None, Theory | None],
+    theory: tuple[Enskog | None, Theory | None],
 ) -> Collective:
     """Coefficients of the gas of a log in a periodic box, from integrals (B, 2, 7) of its currents over blocks.
 
     width: of a block, time. longest: lag up to which currents are followed, time. theory: Enskog's coefficients,
-    Z = PA/NT of this gas, and the diffusion of two species in each other.
+    and the diffusion of two species in each other.
     """
     lags, gas = lags_of(width, longest, PLATEAU_FROM), log.discs
     conducts = len(gas.species_names) == 1 and not np.isnan(flow[0, CARRIED, HEAT_X])
     found = _coefficients(flow, lags, gas, equilibrium.temperature, conducts, theory[0])
     if len(gas.species_names) == 2 and not np.isnan(flow[0, CARRIED, APART_X]):
-        found["mutual_diffusion"] = _mutual_diffusion(flow[:, CARRIED], lags, gas, theory[2])
-    return Collective(lags.plateau, found, _pressure(flow / width, log, equilibrium, theory[1]))
+        found["mutual_diffusion"] = _mutual_diffusion(flow[:, CARRIED], lags, gas, theory[1])
+    return Collective(lags.plateau, found)
 
 
 def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | None) -> Coefficient:
@@ -195,17 +192,3 @@ def _difference(series: np.ndarray, gas: Gas) -> Estimate:
     error = DIRECTIONS / len(gas) * abs(float(series.mean()))
     theory = Theory(0.0, error, "isotropy") if gas.box[0] == gas.box[1] else None
     return mean(series[0] - series[1], theory)
-
-
-def _pressure(current: np.ndarray, log: Log, equilibrium: Ensemble, z: Theory | None) -> dict[str, Estimate]:
-    """Pressure tensor from currents (B, 2, 7): what discs carry counts as the temperature 2E/D does.
-
-    Along x and along y the theory is Z = PA/NT of a square box.
-    """
-    gas = log.discs
-    square = gas.box[0] == gas.box[1]
-    expected = z.times(len(gas) * equilibrium.temperature / gas.area) if z and square else None
-    share = 2 * len(gas) / equilibrium.dof
-    pressure = (share * current[:, CARRIED] + current[:, PASSED_ON]) / gas.area
-    theory = {"xx": expected, "yy": expected, "xy": Theory(0.0, 0.0, "isotropy")}
-    return {name: mean(pressure[:, k], theory[name]) for name, k in (("xx", XX), ("yy", YY), ("xy", XY))}

@@ -7,6 +7,7 @@ correlation and displacement use the exact positions and velocities of discs at 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 from idealgas.analysis.core.collisions import (
     CollisionRate,
@@ -16,8 +17,10 @@ from idealgas.analysis.core.collisions import (
     free_paths,
     theory_of,
 )
+from idealgas.analysis.core.currents import Currents, pressure_tensor
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
@@ -29,7 +32,7 @@ from idealgas.analysis.transport.coefficients import Collective, collective, flo
 from idealgas.analysis.transport.diffusion import LEAST_LAG, Diffusion, diffusion, diffusion_caveats, diffusion_limits
 from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
-from idealgas.errors import NotApplicableError, UserError
+from idealgas.errors import UserError
 from idealgas.log import Log
 
 FEWEST_SEGMENTS = 8  # of the window, each as long as the longest lag
@@ -52,7 +55,8 @@ class Transport(Result):
     window: the time that was used. packing_fraction: φ. number: of discs. free_times: lag up to which discs and
     currents are followed, in mean free times of the slowest species. walled: whether walls reflect diffusing discs.
     collision_rates, contacts, pair_distributions: of each pair of species. free_paths, diffusion: of each species.
-    collective: viscosities, thermal conductivity and pressure tensor; None with walls, which change the currents.
+    collective: viscosities and thermal conductivity; None with walls, which change the currents. pressure: xx, yy and
+    xy component of the pressure tensor, energy/length².
     """
 
     window: Window
@@ -65,6 +69,7 @@ class Transport(Result):
     contacts: tuple[Contact, ...]
     diffusion: tuple[Diffusion, ...]
     collective: Collective | None
+    pressure: Annotated[dict[str, Estimate], Key("pressure_tensor")]
     pair_distributions: tuple[PairDistribution, ...]
 
 
@@ -94,8 +99,8 @@ def transport(
         raise UserError(f"{log.path}: no disc moves")
     if not log.has_events:
         return _from_samples(log, equilibrium, start, end, lag)
-    moments, impacts = Moments(), Impacts(len(log.walls), log.periodic)
-    window = measure(log, [moments, impacts], start, end, progress, ("uniform", "conserves_motion"))
+    moments, impacts, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
+    window = measure(log, [moments, impacts, currents], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
     box = theory_of(log, discs)
     expected, enskogs = expected_rates(discs, gas.box, equilibrium, box), enskog(log, discs, equilibrium)
@@ -107,7 +112,7 @@ def transport(
     spreading = diffusion(log, discs, window, longest, limits, (enskogs, alone, equilibrium.of_species))
     whole = None
     if all(log.periodic):
-        theories = enskogs, box.pairs, mutual_diffusion(log, discs, equilibrium, expected)
+        theories = enskogs, mutual_diffusion(log, discs, equilibrium, expected)
         whole = collective(*flow_in_events(log, window, longest, progress), log, equilibrium, longest, theories)
     return Transport(
         window=window,
@@ -120,6 +125,7 @@ def transport(
         contacts=_contacts(discs, gas.area, equilibrium, rates),
         diffusion=spreading,
         collective=whole,
+        pressure=pressure_tensor(log, equilibrium, box, window.of(currents.flow)),
         pair_distributions=pair_distributions(log, discs, window.start, window.end),
         caveats=(
             *(sentence for one in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*one)),
@@ -130,26 +136,27 @@ def transport(
 
 def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: float | None, lag: float) -> Transport:
     """Transport in a gas without events: what sums in its samples tell."""
-    if not all(log.periodic):
-        raise NotApplicableError(f"{log.path}: has no events, and samples tell of transport with periodic sides only")
     window, impacts = sampled(log, start, end, ("uniform", "conserves_motion"))
     gas, discs, box = log.discs, composition(log.discs), theory_of(log, composition(log.discs))
     rates = collision_rates(discs, expected_rates(discs, gas.box, equilibrium, box), window, impacts)
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    currents, theories = flow_in_samples(log, window, longest), (enskog(log, discs, equilibrium), box.pairs, None)
-    whole = collective(*currents, log, equilibrium, longest, theories)
+    whole = None
+    if all(log.periodic):
+        theories = enskog(log, discs, equilibrium), None
+        whole = collective(*flow_in_samples(log, window, longest), log, equilibrium, longest, theories)
     return Transport(
         window=window,
         packing_fraction=gas.packing_fraction,
         number=len(gas),
-        free_times=whole.plateau[1] / free_time,
-        walled=False,
+        free_times=(whole.plateau[1] if whole else longest) / free_time,
+        walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=(),
         contacts=_contacts(discs, gas.area, equilibrium, rates),
         diffusion=(),
         collective=whole,
+        pressure=pressure_tensor(log, equilibrium, box, window.of(impacts.flow)),
         pair_distributions=(),
         caveats=tuple(_short_currents(whole, longest / free_time, window.duration / longest)),
     )

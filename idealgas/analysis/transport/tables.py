@@ -3,7 +3,16 @@
 from dataclasses import replace
 
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import THEORY_ERROR, Cell, Number, Table, collision_tables, describe, estimates
+from idealgas.analysis.core.tables import (
+    THEORY_ERROR,
+    Cell,
+    Number,
+    Table,
+    collision_tables,
+    describe,
+    estimates,
+    pressure_table,
+)
 from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
 from idealgas.analysis.transport.combine import States
 from idealgas.analysis.transport.measure import Transport
@@ -50,6 +59,7 @@ def _of_log(result: Transport) -> list[Table]:
     tables.append(estimates("Diffusion, theory Enskog's", diffusion, (*lags, *([] if result.collective else [WALLS]))))
     if result.collective:
         tables += _of_currents(result.collective, result.free_times)
+    tables.append(pressure_table(result.pressure))
     return [table for table in tables if table.rows or table.notes]
 
 
@@ -64,7 +74,6 @@ def _of_currents(found: Collective, free_times: float) -> list[Table]:
     return [
         estimates("Viscosity η, thermal conductivity λ and bulk viscosity ζ, theory Enskog's", currents, (plateau,)),
         estimates("Diffusion of two species in each other (Maxwell and Stefan), theory Enskog's", mutual),
-        estimates("Pressure tensor (energy/length²)", [(f"P {name}", one) for name, one in found.pressure.items()]),
     ]
 
 

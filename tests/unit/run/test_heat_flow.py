@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from helpers.log_compare import contents, differences
 
+from idealgas.analysis.core.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, Currents
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.transport.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, Currents
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate

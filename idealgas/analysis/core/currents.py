@@ -8,9 +8,13 @@ discs, momentum Δp and energy ΔE jump from the centre of one to that of the ot
 
 import numpy as np
 
+from idealgas.analysis.core.ensemble import conserved_momentum
 from idealgas.analysis.core.impacts import contacts
+from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
 from idealgas.analysis.core.stream import add_to
-from idealgas.log import Flights
+from idealgas.analysis.theory.ensemble import Ensemble
+from idealgas.analysis.theory.values import BoxTheory
+from idealgas.log import Flights, Log
 from idealgas.state import Gas
 
 XX, XY, YY, HEAT_X, HEAT_Y, APART_X, APART_Y = range(7)
@@ -21,7 +25,7 @@ CARRIED, PASSED_ON = range(2)
 
 
 class Currents:
-    """Time integrals of the currents in each of B blocks, in a box without walls.
+    """Time integrals of the currents in each of B blocks; what walls and a heat bath give is no current.
 
     flow: (B, 2, 7), parts CARRIED and PASSED_ON of the components XX, XY, YY (energy·time), HEAT_X, HEAT_Y
     (energy·length), APART_X and APART_Y (length), which are carried only, and 0 unless there are two species.
@@ -29,6 +33,10 @@ class Currents:
 
     columns = ("disc", "block", "end", "kind", "partner", "velocity", "new_velocity", "end_position")
     cut = False
+
+    def __init__(self, periodic: tuple[bool, ...] = (True, True)) -> None:
+        """Take whether x and y are periodic."""
+        self._periodic = periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
@@ -45,7 +53,7 @@ class Currents:
         current = np.cumsum(np.concatenate((self._total[None], change)), axis=0)  # before each event, and after all
         self._flow_until(flights.end, current[:-1])
         self._total = current[-1]
-        second, apart = contacts(flights, self._box, (True, True))
+        second, apart = contacts(flights, self._box, self._periodic)
         before, after, block = flights.velocity[second], flights.new_velocity[second], flights.block[second]
         given = mass[second, None] * (after - before)
         energy = 0.5 * (given * (after + before)).sum(axis=1)
@@ -84,3 +92,26 @@ def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.nda
     px, py = mass * vx, mass * vy
     energy = 0.5 * mass * (vx * vx + vy * vy)
     return np.column_stack((px * vx, px * vy, py * vy, energy * vx, energy * vy, share * vx, share * vy))
+
+
+def pressure_tensor(log: Log, equilibrium: Ensemble, theory: BoxTheory, current: np.ndarray) -> dict[str, Estimate]:
+    """Components xx, yy and xy of the pressure tensor of a uniform gas, energy/length², from currents of momentum.
+
+    By equipartition discs carry NT of xx and of yy, which fluctuates far more than what collisions pass on.
+
+    Args:
+        log: log of the gas.
+        equilibrium: ensemble that it belongs to.
+        theory: of the gas in its box.
+        current: currents (B, 2, 3 or more) in blocks of time, energy.
+    """
+    gas, ideal = log.discs, len(log.discs) * equilibrium.temperature
+    along = theory.along_axes(gas.radius, log.box, log.periodic)
+    found = {
+        name: mean(1 + current[:, PASSED_ON, k] / ideal, z).times(ideal / gas.area)
+        for name, k, z in zip(("xx", "yy"), (XX, YY), along, strict=True)
+    }
+    shear = current[:, :, XY].sum(axis=1) / gas.area
+    if conserved_momentum(log).sum() == 1:  # momentum along the walls does not flow into them: Σ m y vx is bounded
+        return found | {"xy": mean_of_flux(shear, np.zeros(len(shear)), 0.0)}
+    return found | {"xy": mean(shear, 0.0)}
