@@ -1,12 +1,11 @@
 """Window of time that an analysis uses: given by the user, or from the time on at which equilibrium is detected.
 
 The start of a run is tested against the rest, as by Heidelberger & Welch (Oper. Res. 31, 1109 (1983)), with errors from
-autoregressive models of the last blocks. A transient of a gas can be as short as a few collisions per disc, so that
-means of stretches of 1, 2, 4, … blocks are compared, for each observable of `TimeSeries`.
+autoregressive models of the last blocks or, if smaller, the fluctuations of the known ensemble. A transient can be as
+short as a few collisions per disc: means of stretches of 1, 2, 4, … blocks are compared, for each of the observables.
 
 The start with the largest effective number of samples (Chodera, J. Chem. Theory Comput. 12, 1799 (2016)) leaves out
-these transients too, but more than a tenth of every fourth short run of a steady gas, as the estimate of that number
-fluctuates.
+these transients too, but more than a tenth of every fourth short run of a steady gas.
 """
 
 import math
@@ -39,7 +38,7 @@ from idealgas.scene.walls import walls_inside
 LEAST_TESTED = 16
 """Least number of blocks in which a transient is looked for."""
 
-LEVEL = 0.05
+LEVEL = 0.1
 """Largest probability that a steady gas loses a part of its start; that of losing ℓ blocks is proportional to 1/ℓ."""
 
 REFERENCE = 64
@@ -61,18 +60,15 @@ FEWEST_SAMPLES = 4.0
 """Least number of independent samples with which a series counts as longer than its fluctuations."""
 
 _KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float], int]] = WeakKeyDictionary()
-"""Block from which on the gas of a log is steady, by the number of event rows and the end of the window."""
+"""First block of the steady gas of a log, by the number of event rows and the end of the window."""
 
 
 @dataclass(frozen=True)
 class Window:
     """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
 
-    Attributes:
-        edges: (B + 1,), times between the blocks.
-        first: index of the first block used.
-        detected: whether `first` was found by detection.
-        state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`.
+    edges: (B + 1,), times between the blocks. first: index of the first block used. detected: whether it was detected.
+    state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`.
     """
 
     edges: Annotated[np.ndarray, OMITTED]
@@ -128,12 +124,11 @@ def measure(
         tallies: sums to collect over the events.
         start: start of the window, time; None for detected equilibrium.
         end: end of the window, time; None for the end of the log.
-        progress: called with the number of rows read and the number of all rows.
+        progress: called with the numbers of rows read and of all rows.
         needs: properties of a scene (`idealgas.effects.properties`) that the analysis relies on.
 
     Raises:
-        UserError: if the window is empty or not covered by the log, if the log has no events, if an effect of the scene
-            takes one of the needed properties away, or if the gas does not become steady.
+        UserError: if the log has no events in the window, the gas lacks a needed property, or does not become steady.
     """
     must_apply(log, start, needs)
     edges = block_edges(log, start, end)
@@ -144,10 +139,10 @@ def measure(
     known = _KNOWN.setdefault(log, {})
     key = (len(log), edges[-1])
     if key not in known:
-        series = TimeSeries(log, tallies)
+        series = TimeSeries(log, edges, tallies)
         stream(log, edges, series.tallies, progress)
-        first = equilibrated_from(log, edges, list(series.observables()), list(series.centres()))
-        must_be_shared(log, series.moments.flights[first:, :, 1:3] / (edges[1] - edges[0]))
+        first = equilibrated_from(log, edges, [*series.observables(), *series.centres()])
+        must_be_shared(log, series.rates[first:, :, 1:])
         known[key] = first
     elif tallies:
         stream(log, edges, tallies, progress)
@@ -157,12 +152,28 @@ def measure(
 # ── what is looked at ──
 
 
+class Observable(NamedTuple):
+    """Means over blocks of what is steady in equilibrium, and what theory knows of its variance.
+
+    Attributes:
+        values: (n,), means.
+        least: variance of fluctuations that may be slower than the series is long. Unless its start differs from the
+            rest by more than these explain, the series is ignored.
+        most: variance at an instant, which that of no mean exceeds.
+    """
+
+    values: np.ndarray
+    least: float = 0.0
+    most: float = math.inf
+
+
 class TimeSeries:
     """Observables of a gas in blocks of time that are steady in equilibrium, and the tallies that fill them."""
 
-    def __init__(self, log: Log, present: Iterable[Tally] = ()) -> None:
-        """Take the gas of a log; of the tallies that are `present` in an analysis those that fit are used."""
-        self.tallies, self.mobile = list(present), ~are_fixed(composition(log.discs).mass)
+    def __init__(self, log: Log, edges: np.ndarray, present: Iterable[Tally] = ()) -> None:
+        """Take the gas of a log and the times (B + 1,) between blocks, and use the tallies `present` that fit."""
+        self.discs, self.ensemble, self.width = composition(log.discs), known_ensemble(log), edges[1] - edges[0]
+        self.tallies = list(present)
         self.moments = self._get(Moments, lambda: Moments(log.gravity))
         self.impacts: Impacts | None = None
         self.bins: DensityBins | None = None
@@ -171,31 +182,44 @@ class TimeSeries:
             self.bins = self._get(DensityBins, lambda: DensityBins(BINS))
 
     def _get(self, kind: type[Any], make: Callable[[], Any]) -> Any:
-        found = next((tally for tally in self.tallies if isinstance(tally, kind)), None)
-        if found is None:
-            found = make()
-            self.tallies.append(found)
-        return found
+        if not any(isinstance(tally, kind) for tally in self.tallies):
+            self.tallies.append(make())
+        return next(tally for tally in self.tallies if isinstance(tally, kind))
 
-    def observables(self) -> Iterator[np.ndarray]:
-        """Series (B,): fourth moment, energy of each species, along x less along y, numbers of events, virial."""
-        yield self.moments.flights[:, :, 3].sum(axis=1)
-        energies = self.moments.flights[:, :, 1:3]
-        yield from energies.sum(axis=2).T[self.mobile]  # those of fixed discs rise without end
-        yield energies.sum(axis=1) @ (1.0, -1.0)
-        yield from self.moments.events.T.astype(float)
+    @property
+    def rates(self) -> np.ndarray:
+        """Sums (B, S, 3) of |v|, m vx² and m vy² over the discs of each species."""
+        return self.moments.flights / self.width
+
+    def observables(self) -> Iterator[Observable]:
+        """Speed and energy of each species, energy along x less along y, numbers of events, virial.
+
+        At a fixed energy, equal speeds are 0.84 √N standard deviations of the speed, 0.50 √N of v⁴ from equilibrium.
+        """
+        speeds, energies = self.rates[:, :, 0], self.rates[:, :, 1:]
+        moments = np.array([speeds.T, energies.sum(axis=2).T])
+        known = (
+            np.full(moments.shape[:2], math.inf)
+            if self.ensemble is None
+            else self.ensemble.variances(self.discs.number)
+        )
+        mobile = ~are_fixed(self.discs.mass)
+        for values, most in zip(moments[:, mobile], known[:, mobile], strict=True):
+            yield from map(Observable, values, np.zeros(len(most)), most)  # those of fixed discs rise without end
+        yield Observable(energies.sum(axis=1) @ (1.0, -1.0))
+        yield from (Observable(numbers.astype(float)) for numbers in self.moments.events.T)
         if self.impacts is not None:
-            yield self.impacts.pair_virial
+            yield Observable(self.impacts.pair_virial)
 
-    def centres(self) -> Iterator[tuple[np.ndarray, float]]:
-        """Sums (B,) of the positions of each species along x and y, in bins, and their variance for independent discs.
+    def centres(self) -> Iterator[Observable]:
+        """Sums of the positions of each species along x and y, in bins, with their variance for independent discs.
 
         In a dense gas and in a sound wave they fluctuate more slowly than a short log can show.
         """
         if self.bins is not None:
             place = np.arange(self.bins.bins) - (self.bins.bins - 1) / 2
             for discs in np.moveaxis(self.bins.discs, 0, 2).reshape(-1, *self.bins.discs.shape[::3]):
-                yield discs @ place, float(discs[0].sum() * (place**2).mean())
+                yield Observable(discs @ place, least=float(discs[0].sum() * (place**2).mean()))
 
 
 # ── detection ──
@@ -209,52 +233,43 @@ class _Series(NamedTuple):
         variance: (r,), variances of means of 1 to r blocks.
         dof: degrees of freedom of the variance of long means.
         memory: number of blocks per independent one.
+        most: largest variance of a mean.
     """
 
     sums: np.ndarray
     variance: np.ndarray
     dof: float
     memory: float
+    most: float
 
     def agrees(self, start: int, level: float, floor: float = 0.0) -> bool:
         """Whether the means of all stretches that begin at `start` agree with the mean of the later half of the rest.
 
-        The variance of a mean of few blocks has more degrees of freedom than that of many: one for each such stretch.
-
-        Args:
-            start: index of a block.
-            level: probability that a steady series disagrees: half of it in one block, a quarter in two, and so on.
-            floor: least variance of a difference.
+        The variance of a mean of few blocks has more degrees of freedom than that of many: one for each such stretch. A
+        steady series disagrees with the probability `level`: half of it in one block, a quarter in two, and so on. The
+        variance of a difference is at least `floor`.
         """
         n, known = len(self.sums) - 1, len(self.variance)
         middle = (start + n) // 2
         lengths = 2 ** np.arange((middle - start).bit_length())
         rest = (self.sums[n] - self.sums[middle]) / (n - middle)
         difference = (self.sums[start + lengths] - self.sums[start]) / lengths - rest
-        scatter = self.variance[np.minimum(lengths, known) - 1] + self.variance[min(n - middle, known) - 1]
+        single, later = self.variance[np.minimum(lengths, known) - 1], self.variance[min(n - middle, known) - 1]
         dof = np.maximum(self.dof, known / np.maximum(lengths, self.memory) - 1)
-        limit = special.stdtrit(dof, level / lengths / 4)  # half of the level, and of that on either side
-        return bool((difference**2 <= limit**2 * np.maximum(scatter, floor)).all())
+        chance = level / lengths / 4  # half of the level, and of that on either side
+        by_series = special.stdtrit(dof, chance) ** 2 * np.maximum(single + later, floor)
+        by_theory = special.ndtri(chance) ** 2 * (self.most + min(later, self.most))
+        return bool((difference**2 <= np.minimum(by_series, by_theory)).all())
 
 
-def detect_equilibration(series: Iterable[np.ndarray], bounded: Iterable[tuple[np.ndarray, float]] = ()) -> int | None:
-    """Index from which on all series are steady.
-
-    Args:
-        series: (n,) each, observables that are steady in equilibrium.
-        bounded: more of them, each with the variance of fluctuations that may be slower than the series is long. Unless
-            its start differs from the rest by more than these explain, the series is ignored.
-
-    Returns:
-        The index; None if the series are not steady from any start in their first half on.
-    """
-    every = [*((values, 0.0) for values in series), *bounded]
-    varied = [(values, floor) for values, floor in every if np.ptp(values) > ROUNDING * np.abs(values).max()]
-    if not varied or (n := len(varied[0][0])) < LEAST_TESTED:
+def detect_equilibration(series: Iterable[Observable]) -> int | None:
+    """Index from which on all series are steady; None if they are not from any start in their first half on."""
+    varied = [one for one in series if np.ptp(one.values) > ROUNDING * np.abs(one.values).max()]
+    if not varied or (n := len(varied[0].values)) < LEAST_TESTED:
         return 0
     level, half = LEVEL / len(varied), n // 2
-    tested = [(_tested(values, max(n // 4, min(half, REFERENCE))), floor) for values, floor in varied]
-    informative = [one for one, floor in tested if not floor or not one.agrees(0, level, floor)]
+    tested = [(_tested(one, max(n // 4, min(half, REFERENCE))), one.least) for one in varied]
+    informative = [one for one, least in tested if not least or not one.agrees(0, level, least)]
     starts = np.unique(np.append(0, np.geomspace(1, half, STARTS).astype(int)))
     for start in starts.tolist():
         if all(one.agrees(start, level) for one in informative):
@@ -262,21 +277,22 @@ def detect_equilibration(series: Iterable[np.ndarray], bounded: Iterable[tuple[n
     return None
 
 
-def _tested(values: np.ndarray, reference: int) -> _Series:
+def _tested(found: Observable, reference: int) -> _Series:
     """Series to test, with the fluctuations of its last `reference` blocks about a linear trend."""
+    values = found.values
     last = values[len(values) - reference :]
     sums = np.append(0.0, np.cumsum(values - last.mean()))
     time = np.arange(reference) - (reference - 1) / 2
     residual = last - last.mean() - time * float(time @ last) / float(time @ time)
     rounding = (ROUNDING * float(np.abs(values).max())) ** 2
     if is_constant(residual):
-        return _Series(sums, np.full(reference, rounding), math.inf, 1.0)
+        return _Series(sums, np.full(reference, rounding), math.inf, 1.0, found.most)
     process = process_of(residual)
     samples = process.spread().samples
     dof = max(samples - 2, 1.0)
     covariance = process.covariances(reference) * samples / dof  # mean and trend take two degrees of freedom
     variance = np.maximum(variance_of_mean(covariance), rounding)
-    return _Series(sums, variance, dof, max(reference * variance[-1] / covariance[0], 1.0))
+    return _Series(sums, variance, dof, max(reference * variance[-1] / covariance[0], 1.0), found.most)
 
 
 def memory_time(series: Iterable[np.ndarray]) -> float:
@@ -286,11 +302,8 @@ def memory_time(series: Iterable[np.ndarray]) -> float:
 
 
 def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:
-    """Sentence on a series (n,) at times (n,) whose mean is taken though it is not known to be steady.
-
-    A start of less than a tenth that does not agree with the rest hardly changes the mean.
-    """
-    first, samples = detect_equilibration([series]), error_of_mean(series).samples
+    """Sentence on a series (n,) at times (n,) whose mean is taken though more than its first tenth is not steady."""
+    first, samples = detect_equilibration([Observable(series)]), error_of_mean(series).samples
     if first is not None and first > len(series) // 10:
         return (
             f"{name} is not steady in the window: only from t = {time[first]:.4g} on do the means of its parts agree. "
@@ -307,38 +320,27 @@ def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]
 # ── what a log allows ──
 
 
-def equilibrated_from(
-    log: Log, edges: np.ndarray, series: Sequence[np.ndarray], bounded: Sequence[tuple[np.ndarray, float]] = ()
-) -> int:
-    """Index of the first block from which on all series (B,) of a log are steady, after its gates have moved.
+def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable]) -> int:
+    """Index of the first block from which on all series of B blocks of a log are steady, after its gates have moved.
 
     Where its equilibrium is not known, the gas is given MEMORIES correlation times to forget its initial positions.
-
-    Args:
-        log: the log.
-        edges: (B + 1,), times between the blocks, or times of B samples.
-        series: see `detect_equilibration`.
-        bounded: see there.
-
-    Raises:
-        NotApplicableError: if they are not steady from the middle on.
+    edges: (B + 1,), times between the blocks, or times of B samples. Raises NotApplicableError if they are not steady.
     """
     begin = after_gates(log, edges)
-    rest = [values[begin:] for values in series]
-    first = detect_equilibration(rest, [(values[begin:], floor) for values, floor in bounded])
+    rest = [one._replace(values=one.values[begin:]) for one in series]
+    first = detect_equilibration(rest)
     if first is None:
         raise not_steady(log, "it still changes in the second half of the log")
     if known_ensemble(log) is None:
-        memory = math.ceil(MEMORIES * memory_time(values[first:] for values in rest))
-        first = max(first, min(memory, len(rest[0]) // 2))
+        memory = math.ceil(MEMORIES * memory_time(one.values[first:] for one in rest if not one.least))
+        first = max(first, min(memory, len(rest[0].values) // 2))
     return begin + first
 
 
 def after_gates(log: Log, edges: np.ndarray) -> int:
     """Index of the first block after the last gate has opened or closed; 0 without any. edges: (B + 1,), of the blocks.
 
-    Raises:
-        NotApplicableError: if so few blocks are left that nothing can be said of them.
+    Raises NotApplicableError if so few blocks are left that nothing can be said of them.
     """
     changes = [time for wall in walls_inside(log.scene) for time in wall.absence if edges[0] < time < edges[-1]]
     if not changes:

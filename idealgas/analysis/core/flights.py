@@ -33,7 +33,7 @@ _SORT[[Kind.WALL, Kind.WALL_END, Kind.PISTON]] = _WALL_HIT
 class Moments:
     """Time integrals of velocity moments, summed over the discs of each species, and event counts in each block.
 
-    flights: (B, S, 4), integrals of |v|, m vx², m vy² and (m v²)² over time for B blocks and S species.
+    flights: (B, S, 3), integrals of |v|, m vx² and m vy² over time for B blocks and S species.
     events: (B, 2), numbers of pair collisions and of wall hits.
     """
 
@@ -47,7 +47,7 @@ class Moments:
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._species, self._mass = gas.species.astype(np.intp), gas.mass
-        self._sums = np.zeros((4, len(edges) - 1, len(gas.species_names)))
+        self._sums = np.zeros((3, len(edges) - 1, len(gas.species_names)))
         self._counts = np.zeros((len(edges) - 1, 3), np.int64)
 
     def add(self, flights: Flights) -> None:
@@ -60,9 +60,8 @@ class Moments:
             integrals = _moments_of_fall(mass, vx, vy, self.gravity, time)
         else:
             squares = vx * vx, vy * vy
-            square = squares[0] + squares[1]
-            weight, energy = mass * time, mass * square  # twice the kinetic energy
-            integrals = time * np.sqrt(square), weight * squares[0], weight * squares[1], time * energy * energy
+            weight = mass * time
+            integrals = time * np.sqrt(squares[0] + squares[1]), weight * squares[0], weight * squares[1]
         for sums, values in zip(self._sums, integrals, strict=True):
             add_to(sums, index, values)
 
@@ -77,13 +76,10 @@ def _moments_of_fall(
 ) -> tuple[np.ndarray, ...]:
     """Integrals of the moments over parabolic flights of durations t that start at velocities (vx, vy)."""
     gx, gy = gravity
-    a, b, c = gx * gx + gy * gy, vx * gx + vy * gy, vx * vx + vy * vy  # v² = a s² + 2 b s + c
-    power = c * c + t * (2.0 * b * c + t * ((4.0 * b * b + 2.0 * a * c) / 3.0 + t * (a * b + t * a * a / 5.0)))
     return (
         length_of_fall(vx, vy, gravity, t),
         mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0)),
         mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0)),
-        mass * mass * t * power,
     )
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, kind_of_state, must_apply, must_be_shared
-from idealgas.analysis.core.equilibration import Window, equilibrated_from
+from idealgas.analysis.core.equilibration import Observable, Window, equilibrated_from
 from idealgas.analysis.core.stream import MOST_BLOCKS, span
 from idealgas.columns import FIRST_SEGMENT, OUTWARD
 from idealgas.errors import UserError
@@ -92,8 +92,10 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     impacts = SampledImpacts(log, edges)
     if start is not None:
         return Window(edges, 0, detected=False), impacts
-    series = (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
-    window = Window(edges, equilibrated_from(log, edges, series), detected=True, state=kind_of_state(log))
+    series = map(
+        Observable, (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
+    )
+    window = Window(edges, equilibrated_from(log, edges, tuple(series)), detected=True, state=kind_of_state(log))
     energies = window.of(impacts.kinetic_flow[:, ::2]) - log.discs.mass.sum() * centre_of_mass_velocity(log) ** 2
     must_be_shared(log, energies[:, None])
     return window, impacts

@@ -12,7 +12,7 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
-from idealgas.analysis.core.equilibration import detect_equilibration
+from idealgas.analysis.core.equilibration import Observable, detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
@@ -288,7 +288,7 @@ def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate 
     if not log.scene.piston or not log.scene.piston.mass or series is None or series.track is None:
         return None
     places = series.track[1]
-    start = detect_equilibration([places])
+    start = detect_equilibration([Observable(places)])
     if start is None:
         return None
     theory = None if law is None or law.piston is None else Theory(law.piston, law.piston_error, law.text)

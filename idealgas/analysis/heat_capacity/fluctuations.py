@@ -11,7 +11,7 @@ import numpy as np
 
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
-from idealgas.analysis.core.equilibration import equilibrated_from, measure
+from idealgas.analysis.core.equilibration import Observable, equilibrated_from, measure
 from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.theory import hard_discs, values
 from idealgas.analysis.theory.values import Theory
@@ -83,7 +83,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
         energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
     first = 0
     if start is None:
-        first = equilibrated_from(log, time[at], (kinetic, energy))
+        first = equilibrated_from(log, time[at], (Observable(kinetic), Observable(energy)))
     if len(at) - first < FEWEST:
         raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
     position = None if position is None else position[first:]

@@ -81,6 +81,16 @@ class Ensemble:
         """Mean speed (S,) of a disc of each species, length/time."""
         return np.array([self.velocity_law("speed", s).mean for s in range(len(self.mass))])
 
+    def variances(self, number: np.ndarray) -> np.ndarray:
+        """Variances (2, S) at an instant of Σ|v| (length²/time²) and Σ m v² (energy²) over the discs of each species.
+
+        They are those of Gaussian velocities less, at a fixed energy, what the energy explains: the squares of the
+        covariances with it over its own variance. number: (S,), of discs.
+        """
+        dof = number * self.of_axes.sum(axis=1) / self.temperature
+        speeds = number * self.temperature / self.mass * (2 - math.pi / 2 - math.pi / 8 * dof / self.dof)
+        return np.array([speeds, 2 * self.temperature**2 * dof * (1 - dof / self.dof)])
+
     def of_directions(self, species: int) -> np.ndarray:
         """Temperatures T(θ) = Tx cos² θ + Ty sin² θ of a species at evenly spaced angles, energy; one if all are equal.
 

@@ -51,6 +51,24 @@ def test_one_start_for_all_analyses(log_of):
         assert starts(opened, "profile") == {start}  # which no other analysis has found before
 
 
+SHORT_TRANSIENTS = {
+    "equal speeds": ('[[species]]\nname = "gas"\ncount = 100\nradius = 0.01\nspeed = 1\n', 40),
+    "two temperatures": (
+        '[[species]]\nname = "light"\ncount = 400\nradius = 0.005\ntemperature = 2\n'
+        '[[species]]\nname = "heavy"\ncount = 100\nradius = 0.01\nmass = 10\ntemperature = 0.5\n',
+        60,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SHORT_TRANSIENTS)
+def test_transients_of_short_runs_are_left_out(name, log_of):
+    discs, collisions = SHORT_TRANSIENTS[name]
+    run = f"[run]\ncollisions_per_disc = {collisions}\n"
+    found = [starts(log_of(f"scene.seed = {seed}\n{BOX}{discs}{run}"), "temperature").pop() for seed in range(12)]
+    assert min(found) > 0
+
+
 def test_start_is_after_a_gate_has_opened(log_of):
     log = log_of(EXPANSION)
     (start,) = starts(log, "profile", "temperature")

@@ -115,3 +115,19 @@ def test_speed_of_a_disc_that_moves_along_one_axis_only():
     speed = np.linspace(0, 4, 100)
     assert np.abs(law.cdf(speed) - (2 * stats.norm.cdf(speed) - 1)).max() < 2e-3
     assert law.mean == pytest.approx(math.sqrt(2 / math.pi), rel=1e-4)
+
+
+@pytest.mark.parametrize("dof", [math.inf, 400.0])
+def test_variances_of_speeds_and_energies(dof):
+    """Against 4 000 velocities of a heat bath, or of one energy: 4 √(2/4000) and 2/D, by which these vary less."""
+    number, mass, rng = np.array([150, 50]), np.array([1.0, 4.0]), np.random.default_rng(3)
+    each = np.repeat(mass, number)
+    velocity = rng.normal(size=(4000, 200, 2)) * np.sqrt(1.5 / each)[:, None]
+    energy = each * (velocity**2).sum(axis=2)
+    if math.isfinite(dof):
+        scale = 1.5 * dof / energy.sum(axis=1)
+        velocity, energy = velocity * np.sqrt(scale)[:, None, None], energy * scale[:, None]
+    speed = np.hypot(velocity[:, :, 0], velocity[:, :, 1])
+    sums = [np.add.reduceat(values, [0, 150], axis=1).var(axis=0) for values in (speed, energy)]
+    found = Ensemble(np.zeros(2), dof, 1.5, mass, np.full((2, 2), 1.5)).variances(number)
+    assert found == pytest.approx(np.array(sums), rel=4 * math.sqrt(2 / 4000) + 2 / 400)
