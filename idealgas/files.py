@@ -1,18 +1,17 @@
-"""Output files: checks before writing, complete files appear under their names at once, one writer per file."""
+"""Output files: checks before writing, and complete files appear under their names at once."""
 
 import errno
-import fcntl
 import os
 import re
 import secrets
 import stat
-import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
 
+from idealgas import system
 from idealgas.errors import OutputError
+from idealgas.locks import WriteLock, is_locked, open_regular
 
 LOG = "log"
 """Kind of a log; the other kinds are the endings of their files."""
@@ -43,8 +42,8 @@ _BEGINNINGS = {
 }
 """First bytes of the files of each kind that this program writes."""
 
-TIMEOUT = 0.5
-"""Time for which a writer waits for a lock, as readers hold it for a moment in `is_locked`, s."""
+IN_USE = "another run is writing this file"
+NO_LOCKS = "no locks on this file system (HDF5_USE_FILE_LOCKING=FALSE goes without; let only one process write a file)"
 
 Name = str | os.PathLike[str]
 
@@ -63,13 +62,23 @@ def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Na
             raise OutputError(f"{path}: no folder {path.parent}")
         if found is not None:
             _check_replaceable(path, found, kind, force, inputs)
-        for needed in (place.parent, *([place] if found else [])):
-            if not os.access(needed, os.R_OK | os.W_OK):
-                raise OutputError(f"{path}: cannot be written: {os.strerror(errno.EACCES)}", exit_code=1)
         if found is not None and is_locked(place):
-            raise OutputError(f"{path}: another process has this file open")
+            raise OutputError(f"{path}: {IN_USE}")
+        if found is not None:
+            open_regular(place, "r+b").close()
+        _check_folder(place, needs_lock=kind == LOG)
     except OSError as error:
         raise storage_error(path, error) from error
+
+
+def _check_folder(place: Path, needs_lock: bool) -> None:
+    """Raise OSError, with the reason of the system, if no file can be made beside another one, or locked if needed."""
+    part = beside(place)
+    part.touch(exist_ok=False)
+    try:
+        WriteLock(part, needs_lock).close()
+    finally:
+        part.unlink()
 
 
 def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool, inputs: Iterable[Name]) -> None:
@@ -141,37 +150,28 @@ def beside(path: Path) -> Path:
 def give_name(part: Path, path: Path, force: bool, fsync: bool = False) -> None:
     """Move a complete file to its final path, atomically.
 
-    Existing files are only overwritten with `force`, and never if another process is writing them.
+    Existing files are only overwritten with `force`, and never while they are being written.
     """
     place = path.resolve()
     while not _named(part, place, force):
         pass  # the existing file was removed or replaced meanwhile
     if fsync:
-        folder = os.open(place.parent, os.O_RDONLY)
-        os.fsync(folder)
-        os.close(folder)
+        system.sync_folder(place.parent)
 
 
 def _named(part: Path, place: Path, force: bool) -> bool:
     try:
-        os.link(part, place)
+        system.move_to_free_name(part, place)
+        return True
     except FileExistsError:
         if not force:
             raise
-    except OSError:  # a file system without links
-        if not place.exists():
-            part.replace(place)
-            return True
-        if not force:
-            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST)) from None
-    else:
-        part.unlink()
-        return True
     try:
-        with place.open("r+b") as old:
-            lock(old)
-            if not os.path.samestat(os.fstat(old.fileno()), place.stat()):
+        with WriteLock(place, needed=False) as old:
+            if not old.is_of(place):
                 return False
+            if not system.MOVES_OPEN_FILES:
+                old.close()  # a writer that opens it now keeps it from being replaced
             part.replace(place)
     except FileNotFoundError:
         if not part.exists():
@@ -180,63 +180,21 @@ def _named(part: Path, place: Path, force: bool) -> bool:
     return True
 
 
-def storage_error(path: Path, error: Exception) -> OutputError:
-    """Error for a file that could not be written; HDF5 has the number of the system's error only in its text."""
+def error_number(error: Exception) -> int | None:
+    """Number of the system's error behind an error, which HDF5 has only in its text; None if there is none."""
     number = error.errno if isinstance(error, OSError) else None
-    if number is None and (found := re.search(r"errno = (\d+)", str(error))):
-        number = int(found[1])
+    found = re.search(r"errno = (\d+)", str(error))
+    return int(found[1]) if number is None and found else number
+
+
+def storage_error(path: Path, error: Exception) -> OutputError:
+    """Error for a file that could not be written."""
+    number = error_number(error)
     if number == errno.EEXIST:
         return OutputError(f"{path}: already exists (use force=True to overwrite)")
     if number in (errno.EAGAIN, errno.EWOULDBLOCK):
-        return OutputError(f"{path}: another process has this file open")
+        return OutputError(f"{path}: {IN_USE}")
+    if number == errno.ENOLCK:
+        return OutputError(f"{path}: cannot be written: {NO_LOCKS}", exit_code=1)
     reason = os.strerror(number) if number else str(error).splitlines()[0]
     return OutputError(f"{path}: cannot be written: {reason}", exit_code=1)
-
-
-def lock(file: int | IO) -> None:
-    """Lock a file as its only writer until it is closed. Raises OSError if another process has locked it.
-
-    HDF5 releases its own lock in SWMR mode. This one is advisory.
-    """
-    deadline = time.monotonic() + TIMEOUT
-    while True:
-        try:
-            return fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.001)
-
-
-def is_locked(path: Path) -> bool:
-    """Whether another process has locked a file with `lock`."""
-    try:
-        with open_regular(path) as file:
-            fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError as error:
-        return isinstance(error, BlockingIOError)
-    return False
-
-
-def open_regular(path: Path) -> IO[bytes]:
-    """Open a regular file for reading, unbuffered. Raises OSError for anything else."""
-    return open(path, "rb", buffering=0, opener=regular)
-
-
-def regular(path: str, flags: int) -> int:
-    """Opener for `open`, of regular files only. Opening a device may change it, and opening a FIFO waits."""
-    _check_regular(os.stat(path))
-    descriptor = os.open(path, flags | os.O_NONBLOCK)
-    try:
-        _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
-    except OSError:
-        os.close(descriptor)
-        raise
-    return descriptor
-
-
-def _check_regular(found: os.stat_result) -> None:
-    if stat.S_ISDIR(found.st_mode):
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if not stat.S_ISREG(found.st_mode):
-        raise OSError(errno.EINVAL, "not a regular file")

@@ -9,7 +9,7 @@ from typing import Any, Literal, Self, overload
 import numpy as np
 
 from idealgas.columns import EventBatch
-from idealgas.files import is_locked
+from idealgas.locks import is_locked
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.header import LogHeader
 from idealgas.log.log_file import LogFile, Table
@@ -40,7 +40,7 @@ class LogHistory(LogHeader):
 
     @property
     def live(self) -> bool:
-        """Whether another process is writing this log now."""
+        """Whether this log is being written now."""
         return self.unclosed and is_locked(self.path)
 
     def refresh(self) -> None:

@@ -1,6 +1,7 @@
 """The HDF5 file of a log, open for reading, with its columns in chunks. Every failure is a LogError."""
 
 import math
+import os
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
@@ -11,13 +12,14 @@ import h5py
 import numpy as np
 
 from idealgas.columns import Column
-from idealgas.files import HEAD, describe_file_type, is_locked, open_regular
+from idealgas.files import HEAD, describe_file_type
+from idealgas.locks import is_locked
 from idealgas.log import schema
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
-from idealgas.log.hdf5.commit import Commit, table_of
-from idealgas.log.hdf5.superblock import ClearedFile, has_consistency_flags
+from idealgas.log.hdf5.commit import Commit, commit_of, table_of
+from idealgas.log.hdf5.superblock import ReadableFile
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
 _CACHED = 8
@@ -56,6 +58,7 @@ class LogFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._source: Any = None
         self._file: Any = None
         self._events = lru_cache(_CACHED)(self._chunk)
         self._others = lru_cache(2 * _CACHED)(self._chunk)
@@ -74,9 +77,10 @@ class LogFile:
 
     def close(self) -> None:
         """Close the file."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        for file in (self._file, self._source):
+            if file is not None:
+                file.close()
+        self._file = self._source = None
 
     def rows(self, table: str) -> int:
         """Number of committed rows, 0 for a missing table."""
@@ -146,29 +150,35 @@ class LogFile:
     def _open(self) -> None:
         self.close()
         try:
-            flags = has_consistency_flags(self.path)
+            self._source = source = ReadableFile(self.path)
         except OSError as error:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
-        if flags is None:
-            with open_regular(self.path) as file:
-                raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(file.read(HEAD))}")
-        self.unclosed = flags
-        self._file = h5py.File(ClearedFile(self.path) if flags else self.path, "r")
+        if source.unclosed is None:
+            source.seek(0)
+            raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(source.read(HEAD))}")
+        self.unclosed = source.unclosed
+        size = os.fstat(source.fileno()).st_size
+        if not self.unclosed:
+            self._check_size(size, source.end)
+        self._file = h5py.File(source, "r")
         if "format" not in self._file.attrs or _text_or_integer(self._file, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")
         version = _text_or_integer(self._file, "format_version")
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
-        size = self.path.stat().st_size
-        if flags and size < self.commit.file_size:
-            raise DamageError(self.path, f"truncated: {size:,} of {self.commit.file_size:,} bytes")
+        if self.unclosed:
+            self._check_size(size, self.commit.file_size)
         self._columns = {path: self._column_at(path) for path in self.commit.tails}
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
         self.has_thermostat = schema.THERMOSTAT_COLLISIONS in self.names("checkpoints")
         self.rules = self._rules(size)
+
+    def _check_size(self, size: int, expected: int) -> None:
+        if size < expected:
+            raise DamageError(self.path, f"truncated: {size:,} of {expected:,} bytes")
 
     def _rules(self, size: int) -> Rules:
         """Rules for the values of this log, after a check of its tables. size: of the file, bytes."""
@@ -212,9 +222,18 @@ class LogFile:
                 return action()
             except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:
                 if attempt == ATTEMPTS or not is_locked(self.path):
+                    if self._was_changed():
+                        raise LogError(f"{self.path}: was changed by a run while it was read") from error
                     raise DamageError(self.path, f"{what}{reason(error)}") from error
             attempt += 1
             time.sleep(PAUSE)
+
+    def _was_changed(self) -> bool:
+        """Whether a run has changed the log since it was opened or last refreshed."""
+        try:
+            return commit_of(self.path) != self.commit
+        except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError):
+            return False
 
 
 def _text_or_integer(item: h5py.HLObject, name: str) -> str | int:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from idealgas.errors import plain
-from idealgas.files import is_locked
+from idealgas.locks import is_locked
 from idealgas.log.dataframes import (
     KIND_NAMES,
     check_choice,

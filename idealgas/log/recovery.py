@@ -7,13 +7,13 @@ from pathlib import Path
 
 import h5py
 
-from idealgas.files import LOG, lock, storage_error, written
+from idealgas.files import LOG, error_number, storage_error, written
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.superblock import ClearedFile, abandon, clear_consistency_flags, has_consistency_flags
+from idealgas.log.hdf5.superblock import ReadableFile
 from idealgas.log.hdf5.table_writer import TableWriter, commit_tables, open_tables
+from idealgas.log.hdf5.writable_file import ChangedError, WritableFile
 from idealgas.log.reader import Log, open_log
-from idealgas.log.schema import FILE_OPTIONS
 
 
 def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None, force: bool = False) -> int:
@@ -29,7 +29,7 @@ def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None 
 
     Raises:
         LogError: if the log is damaged.
-        OutputError: if another process is writing the log, or if the copy cannot be written.
+        OutputError: if the log is being written, or if the copy cannot be written.
     """
     path = Path(path)
     with open_log(path) as log:
@@ -39,23 +39,26 @@ def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None 
                 shutil.copyfile(path, copy)
                 _close(copy, keep)
             return rows
-    _close(path, keep)
+    _close(path, keep, log.commit)
     return rows
 
 
-def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.File, dict[str, TableWriter], int]:
+def reopen(
+    path: str | os.PathLike[str], checkpoint: int | None, commit: Commit | None = None
+) -> tuple[WritableFile, dict[str, TableWriter], int]:
     """Open a log for appending after one of its checkpoints, or after its start.
 
     Args:
         path: path of the log.
         checkpoint: index of the checkpoint, None for the start.
+        commit: commit that the log must have, None for any.
 
     Returns:
         The file, the writers of its tables, and the number of its last commit.
 
     Raises:
-        LogError: if the log has no such checkpoint or is damaged.
-        OutputError: if another process is writing the log.
+        LogError: if the log has no such checkpoint, is damaged, or has another commit.
+        OutputError: if the log is being written.
     """
     path = Path(path)
     with open_log(path) as log:
@@ -73,7 +76,7 @@ def reopen(path: str | os.PathLike[str], checkpoint: int | None) -> tuple[h5py.F
                 rows["observables"] = min(first + 1, after)
         keep = {table: rows.get(table, 0) for table in log.commit.rows}
         _check_appendable(log, keep)
-    return _open_after(path, keep)
+    return open_after(path, keep, commit or log.commit)
 
 
 def _committed(log: Log) -> dict[str, int]:
@@ -84,10 +87,10 @@ def _committed(log: Log) -> dict[str, int]:
     return keep
 
 
-def _close(path: Path, keep: Mapping[str, int] | None) -> None:
+def _close(path: Path, keep: Mapping[str, int] | None, commit: Commit | None = None) -> None:
     """Close a log after the first `keep` rows of each table; None if it is closed already."""
     if keep is not None:
-        _open_after(path, keep)[0].close()
+        open_after(path, keep, commit)[0].close()
 
 
 def _check_appendable(log: Log, keep: Mapping[str, int]) -> None:
@@ -95,34 +98,40 @@ def _check_appendable(log: Log, keep: Mapping[str, int]) -> None:
     if log.live:
         return  # it will be refused, and its writer may be changing the same bytes
     try:
-        with h5py.File(ClearedFile(log.path) if log.unclosed else log.path, "r") as file:
+        with ReadableFile(log.path) as source, h5py.File(source, "r") as file:
             open_tables(file, Commit.read(file), keep)
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise DamageError(log.path, reason(error)) from error
 
 
-def _open_after(path: Path, keep: Mapping[str, int]) -> tuple[h5py.File, dict[str, TableWriter], int]:
+def open_after(
+    path: Path, keep: Mapping[str, int], commit: Commit | None = None
+) -> tuple[WritableFile, dict[str, TableWriter], int]:
     """Open a log for appending after the first `keep` rows of each table, and remove later rows.
 
-    The commit record is written first, so that the log is valid at any moment.
+    The commit record is written first, so that the log is valid at any moment. A log with another commit than the given
+    one is left as it is: another run has continued or replaced it since it was read.
     """
     try:
-        if has_consistency_flags(path):
-            clear_consistency_flags(path)
-        file = h5py.File(path, "r+", **FILE_OPTIONS)
+        opened = WritableFile(path, commit)
+    except ChangedError:
+        raise LogError(f"{path}: was changed by another run while it was read") from None
+    except (RuntimeError, KeyError) as error:
+        raise DamageError(path, reason(error)) from error
     except (OSError, ValueError) as error:
         raise storage_error(path, error) from error
     try:
-        lock(file.id.get_vfd_handle())
-        commit = Commit.read(file)
-        tables = open_tables(file, commit, keep)
-        file.swmr_mode = True
+        found = Commit.read(opened.file)
+        tables = open_tables(opened.file, found, keep)
+        opened.file.swmr_mode = True
         for sequence in (1, 2):
-            commit_tables(file, tables, commit.sequence + sequence)
+            commit_tables(opened.file, tables, found.sequence + sequence)
         for table in tables.values():
             table.trim()
-        file.flush()
-    except (OSError, RuntimeError, ValueError) as error:
-        abandon(file)
+        opened.file.flush()
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        opened.abandon()
+        if error_number(error) is None:
+            raise DamageError(path, reason(error)) from error
         raise storage_error(path, error) from error
-    return file, tables, commit.sequence + 2
+    return opened, tables, found.sequence + 2

@@ -36,7 +36,6 @@ FORMAT = "idealgas log"
 VERSION = 1
 """Version of the format, to be raised when a reader of the previous one would misread a log."""
 H5MD_VERSION = (1, 1)
-FILE_OPTIONS: dict = {"libver": ("v110", "v110")}
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
 """Small blocks do not extend over two pages of the file, so that a killed process leaves no half of one."""
 

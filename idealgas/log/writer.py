@@ -7,7 +7,8 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -16,11 +17,11 @@ import numpy as np
 
 from idealgas.columns import BLOCK, EventBatch, columns_named, empty_batch
 from idealgas.errors import OutputError
-from idealgas.files import LOG, beside, check_output, give_name, lock, storage_error
+from idealgas.files import LOG, beside, check_output, give_name, storage_error
 from idealgas.log import schema
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.superblock import abandon
 from idealgas.log.hdf5.table_writer import TableWriter, commit_tables, open_tables
+from idealgas.log.hdf5.writable_file import OPTIONS, WritableFile, discard_writes
 from idealgas.log.schema import LogLayout
 from idealgas.state import Gas
 
@@ -94,34 +95,31 @@ class LogWriter:
         Raises:
             OutputError: if the file exists (without `force`) or cannot be written.
         """
+        from idealgas.log.recovery import open_after
+
         path = Path(path)
         check_output(path, LOG, force)
         part = beside(path)
         sizes = {"scene": len(scene_text.encode()) + schema.SCENE_SLACK, "command": schema.COMMAND_SIZE}
         try:
-            file = h5py.File(part, "w", **schema.FILE_OPTIONS, **schema.PAGES)
-        except OSError as error:
-            part.unlink(missing_ok=True)
-            raise storage_error(path, error) from error
-        try:
-            schema.write_header(file, gas, layout, seed, trajectory)
-            schema.create_tables(file, len(gas), layout, sizes)
-            file.flush()
-            commit = Commit.read(file)
-            tables = open_tables(file, commit, commit.rows)
-            file.swmr_mode = True
-            tables["runs"].append(0, 1, _texts(tables["runs"], scene_text, command))
-            tables["runs"].store_tail()
-            commit_tables(file, tables, commit.sequence + 1, fsync)
-            lock(file.id.get_vfd_handle())
+            with _new_file(part) as file:
+                schema.write_header(file, gas, layout, seed, trajectory)
+                schema.create_tables(file, len(gas), layout, sizes)
+                file.flush()
+                commit = Commit.read(file)
+                tables = open_tables(file, commit, commit.rows)
+                tables["runs"].append(0, 1, _texts(tables["runs"], scene_text, command))
+                tables["runs"].store_tail()
+                commit_tables(file, tables, commit.sequence + 1, fsync)
+                commit = Commit.read(file)
             give_name(part, path, force, fsync)
-        except (OSError, RuntimeError, ValueError) as error:
-            abandon(file)
-            part.unlink(missing_ok=True)
-            if isinstance(error, ValueError):  # larger than any log that can be read
-                raise OutputError(f"{path}: {error}") from error
+        except (OSError, RuntimeError) as error:
             raise storage_error(path, error) from error
-        self._start(path, file, tables, commit.sequence + 1, fsync)
+        except ValueError as error:  # larger than any log that can be read
+            raise OutputError(f"{path}: {error}") from error
+        finally:
+            part.unlink(missing_ok=True)
+        self._start(path, *open_after(path, commit.rows, commit), fsync)
 
     @classmethod
     def resume(
@@ -131,6 +129,7 @@ class LogWriter:
         fsync: bool = False,
         scene_text: str | None = None,
         command: str = "",
+        commit: Commit | None = None,
     ) -> Self:
         """Continue a log after one of its checkpoints, and remove later rows, checkpoints, samples and snapshots.
 
@@ -140,21 +139,24 @@ class LogWriter:
             fsync: whether each commit waits until it is on the disk.
             scene_text: scene of the run that continues the log, TOML; None if it is not a new run.
             command: command line of that run.
+            commit: commit that the log must still have, None for any.
 
         Raises:
-            LogError: if there is no such checkpoint.
-            OutputError: if another process is writing the log.
+            LogError: if there is no such checkpoint, or if the log has another commit.
+            OutputError: if the log is being written.
         """
         from idealgas.log.recovery import reopen
 
         writer = cls.__new__(cls)
-        writer._start(Path(path), *reopen(path, checkpoint), fsync)
+        writer._start(Path(path), *reopen(path, checkpoint, commit), fsync)
         if scene_text is not None:
             runs = writer._tables["runs"]
             writer._put(_Rows(runs, 0, 1, _texts(runs, scene_text, command)))
         return writer
 
-    def _start(self, path: Path, file: h5py.File, tables: dict[str, TableWriter], sequence: int, fsync: bool) -> None:
+    def _start(
+        self, path: Path, file: WritableFile, tables: dict[str, TableWriter], sequence: int, fsync: bool
+    ) -> None:
         self.path, self._file, self._tables, self._sequence, self._fsync = path, file, tables, sequence, fsync
         self._events = tables.get("events")
         self._flushed = self.rows = self._events.stored if self._events else 0
@@ -233,7 +235,7 @@ class LogWriter:
             except (OSError, RuntimeError) as error:
                 self._error = error
         else:
-            abandon(self._file)
+            self._file.abandon()
         self._raise()
 
     def __enter__(self) -> Self:
@@ -304,16 +306,30 @@ class LogWriter:
 
     def _commit(self, tails: bool, last: bool = False) -> None:
         """Commit all rows; without `tails` only event rows in full chunks. last: whether it is the end of the log."""
-        if not os.fstat(self._file.id.get_vfd_handle()).st_nlink:
+        if self._file.removed:
             raise FileNotFoundError(errno.ENOENT, "the file was removed")
         for table in self._tables.values():
             if tails or table is not self._events:
                 table.store_tail(last)
         self._sequence += 1
-        commit_tables(self._file, self._tables, self._sequence, self._fsync)
+        commit_tables(self._file.file, self._tables, self._sequence, self._fsync)
         if self._events:
             self._flushed = self._events.whole
         self._due = math.inf if tails else time.monotonic() + FLUSH_SECONDS
+
+
+@contextmanager
+def _new_file(path: Path) -> Iterator[h5py.File]:
+    """Yield a new HDF5 file, which is closed in the end."""
+    file = h5py.File(path, "w", **OPTIONS, **schema.PAGES)
+    try:
+        yield file
+    except BaseException:
+        discard_writes(file)
+        with suppress(OSError, RuntimeError):
+            file.close()
+        raise
+    file.close()
 
 
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:

@@ -7,6 +7,7 @@ from idealgas.columns import empty_batch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.monte_carlo import V_REF
 from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
+from idealgas.files import IN_USE
 from idealgas.jit import compile_seconds
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
 from idealgas.log.schema import CHECKPOINT_COLUMNS
@@ -49,13 +50,13 @@ def resume(
 
     Raises:
         SceneError: for an invalid override.
-        LogError or OutputError: if another process writes the log, if this program or the changed scene does not
+        LogError or OutputError: if the log is being written, if this program or the changed scene does not
             reproduce its events, if the log is already past the new end, or if it cannot be written.
     """
     compiled_before = compile_seconds()
     with open_log(path) as log:
         if log.live:
-            raise LogError(f"{log.path}: another process has this file open")
+            raise LogError(f"{log.path}: {IN_USE}")
         scene = _scene_to_resume(log, overrides)
         if log.complete and dump_document(scene) == dump_document(log.scene):
             return Summary.of(log.summary)
@@ -70,6 +71,7 @@ def resume(
         fsync=scene.log.fsync,
         scene_text=dump_document(scene),
         command=command,
+        commit=log.commit,
     ) as writer:
         return LoggedRun(scene, simulation, writer, past, compiled_before).run(on_progress, interrupted)
 

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from idealgas.errors import OutputError, UserError
-from idealgas.files import LOG, check_output, lock, open_regular, regular, replacing, storage_error
+from idealgas.files import LOG, check_output, replacing, storage_error
+from idealgas.locks import WriteLock, open_regular
 from idealgas.log import open_log
 from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep, seed_of
@@ -47,14 +48,12 @@ def hold_folder(folder: Path) -> Iterator[None]:
             with replacing(folder / LOCK, force=False) as part:
                 part.write_bytes(MARK)
         points_folder(folder).mkdir(exist_ok=True)
-        file = open(folder / LOCK, "r+b", opener=regular)  # noqa: SIM115
+        held = WriteLock(folder / LOCK)
+    except BlockingIOError:
+        raise UserError(f"{folder}: another sweep is running in this folder") from None
     except OSError as error:
         raise storage_error(folder, error) from error
-    with file:
-        try:
-            lock(file)
-        except BlockingIOError:
-            raise UserError(f"{folder}: another sweep is running in this folder") from None
+    with held:
         yield
 
 

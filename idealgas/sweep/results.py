@@ -13,7 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from idealgas.analysis.core.caveats import origin_of
 from idealgas.analysis.core.result import Origin
 from idealgas.errors import UserError
-from idealgas.files import regular, replacing
+from idealgas.files import replacing
+from idealgas.locks import regular
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.sweep.point import points_folder, result_path
 

@@ -12,7 +12,7 @@ from isal import isal_zlib
 from idealgas.log import Log, LogError, open_log
 from idealgas.log.hdf5.commit import Commit, table_of
 from idealgas.log.hdf5.superblock import clear_consistency_flags, has_consistency_flags, lookup3
-from idealgas.log.schema import FILE_OPTIONS
+from idealgas.log.hdf5.writable_file import OPTIONS
 
 Edit = Callable[[h5py.File], object]
 
@@ -23,10 +23,9 @@ WRITING_SWMR = 0b101
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
     """A log, open for changes; one that was not closed is in that state again afterwards."""
-    unclosed = has_consistency_flags(path)
-    if unclosed:
-        clear_consistency_flags(path)
-    with h5py.File(path, "r+", **FILE_OPTIONS) as file:
+    unclosed = has_consistency_flags(path.read_bytes()[:48])
+    clear_consistency_flags(path)
+    with h5py.File(path, "r+", **OPTIONS) as file:
         yield file
     if unclosed:
         with path.open("r+b") as raw:

@@ -14,9 +14,10 @@ from idealgas.files import LOG, check_output, written
 from idealgas.log import open_log
 
 HOLD = """
-import fcntl, sys
-with open(sys.argv[1], "r+b") as file:
-    fcntl.lockf(file, fcntl.LOCK_EX)
+import sys
+from pathlib import Path
+from idealgas.locks import WriteLock
+with WriteLock(Path(sys.argv[1])):
     print(flush=True)
     sys.stdin.read()
 """
@@ -125,7 +126,7 @@ def test_two_writers_of_a_new_log(tmp_path, monkeypatch):
     monkeypatch.setattr("idealgas.log.writer.check_output", lambda *_: None)
     with subprocess.Popen([sys.executable, "-c", HOLD, path], stdin=-1, stdout=-1) as other:
         other.stdout.readline()
-        with pytest.raises(OutputError, match="another process has this file open"):
+        with pytest.raises(OutputError, match="another run is writing this file"):
             new_writer(path, force=True)
         other.communicate()
     with open_log(path) as log:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from helpers.support import ROOT
 
-FREE = {"_version", "errors", "columns", "files", ""}
-"""Version, errors of the user and plain text, files to write, columns of events and numbers of walls are for all."""
+FREE = {"_version", "errors", "columns", "files", "locks", "system", ""}
+"""Version, errors, plain text, files, locks, systems, columns of events and numbers of walls are for all."""
 
 ALLOWED = {
     "jit": set(),
@@ -31,6 +31,8 @@ ALLOWED = {
     "errors": set(),
     "columns": set(),
     "files": set(),
+    "locks": set(),
+    "system": set(),
     "": {"scene", "log", "run", "analysis"},  # the Python interface, imported when it is asked for
     "__main__": set(),
 }

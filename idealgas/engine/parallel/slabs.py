@@ -1,6 +1,5 @@
 """Decomposition of the box into slabs of rows of cells, one per thread, and the memory that the threads share."""
 
-import os
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +20,7 @@ from idealgas.engine.parallel.subdomain import (
     message_word,
 )
 from idealgas.jit import INTERPRETED, aligned
+from idealgas.system import cores
 
 
 class Tuning(NamedTuple):
@@ -46,11 +46,6 @@ class Tuning(NamedTuple):
 
 
 DEFAULT_TUNING = Tuning()
-
-
-def cores() -> int:
-    """Number of processor cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def choose_threads(threads: int | None, rows: int, n: int, local: bool, tuning: Tuning = DEFAULT_TUNING) -> Threads:

@@ -6,6 +6,7 @@ committed rows remain the same bytes, so their CRC-32, which is also in the reco
 """
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple, Self
 
 import h5py
@@ -14,6 +15,7 @@ from isal import isal_zlib
 
 from idealgas.log.hdf5 import chunks
 from idealgas.log.hdf5.column import StoredColumn
+from idealgas.log.hdf5.superblock import ReadableFile
 
 DATASET = "commit"
 
@@ -73,6 +75,12 @@ class Commit(NamedTuple):
         sequence, size, *rest = max(slots)
         rows, tails = rest[: len(tables)], rest[len(tables) :]
         return cls(sequence, size, dict(zip(tables, rows, strict=True)), dict(zip(paths, tails, strict=True)))
+
+
+def commit_of(path: Path) -> Commit:
+    """Newest commit of a file, which may be in use. Raises the errors of h5py and of `Commit.read`."""
+    with ReadableFile(path) as source, h5py.File(source, "r") as file:
+        return Commit.read(file)
 
 
 def table_of(path: str) -> str:

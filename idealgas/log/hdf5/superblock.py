@@ -9,12 +9,9 @@ import errno
 import io
 import os
 import struct
-from contextlib import suppress
 from pathlib import Path
 
-import h5py
-
-from idealgas.files import lock, open_regular, regular
+from idealgas.locks import regular
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SIZE = 48
@@ -23,45 +20,48 @@ _FAR = 1 << 50
 _MASK = 0xFFFFFFFF
 
 
-def has_consistency_flags(path: Path) -> bool | None:
-    """Whether the file consistency flags are set; None for a file other than HDF5 with a superblock of version 3."""
-    with open_regular(path) as file:
-        block = file.read(_SIZE)
-    return block[11] != 0 if len(block) == _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
+def has_consistency_flags(block: bytes) -> bool | None:
+    """Whether the flags are set in the first bytes of a file; None for other files than HDF5's of version 3."""
+    return block[11] != 0 if len(block) >= _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
 def clear_consistency_flags(path: Path) -> None:
-    """Clear the file consistency flags of a file that was not closed.
-
-    Raises:
-        ValueError: if the superblock is damaged.
-        OSError: if a writer has the file open.
-    """
+    """Clear the file consistency flags of a file that was not closed. Raises ValueError for a damaged superblock."""
     with path.open("r+b") as file:
-        lock(file)
-        end = -(-os.fstat(file.fileno()).st_size // _PAGE) * _PAGE
-        block = _cleared(file.read(_SIZE), end)
-        file.truncate(end)
-        file.seek(0)
-        file.write(block)
+        block = file.read(_SIZE)
+        if has_consistency_flags(block):
+            end = -(-os.fstat(file.fileno()).st_size // _PAGE) * _PAGE
+            block = _cleared(block, end)
+            file.truncate(end)
+            file.seek(0)
+            file.write(block)
 
 
-class ClearedFile(io.FileIO):
-    """A file for reading whose file consistency flags appear to be cleared.
+class ReadableFile(io.FileIO):
+    """An HDF5 file for reading whose file consistency flags appear to be cleared.
 
-    HDF5's own way to read such a file, SWMR, retries indefinitely where a byte is damaged. The file appears to end far
-    away, as a live writer may extend it at any moment; bytes beyond its present end are zero.
+    HDF5 knows the file only through this object. So it takes no locks, and shares nothing with a writer in the same
+    process. Its own way to read a file that is being written, SWMR, retries indefinitely where a byte is damaged. The
+    file appears to end far away, as a writer may extend it at any moment; bytes beyond its present end are zero.
+
+    Attributes:
+        unclosed: whether the flags are set; None for a file other than HDF5 with a superblock of version 3.
+        end: size that the file has if it was closed, bytes.
     """
 
     def __init__(self, path: Path) -> None:
         """Open a file. Raises ValueError if the superblock is damaged."""
         super().__init__(path, opener=regular)
-        self._at_end = False
-        try:
-            self._head = _cleared(self.read(_SIZE), _FAR)
-        except ValueError:
-            self.close()
-            raise
+        self._at_end, self._head, self.end = False, b"", 0
+        block = self.read(_SIZE)
+        self.unclosed = has_consistency_flags(block)
+        if self.unclosed is not None:
+            try:
+                self._head = _cleared(block, _FAR)
+            except ValueError:
+                self.close()
+                raise
+            (self.end,) = struct.unpack_from("<Q", block, 28)
 
     def __del__(self) -> None:
         self.close()  # HDF5 does not
@@ -86,18 +86,6 @@ class ClearedFile(io.FileIO):
         head = self._head[start : start + len(data)]
         data[: len(head)] = head
         return len(data)
-
-
-def abandon(file: h5py.File) -> None:
-    """Close a file that could not be written to, and leave it as if its writer had been killed.
-
-    HDF5 would write what it can and clear the file consistency flags; these bytes are discarded.
-    """
-    nowhere = os.open(os.devnull, os.O_RDWR)
-    os.dup2(nowhere, file.id.get_vfd_handle())
-    os.close(nowhere)
-    with suppress(OSError, RuntimeError):
-        file.close()
 
 
 def _cleared(block: bytes, end: int) -> bytes:

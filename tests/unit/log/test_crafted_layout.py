@@ -72,7 +72,7 @@ def attribute(of, name, value, **options):
 
 TEXTS, REFERENCES = h5py.string_dtype(), h5py.ref_dtype
 STRUCTURE = {
-    "external link": (link("discs/radius", h5py.ExternalLink("o.h5", "/x")), "discs/radius: can't open file"),
+    "external link": (link("discs/radius", h5py.ExternalLink("o.h5", "/x")), "discs/radius: object 'x' doesn't exist"),
     "soft circle": (link("discs/radius", h5py.SoftLink("/discs/radius")), "discs/radius: "),
     "other filter": (swap("discs/radius", compression="lzf", shuffle=False), "discs/radius: filters 32000, 3"),
     "unknown filter": (unknown_filter, "discs/radius: filters 32001"),

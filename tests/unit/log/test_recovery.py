@@ -46,7 +46,7 @@ def test_a_live_writer_is_not_disturbed(tmp_path):
             log.refresh()
             assert check(log) >= before
         for refused in (recover, LogWriter.resume):
-            with pytest.raises(OutputError, match="another process has this file open"):
+            with pytest.raises(OutputError, match="another run is writing this file"):
                 refused(path)
         assert child.poll() is None
     finally:

@@ -6,6 +6,7 @@ import math
 import os
 import threading
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -230,9 +231,13 @@ def test_an_existing_file_stays(tmp_path):
         assert check(log) == 10
 
 
-def test_an_unwritable_folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(os, "access", lambda *_: False)  # nothing is forbidden to root
-    with pytest.raises(OutputError, match="cannot be written: Permission denied") as caught:
+@pytest.mark.parametrize("number", [errno.EACCES, errno.EROFS], ids=errno.errorcode.get)
+def test_an_unwritable_folder(tmp_path, monkeypatch, number):
+    def fail(*_, **__):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(Path, "touch", fail)  # nothing is forbidden to root
+    with pytest.raises(OutputError, match=f"cannot be written: {os.strerror(number)}") as caught:
         new_writer(tmp_path / "run.h5")
     assert caught.value.exit_code == 1
 

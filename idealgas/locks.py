@@ -1,0 +1,131 @@
+"""Regular files, and one writer per file: a lock for all processes, and a register of what this process writes."""
+
+import errno
+import os
+import stat
+import threading
+import time
+from pathlib import Path
+from typing import IO, Self
+
+from idealgas import system
+
+TIMEOUT = 0.5
+"""Time for which a writer waits for a lock, as on some systems readers take it for a moment, s."""
+
+_held: dict[tuple[int, int], "WriteLock"] = {}
+_guard = threading.Lock()
+
+
+class WriteLock:
+    """The right to be the only writer of a file, until `close`.
+
+    Attributes:
+        descriptor: of the file, open for reading and writing.
+    """
+
+    def __init__(self, path: Path, needed: bool = True) -> None:
+        """Lock a file. needed: whether its file system must have locks, unless the user does without.
+
+        Raises:
+            BlockingIOError: if this process or another one is writing it.
+            OSError: if it cannot be opened for writing, or, with number ENOLCK, if its file system has no locks.
+        """
+        self.descriptor = regular(path, os.O_RDWR)
+        self._key = _key(self.descriptor)
+        with _guard:
+            if _held.setdefault(self._key, self) is not self:
+                os.close(self.descriptor)
+                raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+        try:
+            _lock(self.descriptor, needed and not _does_without())
+        except OSError:
+            self.close()
+            raise
+
+    def is_of(self, path: Path) -> bool:
+        """Whether a path still leads to the locked file."""
+        return os.path.samestat(os.fstat(self.descriptor), os.stat(path))
+
+    def close(self) -> None:
+        """Free the lock."""
+        with _guard:
+            if _held.get(self._key) is self:
+                del _held[self._key]
+                os.close(self.descriptor)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _key(descriptor: int) -> tuple[int, int]:
+    found = os.fstat(descriptor)
+    return found.st_dev, found.st_ino
+
+
+def _does_without() -> bool:
+    """Whether the user does without locks where there are none, as in HDF5."""
+    return os.environ.get("HDF5_USE_FILE_LOCKING", "").upper() in ("FALSE", "0", "BEST_EFFORT")
+
+
+def _lock(descriptor: int, needed: bool) -> None:
+    deadline = time.monotonic() + TIMEOUT
+    while True:
+        try:
+            return system.lock(descriptor)
+        except BlockingIOError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.001)
+        except OSError as error:
+            if needed or error.errno != errno.ENOLCK:
+                raise
+            return None
+
+
+def is_locked(path: Path) -> bool:
+    """Whether this process or another one is writing a file."""
+    try:
+        with open_regular(path) as file:
+            return _key(file.fileno()) in _held or system.has_other_lock(file.fileno())
+    except OSError:
+        return False
+
+
+def _leave_to_parent() -> None:
+    """Close the locked files in a forked child: otherwise it would keep them locked after the death of its parent."""
+    global _guard
+    _guard = threading.Lock()
+    for lock in tuple(_held.values()):
+        lock.close()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_parent)
+
+
+def open_regular(path: Path, mode: str = "rb") -> IO[bytes]:
+    """Open a regular file, unbuffered. Raises OSError for anything else."""
+    return open(path, mode, buffering=0, opener=regular)
+
+
+def regular(path: str | Path, flags: int) -> int:
+    """Opener for `open`, of regular files only. Opening a device may change it, and opening a FIFO waits."""
+    _check_regular(os.stat(path))
+    descriptor = os.open(path, flags | system.WITHOUT_WAITING)
+    try:
+        _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
+    except OSError:
+        os.close(descriptor)
+        raise
+    return descriptor
+
+
+def _check_regular(found: os.stat_result) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "not a regular file")
