@@ -4,21 +4,20 @@ import csv
 import json
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from idealgas.accuracy.bias import BiasLaw, bias_law
 from idealgas.accuracy.study import Accuracy, Row
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import save
 from idealgas.files import check_output, storage_error, written
 
 TARGET = 0.01  # relative error in the sentences on its cost
-CLEAR = 3.0  # standard errors beyond which a bias is significant
-LARGEST = 0.03  # largest bias that counts as proportional to the time step
 LOST = 0.1  # rms distance in diameters beyond which a trajectory is lost
 
 
@@ -79,22 +78,11 @@ def lost_after(row: Row, found: Accuracy) -> float | None:
 
 def sentences(found: Accuracy) -> list[str]:
     """Results in sentences."""
-    rate = price(found, "the collision rate", lambda row: row.rate)
+    rate = price(found, "the collision rate", found.rate_law)
     results = [rate, _pressure(found), _missed(found), *_motion(found)]
     if found.left_out:
         results.append(f"No trajectories were compared: {found.left_out}.")
     return [sentence for sentence in results if sentence]
-
-
-def linear_coefficient(rows: list[Row], bias: Callable[[Row], Estimate | None]) -> tuple[float, float] | None:
-    """Coefficient a of bias = a dt with its standard error, from significant biases up to LARGEST; None without any."""
-    estimates = [(row.case.dt or 0.0, bias(row)) for row in rows]
-    points = [(dt, found) for dt, found in estimates if found is not None and abs(found.value) < LARGEST]
-    if not any(abs(found.value) > CLEAR * found.standard_error > 0 for _, found in points):
-        return None
-    dt, value, error = np.array([(dt, found.value, found.standard_error) for dt, found in points]).T
-    weight = (dt / error) ** 2
-    return float((weight * value / dt).sum() / weight.sum()), float(1 / math.sqrt(weight.sum()))
 
 
 def cost_of(dt: float, rows: list[Row]) -> float:
@@ -106,17 +94,17 @@ def cost_of(dt: float, rows: list[Row]) -> float:
     return float(math.exp(costs[k] + slope * (math.log(dt) - steps[k])))
 
 
-def price(found: Accuracy, what: str, bias: Callable[[Row], Estimate | None]) -> str:
+def price(found: Accuracy, what: str, law: BiasLaw | None) -> str:
     """Sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
-    if (fit := linear_coefficient(found.steps, bias)) is None:
+    if law is None:
         return ""
-    dt = TARGET / abs(fit[0])
-    cost, finer = cost_of(dt, found.steps), cost_of(dt / 10, found.steps)
+    dt = law.step(TARGET)
+    cost, finer = cost_of(dt, found.steps), cost_of(law.step(TARGET / 10), found.steps)
     times = cost / found.event_driven.timing.median
     return (
         f"To get {what} right to {TARGET:.0%} by time steps takes dt = {dt:.2g} and {times:.2g} times the time of the "
-        f"event-driven run, which has no such error (bias = ({fit[0]:+.2g} ± {fit[1]:.1g}) dt); the next factor of 10 "
-        f"in accuracy costs a factor of {finer / cost:.2g}."
+        f"event-driven run, which has no such error (bias = ({law.first:+.2g} ± {law.error:.1g}) dt {law.second:+.2g} "
+        f"dt²); the next factor of 10 in accuracy costs a factor of {finer / cost:.2g}."
     )
 
 
@@ -129,7 +117,9 @@ def _pressure(found: Accuracy) -> str:
         if exact.standard_error > 0
         else ""
     )
-    return (own + price(found, "the pressure of the pairs", lambda row: row.z_pairs)).rstrip()
+    known = [row for row in found.steps if row.z_pairs]
+    law = bias_law(np.array([row.case.dt for row in known]), [row.z_pairs for row in known if row.z_pairs])
+    return (own + price(found, "the pressure of the pairs", law)).rstrip()
 
 
 def _missed(found: Accuracy) -> str:

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from idealgas.accuracy.averages import Averages, measure_averages
+from idealgas.accuracy.bias import BiasLaw, rate_biases
 from idealgas.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.log.summary import Summary
@@ -20,6 +21,9 @@ from idealgas.scene import Scene
 from idealgas.state import Gas
 
 SHORTEST_TIMING = 0.1  # least CPU seconds of a timed run
+RATE_SECONDS = 30.0  # CPU seconds of all runs for the collision rates
+RATE_BLOCKS = 64  # of each of them
+BURN_IN = 0.1  # part of them in which the gas gets used to the method
 LONGEST_RUN = 40.0  # most CPU seconds of a case for its averages, and of the reference trajectories
 MOST_PRECISE = 4000  # largest number of discs for brute force
 FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
@@ -53,9 +57,10 @@ class Row:
     """CPU time and errors of one case; None where an error was not measured.
 
     case: method, time step and precision. timing: CPU time. averages: averages of the whole run. rate: relative bias of
-    the collision rate against the event-driven run. z_pairs, z_walls: relative bias of the pressure, by the virial of
-    pairs and of walls, against theory. missed: missed collisions. trajectory: (T,), rms distance from the reference
-    trajectories, in diameters. way_back: rms distance from the start after reversal of all velocities, in diameters.
+    the collision rate, for time steps against the limit dt = 0 of all, for precisions against the event-driven run.
+    z_pairs, z_walls: relative bias of the pressure, by the virial of pairs and of walls, against theory. missed:
+    missed collisions. trajectory: (T,), rms distance from the reference trajectories, in diameters. way_back: rms
+    distance from the start after reversal of all velocities, in diameters.
     """
 
     case: Case
@@ -75,7 +80,8 @@ class Accuracy:
 
     title: of the scene. number: of discs. until: simulated time of the runs for averages. repeats: number of timings of
     each case. collisions: (T,), collisions per disc at which trajectories were compared; empty if they were not.
-    left_out: reason why brute force in several precisions was not run; empty if it was. rows: one per case.
+    left_out: reason why brute force in several precisions was not run; empty if it was. rate_law: bias of the collision
+    rate by time steps; None if it is not significant. rows: one per case.
     """
 
     title: str
@@ -84,6 +90,7 @@ class Accuracy:
     repeats: int
     collisions: np.ndarray
     left_out: str
+    rate_law: BiasLaw | None
     rows: tuple[Row, ...]
 
     @property
@@ -121,20 +128,25 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
     steps = [case for case in cases if case.dt is not None]
     counts = count_missed(start, steps, rate, lambda share: progress("missed collisions", share))
     missed = dict(zip(steps, counts, strict=True))
+    biases, rate_law = rate_biases(
+        np.array([0.0, *(case.dt for case in steps if case.dt)]),
+        measure_rates(start, cases[: len(steps) + 1], timings, progress),
+    )
+    rates = dict(zip(steps, biases[1:], strict=False))
     collisions, trajectories, ways_back = _motion(start, cases, timings, rate, progress)
     rows = [
         Row(
             case, timing, found,
-            rate=None if found is None or k == 0 else relative(found.rate, truth.rate),
+            rate=relative(found.rate, truth.rate) if case.precision and found else rates.get(case),
             z_pairs=None if found is None else from_theory(found.z_pairs),
             z_walls=None if found is None else from_theory(found.z_walls),
             missed=missed.get(case),
             trajectory=trajectories.get(case),
             way_back=ways_back.get(case),
         )
-        for k, (case, timing, found) in enumerate(zip(cases, timings, averages, strict=True))
+        for case, timing, found in zip(cases, timings, averages, strict=True)
     ]  # fmt: skip
-    return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, tuple(rows))
+    return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, rate_law, tuple(rows))
 
 
 def check(scene: Scene) -> None:
@@ -205,6 +217,21 @@ def _long_enough(start: Start, case: Case) -> float:
         duration *= 2
         simulation = start.simulation(case.make())
     return duration
+
+
+def measure_rates(start: Start, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress) -> list[Estimate]:
+    """Pair collisions of the gas per time in each case, from runs of the same length, RATE_SECONDS in all."""
+    whole = RATE_SECONDS / sum(timing.median for timing in timings[: len(cases)])
+    edges = np.linspace(BURN_IN * whole, whole, RATE_BLOCKS + 1)
+    rates = []
+    for k, case in enumerate(cases):
+        progress("collision rates", k / len(cases))
+        simulation, counts = start.simulation(case.make()), []
+        for time in edges.tolist():
+            simulation.run(pause=time)
+            counts.append(simulation.counters.disc_collisions)
+        rates.append(mean(np.diff(counts) / np.diff(edges)))
+    return rates
 
 
 def _all_averages(

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from helpers.support import gas_of
 
+from idealgas.accuracy.bias import BiasLaw, bias_law, rate_biases
 from idealgas.accuracy.cases import Case, Start, compared_cases
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
-from idealgas.accuracy.report import cost_of, flat_row, linear_coefficient, lost_after, sentences
+from idealgas.accuracy.report import cost_of, flat_row, lost_after, sentences
 from idealgas.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.effects.bundle import Effects
@@ -143,15 +144,51 @@ def steps():
     return [row(dt, 0.5 / dt, -2 * dt, missed=Missed(10_000, round(1e6 * dt**2))) for dt in (0.04, 0.02, 0.01, 0.005)]
 
 
-def study(rows):
-    return Accuracy("made up", 10, 1.0, 1, np.empty(0), "no reference", (row(cost=5.0, z=0.0), *rows))
+def study(rows, law=None):
+    return Accuracy("made up", 10, 1.0, 1, np.empty(0), "no reference", law, (row(cost=5.0, z=0.0), *rows))
 
 
-def test_a_linear_bias_is_found_with_its_error():
-    value, error = linear_coefficient(steps(), lambda row: row.rate)
-    assert value == pytest.approx(-2)
-    assert error == pytest.approx(0.001 / math.hypot(0.01, 0.005))  # beyond 3 % it is not linear any more
-    assert linear_coefficient([row(0.01, 1.0, -0.002, error=0.001)], lambda row: row.rate) is None
+STEPS = 0.04 / 2 ** np.arange(8)
+
+
+def rates(random, common=0.0):
+    """Rates with the bias -1.4 dt - 78 dt² that 1 000 discs at φ = 0.05 have, known to 0.12 %; event-driven first."""
+    dt = np.append(0.0, STEPS)
+    found = 1000 * (1 - 1.4 * dt - 78 * dt**2) + 1.2 * random.normal(size=9)
+    found[0] += common
+    return dt, [Estimate(float(value), 1.2, 64) for value in found]
+
+
+def test_biases_of_the_rate_against_their_common_limit():
+    """Of 400 studies: the law, its error and those of all biases have unit deviations; 4 standard errors, 4/√800."""
+    random = np.random.default_rng(1)
+    studies = [rate_biases(*rates(random)) for _ in range(400)]
+    true = -1.4 * STEPS - 78 * STEPS**2
+    deviations = [(law.first + 1.4) / law.error for _, law in studies]
+    assert np.std(deviations) == pytest.approx(1, abs=4 / math.sqrt(800))
+    for k, bias in enumerate(true, 1):
+        deviations = [(biases[k].value - bias) / biases[k].standard_error for biases, _ in studies]
+        assert np.sqrt(np.mean(np.square(deviations))) == pytest.approx(1, abs=4 / math.sqrt(800))
+    steps = [law.step(0.01) for _, law in studies]
+    assert np.mean(steps) == pytest.approx((-1.4 + math.sqrt(1.4**2 + 4 * 78 * 0.01)) / (2 * 78), rel=0.02)
+    assert np.std(steps) < 0.1 * np.mean(steps)
+
+
+def test_an_error_of_the_event_driven_run_is_not_that_of_all_steps():
+    """Of 0.36 % of it, biases get less than a third."""
+    right, shifted = (rate_biases(*rates(np.random.default_rng(2), common))[0] for common in (0.0, 3.6))
+    assert abs(shifted[-1].value - right[-1].value) < 0.0036 / 3
+
+
+def test_a_bias_is_found_with_its_error():
+    value, second, error = bias_law(STEPS, [Estimate(-2 * dt + 5 * dt**2, 0.001, math.inf) for dt in STEPS])
+    assert (value, second) == (pytest.approx(-2), pytest.approx(5))
+    columns = np.stack((STEPS, STEPS**2))
+    assert error == pytest.approx(0.001 * math.sqrt(np.linalg.inv(columns @ columns.T)[0, 0]))
+    assert bias_law(STEPS, [Estimate(-0.002, 0.001, math.inf)] * 8) is None
+    assert bias_law(STEPS[:0], []) is None
+    assert BiasLaw(-2.0, 0.0, 0.1).step(0.01) == pytest.approx(0.005)
+    assert BiasLaw(1.0, -100.0, 0.1).step(0.01) == pytest.approx((1 + math.sqrt(5)) / 200)
 
 
 def test_costs_follow_a_power_law_between_steps_and_beyond():
@@ -161,7 +198,7 @@ def test_costs_follow_a_power_law_between_steps_and_beyond():
 
 def test_sentences_say_what_the_numbers_say():
     """1 % takes dt = 0.005 and 100 s per time unit, 20 times the event-driven 5."""
-    said = " ".join(sentences(study(steps())))
+    said = " ".join(sentences(study(steps(), BiasLaw(-2.0, 0.0, 0.1))))
     assert "collision rate right to 1% by time steps takes dt = 0.005 and 20 times the time of the event-driven" in said
     assert "accuracy costs a factor of 10." in said
     assert "in 16.00% of the collisions, at dt = 0.005 in 0.25%" in said
@@ -186,7 +223,9 @@ def test_ratios_and_their_errors():
 
 
 def test_where_a_trajectory_is_lost():
-    made = Accuracy("", 1, 1.0, 1, np.array([1.0, 2, 3]), "", (row(trajectory=np.array([1e-9, 0.2, 3.0])), *steps()))
+    made = Accuracy(
+        "", 1, 1.0, 1, np.array([1.0, 2, 3]), "", None, (row(trajectory=np.array([1e-9, 0.2, 3.0])), *steps())
+    )
     assert lost_after(made.rows[0], made) == 2.0
     assert flat_row(made.rows[0], made)["trajectory_error"] == 1e-9
     assert lost_after(row(trajectory=np.array([1e-9, 1e-3, 0.1])), made) is None
