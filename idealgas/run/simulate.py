@@ -29,7 +29,7 @@ from idealgas.log.summary import Summary
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import Energy, energy_of
 from idealgas.run.layout import by_name, disc_state, layout_of, observed, snapshot_state, whole_state
-from idealgas.run.stall import WEDGED, StallDetector
+from idealgas.run.stall import STUCK, StallDetector
 from idealgas.scene import Run, Scene
 from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
@@ -202,11 +202,11 @@ class LoggedRun:
                 self._stall.end_epoch()
                 simulation.next_epoch()
                 self._begin_epoch()
-            if (disc := self._stall.wedged()) >= 0:
+            if (disc := self._stall.stuck()) >= 0:
                 self._log.close()
                 raise UserError(
-                    f"{self._log.path}: disc {disc} is wedged at t = {simulation.last_event_time:g}: "
-                    f"more than {WEDGED} collisions per contact duration, all elastic; the log can be read"
+                    f"{self._log.path}: disc {disc} is stuck at t = {simulation.last_event_time:g}: "
+                    f"more than {STUCK} collisions per contact duration; the log can be read"
                 )
             on_progress(self._progress())
             if interrupted():

@@ -25,11 +25,11 @@ HOPELESS = 1e-9
 QUIET_SAMPLES = 64
 """Number of consecutive epochs without an event that are sampled; later ones are not."""
 
-WEDGED = 1000
-"""Collisions of a disc per contact duration, on average over an epoch, above which it is wedged; one at rest has 1/e.
+STUCK = 1000
+"""Collisions of a disc per contact duration, on average over an epoch, above which it is stuck; one at rest has 1/e.
 
-Between walls, or under an arch of other discs, the gaps may be so small that all collisions count as contacts at rest.
-They are elastic, so the disc keeps its speed.
+Between walls, or under an arch of other discs, gaps may be so small that all collisions count as contacts at rest. They
+are elastic, so the disc keeps its speed.
 """
 
 OVERDUE = 8
@@ -91,14 +91,14 @@ class StallDetector:
             return f"no collision between discs although about {EXPECTED:,} were expected".replace(",", " ")
         return ""
 
-    def wedged(self) -> int:
-        """Id of an inelastic disc that is wedged; -1 if there is none."""
+    def stuck(self) -> int:
+        """Id of an inelastic disc that is stuck; -1 if there is none."""
         simulation, restitution = self._simulation, self._simulation.effects.restitution
         if restitution is None or simulation.method.single_epoch:
             return -1
         discs, elapsed = simulation.method.discs, simulation.last_event_time - simulation.time
         most = int(discs.record.count.argmax())
-        allowed = WEDGED * (1 + elapsed / restitution.contact_duration)
+        allowed = STUCK * (1 + elapsed / restitution.contact_duration)
         return int(discs.id[most]) if discs.record.count[most] > allowed else -1
 
     def busy(self) -> str:

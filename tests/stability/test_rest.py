@@ -88,6 +88,6 @@ def test_a_disc_that_sticks_ends_the_run_with_one_line(wall, tmp_path):
     (tmp_path / "scene.toml").write_text(FIVE)
     done = called("run", "scene.toml", "-o", "run.h5", "--set", wall, folder=tmp_path)
     assert done.returncode == 2
-    assert "the clock stands still" in done.stderr.splitlines()[-1]
+    assert "is stuck at" in done.stderr.splitlines()[-1]
     with open_log(tmp_path / "run.h5") as log:
         assert not log.complete

@@ -30,6 +30,7 @@ run.collisions_per_disc = 60
 SLIT = (
     "species.0.region=[0,0,4,8]",
     "wall=[{from=[4,0],to=[4,3]},{from=[4,5],to=[4,8]},{from=[4,3],to=[4,5],opens_at=1.0}]",
+    "run.collisions_per_disc=10",
 )
 
 WAVES = (
