@@ -23,7 +23,7 @@ from ._interrupt import EXIT_CODE
 from ._terminal import echo, exit_on_closed_pipe
 
 GROUPS = {
-    "Run": ("new", "examples", "schema", "check", "run", "resume", "recover", "warm-up"),
+    "Run": ("new", "examples", "schema", "check", "run", "resume", "scene", "recover", "warm-up"),
     "Look": ("info", "follow", "animate"),
     "Analyse": tuple(sorted(registry.commands(), key=registry.position_of)),
     "Share": ("report", "export"),

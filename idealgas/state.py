@@ -32,6 +32,13 @@ class Gas:
         return len(self.mass)
 
     @property
+    def unlike(self) -> tuple[str, ...]:
+        """Names of the species whose discs differ in radius or mass."""
+        _, first, kind = np.unique(self.species, return_index=True, return_inverse=True)
+        differs = (self.radius != self.radius[first][kind]) | (self.mass != self.mass[first][kind])
+        return tuple(self.species_names[k] for k in np.unique(self.species[differs]))
+
+    @property
     def area(self) -> float:
         """Area of the box, length²."""
         return self.box[0] * self.box[1]

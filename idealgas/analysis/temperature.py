@@ -185,6 +185,7 @@ class TemperatureAnalysis(Analysis):
 
     position = 10
     results = (Temperature,)
+    takes_unlike_discs = True  # a mean of m v² depends on the mean mass only
     sections = (Section("Temperature", "Kinetic temperature of each species against time"),)
 
     measure = staticmethod(temperature)

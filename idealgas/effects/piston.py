@@ -27,7 +27,9 @@ class Piston(Table):
 
     side: Literal["left", "right", "bottom", "top"] = Field(default="right", description="the side it stands for")
     position: Number | None = Field(default=None, description="coordinate at the start, length; at its side if absent")
-    velocity: Number | None = Field(default=None, description="length/time along the axis, kept up against all hits")
+    velocity: Number | None = Field(
+        default=None, description="length/time along the axis: kept up against all hits; at the start with a mass"
+    )
     mass: Positive | None = Field(default=None, description="mass > 0, together with pressure")
     pressure: NotNegative | None = Field(default=None, description="outer pressure, force per length of the piston")
 

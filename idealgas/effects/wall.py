@@ -52,6 +52,15 @@ class Wall(Table):
             return action
         return f"{action}, open from {opens:g}" + ("" if math.isinf(closes) else f" to {closes:g}")
 
+    def after(self, time: float) -> "Wall | None":
+        """The wall in a scene whose clock starts at a later time; None if it has been removed for good."""
+        opens, closes = self.absence
+        if opens <= time and math.isinf(closes):
+            return None
+        later = {"opens_at": opens - time if time < opens < math.inf else None}
+        later["closes_at"] = closes - time if time < closes < math.inf else None
+        return self.model_copy(update=later)
+
     @property
     def there_at_start(self) -> bool:
         """Whether it is there at time 0."""

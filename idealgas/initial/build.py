@@ -12,22 +12,16 @@ from idealgas.toml.issues import Issue
 
 
 def make_gas(scene: Scene) -> Gas:
-    """Discs of a scene at time 0: the explicit ones have the first ids, then each species in the order of the file.
+    """Discs of a scene at time 0: given ones have the first ids, then each species in the order of the file.
 
-    Each species of the gas has one radius and one mass: explicit discs are the species "disc" or, if they differ, "disc
-    K" with the id K of the first of its discs. SceneError if the discs cannot be placed, or if one is in static contact
-    with a wall or the piston to which it is pressed.
+    A species with a table has one radius and one mass; given discs of other species may differ. SceneError if the discs
+    cannot be placed, or if one is in static contact with a wall or the piston to which it is pressed.
     """
     radius, mass, species, names = disc_constants(scene)
     gas = Gas(
         box=scene.box.size,
         position=_positions(scene, radius),
-        velocity=np.concatenate(
-            [
-                np.array([disc.velocity for disc in scene.disc]).reshape(-1, 2),
-                *(_velocities(s, rng(scene.scene.seed, f"velocities {s.name}")) for s in scene.species),
-            ]
-        ),
+        velocity=_all_velocities(scene, species, names),
         radius=radius,
         mass=mass,
         species=species,
@@ -40,19 +34,30 @@ def make_gas(scene: Scene) -> Gas:
 
 def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...]]:
     """Radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
-    kinds = list(dict.fromkeys((disc.radius, disc.mass) for disc in scene.disc))
-    count = [s.count for s in scene.species]
-    radius, mass = (np.repeat([getattr(s, name) for s in scene.species], count) for name in ("radius", "mass"))
-    number = {kind: k for k, kind in enumerate(kinds)}
-    explicit = np.array([number[disc.radius, disc.mass] for disc in scene.disc], np.uint16)
-    others = np.repeat(np.arange(len(scene.species), dtype=np.uint16) + np.uint16(len(kinds)), count)
-    names = ["disc"] if len(kinds) == 1 else [f"disc {k}" for k in np.unique(explicit, return_index=True)[1]]
+    given, tables = scene.given, [s.name for s in scene.species]
+    names = (*(name for name in given.names if name not in tables), *tables)
+    number = {name: k for k, name in enumerate(names)}
+    count = [s.count for _, s in scene.placed]
+    radius, mass = (np.repeat([getattr(s, key) for s in scene.species], count) for key in ("radius", "mass"))
+    others = np.repeat(np.array([number[name] for name in tables], np.uint16), count)
     return (
-        np.concatenate(([disc.radius for disc in scene.disc], radius)),
-        np.concatenate(([disc.mass for disc in scene.disc], mass)),
-        np.concatenate((explicit, others)),
-        (*names, *(s.name for s in scene.species)),
+        np.concatenate((given.radius, radius)),
+        np.concatenate((given.mass, mass)),
+        np.concatenate((np.array([number[name] for name in given.names], np.uint16)[given.species], others)),
+        names,
     )
+
+
+def _all_velocities(scene: Scene, species: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+    """Velocities (N, 2) of all discs, length/time; given discs keep theirs unless the scene draws new ones."""
+    kinds = scene.species if scene.draws_velocities else [s for _, s in scene.placed]
+    drawn = [_velocities(s, rng(scene.scene.seed, f"velocities {s.name}")) for s in kinds]
+    if not scene.draws_velocities:
+        return np.concatenate([scene.given.velocity, *drawn])
+    velocity = np.empty((len(species), 2))
+    for s, values in zip(kinds, drawn, strict=True):
+        velocity[species == names.index(s.name)] = values
+    return velocity
 
 
 def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
@@ -61,6 +66,8 @@ def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
     Their total momentum is 0 if there are two discs or more.
     """
     n = species.count
+    if n == 0:
+        return np.empty((0, 2))
     if species.velocities is not None:
         return np.array(species.velocities)
     if species.speed is not None:
@@ -75,7 +82,7 @@ def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
 
 def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """Positions (N, 2), length; those of discs that are compressed from where smaller discs are placed at random."""
-    if not any(s.placement == "compressed" for s in scene.species):
+    if not any(s.placement == "compressed" and s.count for _, s in scene.placed):
         return _placed(scene, radius)
     from idealgas.initial.compression import compress, loose_scale
 
@@ -99,14 +106,16 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     grid = placement.make_grid(box.size, radius, periodic, walls)
     random = rng(scene.scene.seed, "placement")
-    ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.disc), *(s.count for s in scene.species)])[:-1])
-    if scene.disc:
-        position[ids[0]] = [disc.position for disc in scene.disc]
+    ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.given), *(s.count for _, s in scene.placed)])[:-1])
+    if len(scene.given):
+        position[ids[0]] = scene.given.position
         placement.insert_given(grid, position, ids[0])
     lattices: dict[tuple[float, ...], list[int]] = {}
     triangular: list[int] = []
     at_random: list[int] = []
-    for k, s in enumerate(scene.species):
+    for k, s in scene.placed:
+        if s.count == 0:
+            continue
         x0, y0, x1, y1 = region = s.region or space
         bounds[ids[k + 1]] = x0 + s.radius, y0 + s.radius, x1 - s.radius, y1 - s.radius
         if s.placement == "lattice":

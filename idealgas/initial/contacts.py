@@ -55,8 +55,8 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
 
 def _key_of(scene: Scene, gas: Gas, i: int) -> Key:
     """Key of the scene that sets disc i's velocity."""
-    if i < len(scene.disc):
-        return "disc", i, "velocity"
+    if i < len(scene.given) and not scene.draws_velocities:
+        return ("start", "velocities") if scene.start else ("disc", i, "velocity")
     names = [s.name for s in scene.species]
     k = names.index(gas.species_names[gas.species[i]])
     motion = next(key for key in ("temperature", "speed", "velocities") if getattr(scene.species[k], key) is not None)

@@ -14,6 +14,7 @@ from idealgas.state import Gas
 
 if TYPE_CHECKING:
     from idealgas.scene import Scene
+    from idealgas.scene.discs import Discs
 
 
 class LogHeader:
@@ -51,7 +52,7 @@ class LogHeader:
         from idealgas.scene import Scene, parse_scene
 
         def read() -> Scene:
-            scene = parse_scene(self.scene_text, "scene")
+            scene = parse_scene(self.scene_text, "scene", discs=self.given)
             columns = {*self._file.names("events"), *self._file.names("checkpoints")}
             check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._file.has_thermostat, columns)
             return scene
@@ -86,6 +87,16 @@ class LogHeader:
         names = tuple(self._file.texts("discs/species_name"))
         self._file.checked(lambda: check_species(columns["species"], names), "discs/species")
         return Gas(box=self.box, species_names=names, **columns)
+
+    @property
+    def given(self) -> "Discs":
+        """The discs at the start, as those from which a scene starts."""
+        from idealgas.scene.discs import Discs
+
+        gas, n = self.discs, len(self.discs)
+        spin = self._file.fixed("discs/angular_velocity") if self.inertia is not None else np.zeros(n)
+        species = gas.species.astype(np.uint32)
+        return Discs(gas.position, gas.velocity, gas.radius, gas.mass, spin, species, gas.species_names, np.arange(n))
 
     def stored(self, table: str) -> list[Column]:
         """Columns of a table as they are in the file: name, type and shape of an entry."""

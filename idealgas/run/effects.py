@@ -25,7 +25,7 @@ LEAST_SHARE = 2.0**-40
 def make_effects(scene: Scene, gas: Gas) -> Effects:
     """Effects of a scene at time 0, with all sums; gas: its discs at time 0."""
     scene = scene.resolved()
-    start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene))
+    start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene, gas))
     tables = ((effect, scene.tables_of(effect)) for effect in EFFECTS)
     states = {e.field: e.make(own, start) for e, own in tables if e.make_always or e.find(own) is not None}
     effects = Effects(**states)
@@ -34,12 +34,15 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
 
 
-def _spins(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
     """Angular velocity (N,), 1/time, and temperature of the spins (N,), energy, of each disc; 0 where not given."""
-    count = [1] * len(scene.disc) + [s.count for s in scene.species]
-    velocity = [d.angular_velocity or 0.0 for d in scene.disc] + [s.angular_velocity or 0.0 for s in scene.species]
-    temperature = [0.0] * len(scene.disc) + [s.spin_temperature or 0.0 for s in scene.species]
-    return np.repeat(velocity, count), np.repeat(temperature, count)
+    given = 0 if scene.draws_velocities else len(scene.given)
+    velocity, temperature = np.zeros(len(gas)), np.zeros(len(gas))
+    velocity[:given] = scene.given.angular_velocity[:given]
+    for s in scene.species:
+        members = given + np.flatnonzero(gas.species[given:] == gas.species_names.index(s.name))
+        velocity[members], temperature[members] = s.angular_velocity or 0.0, s.spin_temperature or 0.0
+    return velocity, temperature
 
 
 def with_sums(

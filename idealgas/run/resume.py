@@ -81,7 +81,7 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> Scene:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     before = log.scene
-    scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides)
+    scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides, discs=log.given)
     run = before.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
     expected = before.model_copy(update={"run": run})
     changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]

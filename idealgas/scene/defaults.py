@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
-    from idealgas.scene.tables import Disc, Run, Species
+    from idealgas.scene.tables import Run, Species
 
 
-def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:
-    """Expected mean speed of some discs at the start, length/time."""
-    speeds = [math.hypot(*d.velocity) for d in disc]
+def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
+    """Expected mean speed of some species and of discs with velocities (n, 2) at the start, length/time."""
+    speeds = [math.hypot(*v) for v in velocity.tolist()]
     for s in species:
         if s.velocities is not None:
             speeds += [math.hypot(*v) for v in s.velocities]
@@ -22,7 +24,7 @@ def mean_speed(species: Sequence[Species], disc: Sequence[Disc]) -> float:
         for s in species
         if s.velocities is None
     )
-    return (sum(speeds) + spread) / (len(disc) + sum(s.count for s in species))
+    return (sum(speeds) + spread) / max(len(velocity) + sum(s.count for s in species), 1)
 
 
 def reference_speed(run: Run, largest: float) -> float:

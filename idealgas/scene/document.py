@@ -6,7 +6,8 @@ Reduced units, k_B = 1. The tables of the effects follow from the list of effect
 import math
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, create_model
+import numpy as np
+from pydantic import Field, PrivateAttr, create_model
 
 from idealgas.effects import EFFECTS
 from idealgas.effects.effect import EffectSpec, Tables
@@ -14,8 +15,9 @@ from idealgas.effects.properties import ActiveEffect, Properties, combine, lacki
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
 from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
+from idealgas.scene.discs import Discs, Given, discs_of_tables
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
-from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species
+from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
 from idealgas.toml.table import Rectangle, Table, Vector
 
 DEFAULT_CONTACT = 0.05
@@ -32,6 +34,7 @@ class _Discs(Table):
     box: Box = Field(description="[box]: size")
     species: Annotated[tuple[Species, ...], Field(strict=False)] = Field(default=(), description="[[species]] tables")
     disc: Annotated[tuple[Disc, ...], Field(strict=False)] = Field(default=(), description="[[disc]] tables")
+    start: Start | None = Field(default=None, description="[start]: log or file, time, velocities")
 
 
 def _fields_of_effects() -> dict[str, Any]:
@@ -62,6 +65,38 @@ class Document(_DiscsAndEffects):
 
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
     log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
+    _given: Given = PrivateAttr(default_factory=Given)
+
+    @property
+    def given(self) -> Discs:
+        """Discs of the table [start] or of the tables [[disc]]."""
+        if self.start is None and self._given.tables is not self.disc:
+            self._given = Given(discs_of_tables(self.disc), tables=self.disc)
+        return self._given.discs
+
+    @property
+    def placed(self) -> list[tuple[int, Species]]:
+        """Valid tables [[species]] with their indices, and the number of their discs that are not given as count."""
+        given = self.given
+        found = [(i, s) for i, s in enumerate(self.species) if s is not None]
+        if not given.names:
+            return found
+        return [(i, s.model_copy(update={"count": max(s.count - given.numbers.get(s.name, 0), 0)})) for i, s in found]
+
+    @property
+    def has_discs(self) -> bool:
+        """Whether the scene has any disc."""
+        return bool(self.species or len(self.given))
+
+    @property
+    def draws_velocities(self) -> bool:
+        """Whether given discs get the velocities of their species."""
+        return self.start is not None and self.start.velocities == "new"
+
+    @property
+    def accepted_overlap(self) -> float:
+        """Overlap of given discs that is accepted beyond rounding, length."""
+        return self._given.update.get("overlap", self.start and self.start.overlap) or 0.0
 
     def tables_of(self, effect: EffectSpec[Any]) -> Tables:
         """Part of the scene for an effect; while a scene is checked, its box may be missing."""
@@ -97,7 +132,7 @@ class Document(_DiscsAndEffects):
     @property
     def lattice(self) -> TriangularLattice | None:
         """Triangular lattice on which discs start; None if none do, or if their number is odd."""
-        number = sum(s.count for s in self.species if s.placement == "triangular")
+        number = sum(s.count for _, s in self.placed if s.placement == "triangular")
         return triangular_lattice(number, self.box.size) if number else None
 
     @property
@@ -113,27 +148,25 @@ class Document(_DiscsAndEffects):
     @property
     def number_of_discs(self) -> int:
         """Number N of discs."""
-        return sum(s.count for s in self.species) + len(self.disc)
+        return sum(s.count for _, s in self.placed) + len(self.given)
 
     @property
     def mean_speed(self) -> float:
         """Expected mean speed of the discs at the start, length/time."""
-        return mean_speed(self.species, self.disc)
-
-    @property
-    def _radii(self) -> list[tuple[float, int]]:
-        """Radii, and numbers of discs that have them."""
-        return [(s.radius, s.count) for s in self.species] + [(d.radius, 1) for d in self.disc]
+        if self.draws_velocities:
+            return mean_speed(self.species, np.empty((0, 2)))
+        return mean_speed([s for _, s in self.placed], self.given.velocity)
 
     @property
     def largest_radius(self) -> float:
         """Largest radius of the discs, length; 0 without discs."""
-        return max((radius for radius, _ in self._radii), default=0.0)
+        return max([float(self.given.radius.max(initial=0.0)), *(s.radius for _, s in self.placed)])
 
     @property
     def covered_area(self) -> float:
         """Area of all discs, length²."""
-        return math.pi * math.fsum(r * r * count for r, count in self._radii)
+        placed = [s.radius * s.radius * s.count for _, s in self.placed]
+        return math.pi * math.fsum([*placed, *(self.given.radius**2).tolist()])
 
     @property
     def mean_free_time(self) -> float:
@@ -192,7 +225,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def _sum_of_diameters(self) -> float:
-        return sum(2 * s.radius * s.count for s in self.species) + sum(2 * d.radius for d in self.disc)
+        return sum(2 * s.radius * s.count for _, s in self.placed) + sum(2 * r for r in self.given.radius.tolist())
 
     @property
     def rest(self) -> RestingDisc | None:

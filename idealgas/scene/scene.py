@@ -3,26 +3,47 @@
 import hashlib
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
-from pydantic import PrivateAttr, model_validator
+from pydantic import BaseModel, PrivateAttr, TypeAdapter, ValidationError, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
 from idealgas.scene.checks import issues
+from idealgas.scene.discs import Discs, Given
 from idealgas.scene.document import Document
-from idealgas.toml.issues import Issue
+from idealgas.scene.start import StartError, read_start
+from idealgas.toml.issues import Issue, SceneError, as_issues, table_at
 from idealgas.toml.table import Table
 from idealgas.toml.text import Origin
 
 
-class Scene(Document):
-    """A checked scene: its numbers are in range, its discs fit into the box, and its run ends."""
+class _SceneType(type(BaseModel)):  # type: ignore[misc]
+    """Type of scenes: a call makes a checked scene, as `make_scene` does."""
+
+    def __call__(cls, *, discs: Mapping[str, Any] | None = None, **tables: Any) -> "Scene":
+        if discs is not None:
+            tables = {"start": {}} | tables
+        return make_scene(tables, Origin(), columns=discs)
+
+
+class Scene(Document, metaclass=_SceneType):
+    """A checked scene: its numbers are in range, its discs fit into the box, and its run ends.
+
+    `Scene(box=…, run=…)` takes the tables of a scene as dictionaries, or as instances of their classes, and `discs`: a
+    dictionary of columns, from which the scene starts (`idealgas.scene.start` describes them). It raises SceneError.
+    """
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
     @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self, info: ValidationInfo) -> Self:
+        if self.start is not None:
+            try:
+                self._given = Given(*read_start(self, **info.context or {}))
+            except StartError as error:
+                found = [Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)]
+                raise PydanticCustomError("issues", "{summary}", {"summary": str(found[0]), "issues": found}) from None
         if found := list(issues(self)):
             raise PydanticCustomError("issues", "{summary}", {"summary": str(found[0]), "issues": found})
         return self
@@ -34,6 +55,9 @@ class Scene(Document):
             update["piston"] = self.piston.model_copy(update={"position": self.piston.start(self.box.size)})
         if self.restitution and not self.restitution.elastic:
             update["restitution"] = self.restitution.model_copy(update={"contact_duration": self.contact_duration})
+        if self.start and self.start.digest is None:
+            known = {"number": len(self.given), "digest": self.given.digest}
+            update["start"] = self.start.model_copy(update=known | dict(self._given.update))
         return self.model_copy(update=update)
 
     def from_origin(self, origin: Origin) -> Self:
@@ -52,7 +76,8 @@ STATE = ("temperature", "position", "velocity")
 
 def draws_random_numbers(scene: Scene) -> bool:
     """Whether a scene depends on its seed, in its initial state or during the run."""
-    return bool(scene.species) or not scene.properties.isolated or scene.run.method == "monte_carlo"
+    drawn = scene.draws_velocities or any(s.count for _, s in scene.placed)
+    return drawn or not scene.properties.isolated or scene.run.method == "monte_carlo"
 
 
 def run_digest(scene: Scene) -> str:
@@ -61,13 +86,15 @@ def run_digest(scene: Scene) -> str:
     The title, and the tables `run` and `log`, are left out.
     """
     tables = _tables(scene)
+    if start := tables.get("start"):
+        tables["start"] = {key: start[key] for key in ("digest", "velocities")}
     seed = scene.scene.seed if draws_random_numbers(scene) else None
     return _digest({name: value for name, value in tables.items() if name not in ("scene", "run", "log")} | {"": seed})
 
 
 def gas_digest(scene: Scene) -> str:
     """Digest of the discs, the box and the effects of a scene, without its initial state and temperature."""
-    left_out = ("scene", "run", "log", "species", "disc")
+    left_out = ("scene", "run", "log", "species", "disc", "start")
     rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
     box = {side: list(value) if isinstance(value, dict) else value for side, value in rest["box"].items()}
     return _digest([sorted(_discs(scene).items()), rest | {"box": box}])
@@ -97,11 +124,10 @@ def describe_gas(scene: Scene) -> str:
 def _discs(scene: Scene) -> Counter[tuple[float, float]]:
     """Number of discs by their radius and mass."""
     discs: Counter[tuple[float, float]] = Counter()
-    for species in scene.species:
+    for _, species in scene.placed:
         discs[species.radius, species.mass] += species.count
-    for disc in scene.disc:
-        discs[disc.radius, disc.mass] += 1
-    return discs
+    discs.update(zip(scene.given.radius.tolist(), scene.given.mass.tolist(), strict=True))
+    return +discs
 
 
 def _sizes(scene: Scene) -> Counter[float]:
@@ -124,3 +150,60 @@ def _without_state(value: Any) -> Any:
 
 def _digest(value: Any) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:32]
+
+
+def make_scene(
+    document: dict[str, Any],
+    origin: Origin,
+    errors: Sequence[str] = (),
+    *,
+    columns: Mapping[str, Any] | None = None,
+    discs: Discs | None = None,
+) -> Scene:
+    """Scene of a document. Raises SceneError for its errors and the given ones.
+
+    columns: discs from which the scene starts, by column. discs: the same, of the log of this scene.
+    """
+    try:
+        context = {"folder": origin.folder, "columns": columns, "discs": discs}
+        scene = Scene.model_validate(document, context=context).resolved().from_origin(origin)
+    except ValidationError as error:
+        errors = [*errors, *origin.report(_all_issues(error, document))]
+    if errors:
+        raise SceneError(errors)
+    return scene
+
+
+def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]:
+    """Errors in tables and, between the valid ones, of several tables."""
+    findings = error.errors(include_url=False)
+    if findings[0]["type"] == "issues":
+        return findings[0]["ctx"]["issues"]
+    parts, invalid = _valid_parts(document)
+    return [*as_issues(findings, Scene), *issues(parts, invalid)]
+
+
+def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
+    """Valid tables of a document, None for each invalid one, and the names of the invalid ones."""
+    parts: dict[str, Any] = {}
+    invalid = set()
+    for name, field in Scene.model_fields.items():
+        table, value = table_at((name,), Scene), document.get(name)
+        if value is not None and field.default == ():
+            parts[name] = [_valid(table, item) for item in value] if isinstance(value, list) else [None]
+            valid = None not in parts[name]
+        elif value is not None or field.is_required():
+            parts[name] = _valid(table, value)
+            valid = parts[name] is not None
+        else:
+            valid = True
+        if not valid:
+            invalid.add(name)
+    return Scene.model_construct(**parts), invalid
+
+
+def _valid(table: type, value: Any) -> Any:
+    try:
+        return TypeAdapter(table).validate_python(value)
+    except ValidationError:
+        return None

@@ -6,7 +6,7 @@ from pydantic import Discriminator, Field, Tag
 
 from idealgas.effects import EFFECTS
 from idealgas.effects.periodic import PERIODIC
-from idealgas.toml.table import NotNegative, Number, Positive, Table, Vector, Whole, Word
+from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word
 
 WORDS = ("reflecting", *(effect.side for effect in EFFECTS if isinstance(effect.side, str)))
 """Kinds of sides that are a word."""
@@ -75,7 +75,7 @@ class Species(Table):
     """`[[species]]`: discs of one kind, with exactly one of temperature, speed and velocities."""
 
     name: Word = Field(description="a word, its own for each species")
-    count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1")
+    count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1, those of [start] and [[disc]] included")
     radius: Positive = Field(description="radius > 0, length")
     mass: Positive = Field(default=1.0, description="mass")
     temperature: NotNegative | None = Field(
@@ -106,6 +106,36 @@ class Disc(Table):
     radius: Positive = Field(description="radius > 0, length")
     mass: Positive = Field(default=1.0, description="mass")
     angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
+    species: Word | None = Field(
+        default=None, description='species that it belongs to, one of [[species]] or another; if absent "disc"'
+    )
+
+
+Instant = Annotated[
+    Annotated[Literal["end"], Tag("(word)")] | Annotated[Real, Field(ge=0, le=LARGEST), Tag("(number)")],
+    Discriminator(lambda time: "(word)" if isinstance(time, str) else "(number)"),
+]
+
+
+class Start(Table):
+    """`[start]`: discs with positions and velocities from a log or a file, in place of `[[disc]]` tables."""
+
+    log: str | None = Field(default=None, description="path of a log, from this file's folder")
+    file: str | None = Field(default=None, description="path of a file .npz, .csv, .gsd or .extxyz, in the same way")
+    time: Instant = Field(default="end", description='time of the state in the log or file, or "end"')
+    velocities: Literal["keep", "new", "reversed"] = Field(
+        default="keep", description="as in the state, drawn for the tables [[species]], or reversed"
+    )
+    overlap: NotNegative | None = Field(
+        default=None, description="largest overlap that is accepted, length; if absent that of the state in its own log"
+    )
+    number: Whole | None = Field(default=None, ge=1, lt=2**31, description="number of discs; follows from the state")
+    digest: str | None = Field(default=None, max_length=64, description="digest of the state, in a log")
+
+    @property
+    def source(self) -> str | None:
+        """Path of the log or file; None for discs from Python."""
+        return self.log or self.file
 
 
 Threads = Annotated[

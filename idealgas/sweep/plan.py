@@ -15,7 +15,7 @@ from pydantic_core import PydanticKnownError
 
 from idealgas.analysis import registry
 from idealgas.scene import Scene, SceneError
-from idealgas.scene.loader import make_scene
+from idealgas.scene.scene import make_scene
 from idealgas.toml.dump import toml_value
 from idealgas.toml.issues import Issue, Key, as_issues
 from idealgas.toml.overrides import OverrideError, apply
@@ -255,7 +255,7 @@ def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) ->
     Raises:
         SceneError: if phi is no packing fraction, or if the scene has parts with positions in the box.
     """
-    fixed = ["disc"] if scene.disc else []
+    fixed = ["start" if scene.start else "disc"] if len(scene.given) else []
     fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []
     if fixed:

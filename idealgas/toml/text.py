@@ -155,6 +155,11 @@ class Origin:
     overridden: Mapping[Key, str] = field(default_factory=dict, compare=False)
     above: Key = field(default=(), compare=False)
 
+    @property
+    def folder(self) -> Path:
+        """Folder of the file, from which paths in it start."""
+        return Path(self.name).parent
+
     def report(self, issues: Sequence[Issue]) -> list[str]:
         """One line per issue, in the order of the file; issues of overrides come last."""
         lines = []

@@ -19,7 +19,7 @@ ALLOWED = {
     "scene": {"effects", "toml", "physics"},  # defaults that follow from a law
     "initial": {"jit", "state", "toml", "scene", "physics"},  # discs are placed by the nearest image's distance
     "engine": {"effects", "jit", "state", "initial", "physics"},
-    "log": {"jit", "state", "initial", "scene", "physics"},  # states between two events are free flight
+    "log": {"jit", "state", "toml", "initial", "scene", "physics"},  # states between two events are free flight
     "run": {"effects", "jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
     "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
     "movie": {"state", "scene", "log", "analysis"},

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from idealgas.analysis.core import caveats
 from idealgas.analysis.core.result import Origin, Result
 from idealgas.analysis.core.tables import Table
-from idealgas.errors import UserError, unknown
+from idealgas.errors import NotApplicableError, UserError, unknown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,6 +128,9 @@ class Analysis:
     combine: ClassVar[Callable[..., Any] | None] = None
     """Function combine(results): one result of several logs, for tables and figure; None for a single log only."""
 
+    takes_unlike_discs: ClassVar[bool] = False
+    """Whether the analysis applies to species whose discs differ in radius or mass."""
+
     restore: ClassVar[Callable[..., Any] | None] = None
     """Function restore(found, label): result from the plain values that a sweep stored; None if sweeps are not read."""
 
@@ -173,6 +176,9 @@ class Analysis:
             if name not in known:
                 raise unknown(f"option of {cls.key}", name, ("start", "end", *known))
             known[name].check(value)
+        if not cls.takes_unlike_discs and (unlike := log.discs.unlike):
+            differ = f"discs of one species that differ in radius or mass ({', '.join(unlike)})"
+            raise NotApplicableError(f"{log.path}: not applicable to {differ}; `disc.species` gives them several")
         values = {name: option.default for name, option in known.items()} | options
         found = cls.measure(log, start=start, end=end, progress=progress, **values)
         origin = caveats.origin_of(log.scene, str(log.path))

@@ -48,9 +48,12 @@ class Composition(NamedTuple):
 
 
 def composition(gas: Gas) -> Composition:
-    """Composition of a gas; all discs of one species have the same radius and the same mass."""
+    """Composition of a gas, with the mean radius and the mean mass of a species whose discs differ."""
     _, first, number = np.unique(gas.species, return_index=True, return_counts=True)
-    return Composition(gas.species_names, gas.radius[first], gas.mass[first], number)
+    radius, mass = gas.radius[first], gas.mass[first]
+    if gas.unlike:
+        radius, mass = (np.bincount(gas.species, values) / number for values in (gas.radius, gas.mass))
+    return Composition(gas.species_names, radius, mass, number)
 
 
 @dataclass(frozen=True)

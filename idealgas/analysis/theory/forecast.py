@@ -124,8 +124,9 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     """
     heated = ("isolated",) if len(scene.properties.temperatures) > 1 else ()
     beyond, temperature = scene.lacking(*KNOWN, *heated), _temperature(scene, gas)
+    beyond = (*beyond, *(f"discs that differ within species {name}" for name in gas.unlike))
     rates = None
-    if temperature is not None:
+    if temperature is not None and not gas.unlike:
         rates = _column(scene, gas, temperature) if beyond else _rates(scene, gas, temperature)
     if rates is None and any(scene.properties.acceleration) and scene.properties.isolated:
         temperature = None  # the law of a dilute column does not hold
@@ -204,10 +205,13 @@ def _spin_energy(scene: Scene) -> float:
     if (factor := scene.properties.inertia) is None:
         return 0.0
     energy = 0.0
-    for count, item in [(1, d) for d in scene.disc] + [(s.count, s) for s in scene.species]:
-        inertia = moment_of_inertia(factor, item.mass, item.radius)
-        temperature = getattr(item, "spin_temperature", None) or inertia * (item.angular_velocity or 0.0) ** 2
-        energy += count * temperature / 2
+    for s in scene.species if scene.draws_velocities else [s for _, s in scene.placed]:
+        inertia = moment_of_inertia(factor, s.mass, s.radius)
+        energy += s.count * (s.spin_temperature or inertia * (s.angular_velocity or 0.0) ** 2) / 2
+    given = scene.given
+    if len(given) and not scene.draws_velocities:
+        inertia = moment_of_inertia(factor, given.mass, given.radius)
+        energy += float((inertia * given.angular_velocity**2).sum()) / 2
     return energy
 
 
@@ -292,14 +296,14 @@ def _rates_without_positions(
 def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
     members = gas.species == k
     velocity = gas.velocity[members] - conserved.motion_at_start(scene, gas)
-    mass, radius, number = gas.mass[members][0], gas.radius[members][0], int(members.sum())
+    mass, radius, number = gas.mass[members], gas.radius[members], int(members.sum())
     return SpeciesForecast(
         name=gas.species_names[k],
         number=number,
-        radius=float(radius),
-        mass=float(mass),
-        packing_fraction=float(np.pi * radius**2 * number / area),
-        temperature=float(mass * (velocity**2).sum() / (2 * number)),
+        radius=float(radius[0] if (radius == radius[0]).all() else radius.mean()),
+        mass=float(mass[0] if (mass == mass[0]).all() else mass.mean()),
+        packing_fraction=float(np.pi * (radius**2).sum() / area),
+        temperature=float((mass * (velocity**2).sum(axis=1)).sum() / (2 * number)),
         collision_rate=float(rates.per_disc[k]) if rates else None,
     )
 

@@ -8,17 +8,9 @@ from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, TypeVar
 
 from idealgas.effects import EFFECTS
-from idealgas.effects.wall import wall_issues
 from idealgas.scene.checks import piston
-from idealgas.scene.checks.discs import (
-    distance_to_wall,
-    images,
-    overlap_issues,
-    placement_issues,
-    room_issues,
-    rounding,
-    species_issues,
-)
+from idealgas.scene.checks.discs import placement_issues, room_issues, species_issues
+from idealgas.scene.checks.overlaps import discs_in_walls, label, overlap_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.toml.issues import Issue, Key
 
@@ -37,12 +29,13 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
 
     Tables in `invalid`, and None in an array of tables, have other errors and are left out.
     """
-    kinds, discs = _valid(scene.species), _valid(scene.disc)
     box = None if "box" in invalid else scene.box
-    if not scene.species and not scene.disc:
-        yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]]")
-    yield from species_issues(kinds)
-    yield from overlap_issues(discs, box)
+    if not scene.species and not scene.disc and scene.start is None:
+        yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]], or [start]")
+    if scene.disc and scene.start is not None:
+        yield Issue((("disc", 0), ("start",)), "discs of their own beside a start", "[[disc]]", "[start] alone")
+    yield from species_issues(scene)
+    yield from overlap_issues(scene, box)
     if "rotation" not in invalid:
         yield from _spin_issues(scene, invalid)
     if not {"restitution", "species", "disc", "box", "gravity", "piston"} & invalid:
@@ -51,16 +44,16 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         for effect in EFFECTS:
             if effect.find(tables := scene.tables_of(effect)) is not None:
                 yield from effect.check(tables)
-        yield from _discs_in_walls(scene)
+        yield from discs_in_walls(scene)
     yield from piston.issues(scene, invalid)
     if not invalid:
         yield from _thermostat_issues(scene)
     if box is not None:
-        yield from room_issues(box, scene.room, kinds, discs, invalid)
-        yield from placement_issues(scene, kinds)
+        yield from room_issues(scene, invalid)
+        yield from placement_issues(scene)
     if not {"run", "species", "disc", "gravity", "piston"} & invalid:
         yield from endless_issues(scene)
-        if box is not None and (scene.species or scene.disc):
+        if box is not None and scene.has_discs:
             yield from number_issues(scene, invalid)
     if "run" not in invalid:
         yield from method_issues(scene, invalid)
@@ -82,6 +75,10 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
                 yield Issue((*keys, ("rotation",)), "a spin without rotation", given[0], "it with a table [rotation]")
             elif len(given) > 1:
                 yield Issue(keys, "two spins", " and ".join(given), "one of them")
+    if scene.start is not None and rotation is None and scene.given.angular_velocity.any():
+        number = int(scene.given.angular_velocity.nonzero()[0][0])
+        keys = (("start",), ("rotation",))
+        yield Issue(keys, "a spin without rotation", label(scene, number).strip(), "it with a table [rotation]")
     smooth = rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1
     if smooth and scene.thermostat is None and "thermostat" not in invalid:
         keys = (("rotation", "roughness"), ("rotation", "wall_roughness"))
@@ -91,21 +88,9 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 def _contact_issues(scene: Document) -> Iterator[Issue]:
     """Check for a contact duration without default."""
-    if (scene.species or scene.disc) and math.isinf(scene.contact_duration):
+    if scene.has_discs and math.isinf(scene.contact_duration):
         keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
         yield Issue(keys, "no default where nothing moves at the start", "nothing", "a time > 0")
-
-
-def _discs_in_walls(scene: Document) -> Iterator[Issue]:
-    """Check explicit discs that overlap a wall present at the start."""
-    box = scene.box
-    walls = [(i, wall) for i, wall in _valid(scene.wall) if not list(wall_issues(box.size, i, wall))]
-    for k, d in _valid(scene.disc):
-        for i, wall in walls:
-            distance = min(distance_to_wall(centre, wall) for centre in images(d.position, d.radius, box))
-            if wall.there_at_start and distance < d.radius - rounding(max(box.size), 2 * d.radius):
-                keys: tuple[Key, ...] = (("disc", k, "position"), ("disc", k, "radius"), ("wall", i))
-                yield Issue(keys, f"overlaps wall {i}", f"a distance of {distance} to it", f">= {d.radius}, the radius")
 
 
 def _thermostat_issues(scene: Document) -> Iterator[Issue]:

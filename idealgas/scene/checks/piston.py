@@ -55,10 +55,15 @@ def _facing(piston: Piston) -> str:
 
 def _motion_issues(piston: Piston) -> Iterator[Issue]:
     given = [key for key in ("velocity", "mass", "pressure") if getattr(piston, key) is not None]
-    if given not in (["velocity"], ["mass", "pressure"]):
+    if given not in (["velocity"], ["mass", "pressure"], ["velocity", "mass", "pressure"]):
         keys: tuple[Key, ...] = (("piston",), *(("piston", key) for key in given))
         what = "not one motion" if given else "no motion"
-        yield Issue(keys, what, ", ".join(given) or "nothing", "velocity alone, or mass and pressure together")
+        yield Issue(
+            keys,
+            what,
+            ", ".join(given) or "nothing",
+            "velocity, mass and pressure, or all three",
+        )
 
 
 def _depth(scene: Document, piston: Piston, position: float) -> float:

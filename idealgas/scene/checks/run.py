@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from idealgas.scene.defaults import mean_speed
 from idealgas.toml.issues import Issue, Key
 
@@ -95,7 +97,7 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
     for place in _keys(scene, "allows_monte_carlo"):
         got = f'method = "{MONTE_CARLO}"'
         yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
-    if not {"species", "disc"} & invalid and (scene.species or scene.disc):
+    if not {"species", "disc"} & invalid and scene.has_discs:
         if scene.number_of_discs < 2:
             yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
         elif scene.mean_speed == 0:
@@ -106,8 +108,9 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
 
 def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
     """Check for a v_ref that is too small, which the run might not detect before its end."""
-    for i, s in enumerate(scene.species):
-        least = 0.0 if s.velocities or s.count == 1 else mean_speed([s], []) * s.radius / scene.largest_radius
+    for i, s in enumerate(scene.species) if scene.draws_velocities else scene.placed:
+        still = s.velocities or s.count <= 1
+        least = 0.0 if still else mean_speed([s], np.empty((0, 2))) * s.radius / scene.largest_radius
         if v_ref < least:
             keys = (("run", "v_ref"), *(("species", i, key) for key in ("speed", "temperature", "mass", "radius")))
             yield Issue(
@@ -155,11 +158,7 @@ def endless_issues(scene: Document) -> Iterator[Issue]:
         yield Issue(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
         return
     alone = scene.number_of_discs == 1
-    if (
-        not any(s.temperature or s.speed or any(map(any, s.velocities or ())) for s in scene.species)
-        and not any(any(d.velocity) for d in scene.disc)
-        and not scene.properties.drives_discs
-    ):
+    if not scene.properties.drives_discs and not (scene.has_discs and scene.mean_speed):
         yield Issue(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
     elif run.events is None and alone:
         yield Issue(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")

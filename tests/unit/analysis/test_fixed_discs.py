@@ -12,9 +12,9 @@ GAS = """
 scene.seed = 2
 box.size = [12, 12]
 disc = [
-    { position = [3, 3], radius = 1, mass = 1e16 },
-    { position = [9, 3], radius = 1, mass = 1e16 },
-    { position = [6, 9], radius = 1.5, mass = 1e30 },
+    { position = [3, 3], radius = 1, mass = 1e16, species = "fixed" },
+    { position = [9, 3], radius = 1, mass = 1e16, species = "fixed" },
+    { position = [6, 9], radius = 1.5, mass = 1e30, species = "huge" },
 ]
 species = [{ name = "light", count = 20, radius = 0.2, temperature = 1 }]
 run.collisions_per_disc = 300
@@ -28,7 +28,7 @@ def test_light_discs_among_fixed_ones(make, sides):
     log = make(*sides)
     found = temperature(log)
     names = [entry.species for entry in found.species]
-    assert names == ["disc 0", "disc 2", "light", "all discs"]
+    assert names == ["fixed", "huge", "light", "all discs"]
     assert found.window.detected
     light = found.species[2]
     for estimate in (light.x, light.y):

@@ -34,10 +34,12 @@ def test_explicit_discs_come_first_then_species_in_order():
     assert gas.mass[[0, 2, 32]].tolist() == [1, 1, 2]
 
 
-def test_every_species_has_one_radius_and_one_mass():
+def test_explicit_discs_are_one_species_although_they_differ():
     gas = gas_of(disc(1, 1), disc(3, 1, radius=0.3), disc(5, 1), disc(7, 1, mass=2), A)
-    assert gas.species_names == ("disc 0", "disc 1", "disc 3", "a")
-    assert gas.species[:5].tolist() == [0, 1, 0, 2, 3]
+    assert gas.species_names == ("disc", "a")
+    assert gas.species[:5].tolist() == [0, 0, 0, 0, 1]
+    assert gas.radius[:4].tolist() == [0.5, 0.3, 0.5, 0.5]
+    assert gas.mass[:4].tolist() == [1, 1, 1, 2]
 
 
 def test_dtypes():

@@ -5,7 +5,7 @@ import pytest
 
 from idealgas import open_log, simulate
 from idealgas.scene import SceneError, parse_scene
-from idealgas.scene.checks.discs import rounding
+from idealgas.scene.checks.overlaps import rounding
 
 SIZE = 10.0
 HEAD = f"box.size = [{SIZE}, {SIZE}]\nrun.until = 1\n"

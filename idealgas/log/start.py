@@ -1,0 +1,83 @@
+"""A state of a log as the start of another scene: its discs, and the scene that continues from it."""
+
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from idealgas.errors import UserError
+from idealgas.log.reader import Log, open_log
+from idealgas.scene import Scene
+from idealgas.scene.checks.overlaps import deepest_overlap
+from idealgas.scene.discs import make_discs
+from idealgas.scene.start import StartError
+from idealgas.scene.tables import Start
+from idealgas.toml.dump import dump_document
+
+
+def read_state(path: Path, time: float | Literal["end"]) -> tuple[dict[str, Any], float]:
+    """Columns of the discs of a log at a time, and their deepest overlap there beyond rounding, length.
+
+    Raises:
+        StartError: if the log cannot be read, or has no positions at this time.
+    """
+    try:
+        with open_log(path) as log:
+            return _columns(log, _instant(log, time))
+    except UserError as error:
+        raise StartError("log", "cannot be started from", str(error), "a log with a state at this time") from None
+
+
+def _instant(log: Log, time: float | Literal["end"]) -> float:
+    return log.end_time if time == "end" else time
+
+
+def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
+    if not log.has_positions:
+        raise UserError(f"{log.path}: its discs have no positions")
+    state, discs, scene = log.state_at(time), log.discs, log.scene
+    spin = np.zeros(len(discs)) if state.angular_velocity is None else state.angular_velocity
+    columns: dict[str, Any] = {
+        "position": state.position,
+        "velocity": state.velocity,
+        "radius": discs.radius,
+        "mass": discs.mass,
+        "angular_velocity": spin,
+        "species": [discs.species_names[k] for k in discs.species.tolist()],
+    }
+    walls = [wall for wall in scene.wall if not wall.absence[0] <= time < wall.absence[1]]
+    return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
+
+
+def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
+    """TOML text of a scene that starts from the state of a log, with gates and piston as they are then.
+
+    time: of the state. source: path of the log in the scene.
+
+    Raises:
+        UserError: if the log has no positions at this time, or if the piston is not known then.
+    """
+    time, scene = _instant(log, time), log.scene
+    _columns(log, time)
+    numbers = dict(zip(log.discs.species_names, np.bincount(log.discs.species).tolist(), strict=False))
+    update: dict[str, Any] = {
+        "start": Start(log=source, time=time),
+        "disc": (),
+        "species": tuple(s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species),
+        "wall": tuple(later for wall in scene.wall if (later := wall.after(time)) is not None),
+    }
+    if scene.piston is not None:
+        update["piston"] = _piston_at(log, scene, time)
+    return dump_document(scene.model_copy(update=update))
+
+
+def _piston_at(log: Log, scene: Scene, time: float) -> Any:
+    """Table of the piston at a time at which the log has a sample."""
+    times, position = log.observables["piston_position"]
+    k = int(np.abs(times - time).argmin()) if len(times) else 0
+    if not len(times) or times[k] != time:
+        nearest = f"; the nearest is t = {float(times[k])!r}" if len(times) else ""
+        raise UserError(f"{log.path}: the piston is known at samples only, not at t = {time:g}{nearest}")
+    velocity = float(log.observables["piston_velocity"][1][k])
+    own = {"velocity": velocity} if scene.piston.mass is not None else {}
+    return scene.piston.model_copy(update={"position": float(position[k]), **own})

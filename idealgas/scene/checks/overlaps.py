@@ -1,0 +1,208 @@
+"""Checks of given discs for overlaps with one another, with the sides of the box and with walls."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.effects.wall import wall_issues
+from idealgas.physics.motion import MAX_DISPLACEMENT
+from idealgas.toml.issues import Issue, Key
+
+if TYPE_CHECKING:
+    from idealgas.effects.wall import Wall
+    from idealgas.scene.discs import Discs
+    from idealgas.scene.document import Document
+    from idealgas.scene.tables import Box
+
+ROUNDINGS = 16
+"""Number of roundings of a coordinate at a contact: of two positions, two flights, and the time of the event."""
+
+MOST_OVERLAPS = 1_000
+"""Largest number of overlaps that are reported."""
+
+_PAIRS = 2**20
+"""Number of pairs that are compared at a time."""
+
+NEIGHBOURS = np.array([(c, r) for c in (-1, 0, 1) for r in (-1, 0, 1)])
+
+
+def rounding(extent: float, reach: np.ndarray | float) -> np.ndarray | float:
+    """Largest overlap (length) that rounding explains; the engine takes such discs for discs in contact.
+
+    extent: largest coordinate, length. reach: distance of the centres at contact, or the diameter of a disc at a wall,
+    length. The clock of an epoch adds the rounding of the path of its fastest disc.
+    """
+    return ROUNDINGS * 2.0**-53 * (extent + MAX_DISPLACEMENT * reach)
+
+
+def disc_keys(scene: Document, numbers: tuple[int, ...], *names: str) -> tuple[Key, ...]:
+    """Keys of given discs with these numbers: in their tables, or the table from which the scene starts."""
+    if scene.start is not None:
+        return (("start",),)
+    return tuple(("disc", n, name) for name in names for n in numbers)
+
+
+def label(scene: Document, number: int) -> str:
+    """Name of a given disc at the start of a message, where its key does not name it."""
+    return "" if scene.start is None else f"disc {number} "
+
+
+def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
+    """Report given discs that overlap, also through periodic sides, at most MOST_OVERLAPS pairs."""
+    discs = scene.given
+    for a, b, distance in overlapping(discs, box, scene.accepted_overlap):
+        low, high = int(discs.index[a]), int(discs.index[b])
+        got = f"a distance of {distance} between centres"
+        allowed = f">= {discs.radius[a] + discs.radius[b]}, the sum of the radii"
+        keys = disc_keys(scene, (high, low), "position", "radius")
+        yield Issue(keys, f"{label(scene, high)}overlaps disc {low}", got, allowed)
+
+
+def overlapping(discs: Discs, box: Box | None, accepted: float = 0.0) -> Iterator[tuple[int, int, float]]:
+    """Pairs of discs that overlap beyond rounding and what is accepted, and their distance; at most MOST_OVERLAPS."""
+    extent = max(box.size) if box else float(np.abs(discs.position).max(initial=0.0))
+    owner, centre = images(discs.position, discs.radius, box)
+    found: dict[tuple[int, int], float] = {}
+    for a, b, distance in overlaps(centre, discs.radius[owner], extent, accepted):
+        pair = int(min(owner[a], owner[b])), int(max(owner[a], owner[b]))
+        if pair[0] != pair[1]:
+            found.setdefault(pair, distance)
+        if len(found) == MOST_OVERLAPS:
+            break
+    for (low, high), distance in sorted(found.items()):
+        yield low, high, distance
+
+
+def images(position: np.ndarray, radius: np.ndarray, box: Box | None) -> tuple[np.ndarray, np.ndarray]:
+    """Index of the disc (M,) and centre (M, 2) of every disc, and of its images that reach into a periodic box."""
+    owner, centre = np.arange(len(radius)), position
+    for axis in range(2):
+        if box is not None and box.periodic[axis]:
+            low = np.flatnonzero(centre[:, axis] < radius[owner])
+            high = np.flatnonzero(centre[:, axis] > box.size[axis] - radius[owner])
+            shift = np.eye(2)[axis] * box.size[axis]
+            centre = np.concatenate((centre, centre[low] + shift, centre[high] - shift))
+            owner = np.concatenate((owner, owner[low], owner[high]))
+    return owner, centre
+
+
+def overlaps(
+    centre: np.ndarray, radius: np.ndarray, extent: float, accepted: float = 0.0
+) -> Iterator[tuple[int, int, float]]:
+    """Indices of two discs that overlap, the lower one first, and their distance.
+
+    centre: (M, 2), length. radius: (M,), length. extent: largest coordinate, length, which decides what is rounding.
+    accepted: overlap that is accepted beyond it, length.
+
+    Discs of about one radius, from a power of two to the next, share a grid with cells no smaller than their diameter.
+    Each disc is compared with those of the nine cells around it in the grids of its own size and of larger ones, so
+    the time is that of N log N, unless very many discs overlap.
+    """
+    size = np.frexp(radius)[1]  # radius < 2^size
+    levels = np.unique(size)
+    for level in levels:
+        members = np.flatnonzero(size == level)
+        cell, order = _sorted_cells(_cells(centre[members], level))
+        members = members[order]
+        others = np.flatnonzero(size <= level)
+        for step in NEIGHBOURS:
+            wanted = _keys(_cells(centre[others], level) + step)
+            first, last = cell.searchsorted(wanted, "left"), cell.searchsorted(wanted, "right")
+            for i, k in _pairs(others, members, first, last):
+                once = (k < i) | (size[i] < level)
+                i, k = i[once], k[once]
+                reach = radius[i] + radius[k]
+                reach -= rounding(extent, reach) + accepted
+                dx, dy = (centre[i] - centre[k]).T
+                close = (dx * dx + dy * dy < reach * reach) & (reach > 0)
+                for a, b, x, y in zip(i[close].tolist(), k[close].tolist(), dx[close], dy[close], strict=True):
+                    yield min(a, b), max(a, b), math.hypot(x, y)
+
+
+def _cells(centre: np.ndarray, level: int) -> np.ndarray:
+    """Column and row (M, 2) of points in a grid of cells of the width 2 * 2^level."""
+    return np.floor(np.ldexp(centre, -level - 1))
+
+
+def _keys(cells: np.ndarray) -> np.ndarray:
+    """Cells (M, 2) as complex numbers, which are sorted by column and then by row."""
+    return cells[:, 0] + 1j * cells[:, 1]
+
+
+def _sorted_cells(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    keys = _keys(cells)
+    order = np.argsort(keys, kind="stable")
+    return keys[order], order
+
+
+def _pairs(
+    others: np.ndarray, members: np.ndarray, first: np.ndarray, last: np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of each of `others` with the members from `first` to `last`, some _PAIRS at a time."""
+    number = last - first
+    some = np.flatnonzero(number)
+    end = np.cumsum(number[some])
+    start = 0
+    while start < len(some):
+        before = end[start - 1] if start else 0
+        stop = max(int(end.searchsorted(before + _PAIRS, "right")), start + 1)
+        chosen = some[start:stop]
+        count = number[chosen]
+        within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        yield np.repeat(others[chosen], count), members[np.repeat(first[chosen], count) + within]
+        start = stop
+
+
+def deepest_overlap(discs: Discs, box: Box, walls: Sequence[Wall]) -> float:
+    """Deepest overlap beyond rounding of discs with one another, with sides and with walls, length; 0 without any."""
+    radius = discs.radius
+    depths = [radius[a] + radius[b] - distance for a, b, distance in overlapping(discs, box)]
+    depths += [radius[k] - distance for k, _, distance in wall_overlaps(discs, box, dict(enumerate(walls)))]
+    for axis in (a for a in range(2) if not box.periodic[a]):
+        x = discs.position[:, axis]
+        depths += [(radius - x).max(), (x + radius - box.size[axis]).max()]
+    return float(max([0.0, *(depth for depth in depths if depth > rounding(max(box.size), 2 * radius.min()))]))
+
+
+def wall_overlaps(
+    discs: Discs, box: Box, walls: Mapping[int, Wall], accepted: float = 0.0
+) -> Iterator[tuple[int, int, float]]:
+    """Index of a disc, number of a wall, and their distance where they overlap beyond rounding and what is accepted."""
+    owner, centre = images(discs.position, discs.radius, box)
+    slack = rounding(max(box.size), 2 * discs.radius) + accepted
+    order = np.argsort(centre[:, 0], kind="stable")
+    along, largest = centre[order, 0], float(discs.radius.max(initial=0.0))
+    for i, wall in walls.items():
+        ends = sorted((wall.start[0], wall.end[0]))
+        near = order[along.searchsorted(ends[0] - largest) : along.searchsorted(ends[1] + largest, "right")]
+        distance = distance_to_wall(centre[near], wall)
+        for k in np.flatnonzero(distance < (discs.radius - slack)[owner[near]]).tolist():
+            yield int(owner[near[k]]), i, float(distance[k])
+
+
+def discs_in_walls(scene: Document) -> Iterator[Issue]:
+    """Check given discs that overlap a wall present at the start, at most MOST_OVERLAPS."""
+    found: dict[tuple[int, int], float] = {}
+    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.wall) if wall is not None and wall.there_at_start}
+    walls = {i: wall for i, wall in walls.items() if not list(wall_issues(box.size, i, wall))}
+    for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
+        found[k, i] = min(distance, found.get((k, i), math.inf))
+        if len(found) == MOST_OVERLAPS:
+            break
+    for (k, i), distance in sorted(found.items()):
+        number, radius = int(scene.given.index[k]), scene.given.radius[k]
+        keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), ("wall", i))
+        wrong = f"{label(scene, number)}overlaps wall {i}"
+        yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
+
+
+def distance_to_wall(points: np.ndarray, wall: Wall) -> np.ndarray:
+    """Distances of points (M, 2) from a wall."""
+    start = np.array(wall.start)
+    along = np.array(wall.end) - start
+    share = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
+    return np.hypot(*(points - start - share[:, None] * along).T)

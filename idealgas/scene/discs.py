@@ -1,0 +1,120 @@
+"""Discs given one by one, as arrays: those of the tables [[disc]], or those from which a scene starts."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+EXPLICIT = "disc"
+"""Species of given discs that name none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Discs:
+    """Given discs, in order of id; they have the first ids of a scene.
+
+    Attributes:
+        position: (n, 2), length.
+        velocity: (n, 2), length/time.
+        radius: (n,), length.
+        mass: (n,), mass.
+        angular_velocity: (n,), 1/time.
+        species: (n,), index into names.
+        names: names of their species.
+        index: (n,), number of the table of each disc, or of the disc in its file.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    radius: np.ndarray
+    mass: np.ndarray
+    angular_velocity: np.ndarray
+    species: np.ndarray
+    names: tuple[str, ...]
+    index: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.radius)
+
+    def first(self, number: int) -> "Discs":
+        """The first discs."""
+        keys = ("position", "velocity", "radius", "mass", "angular_velocity", "species", "index")
+        names = self.names[: int(self.species[:number].max()) + 1]
+        return replace(self, names=names, **{key: getattr(self, key)[:number] for key in keys})
+
+    def reversed(self) -> "Discs":
+        """The discs with the opposite velocities and spins."""
+        return replace(self, velocity=0.0 - self.velocity, angular_velocity=0.0 - self.angular_velocity)
+
+    def wrapped(self, size: Sequence[float], periodic: Sequence[bool]) -> "Discs":
+        """The discs in a box, which may be periodic along x or y; size: its width and height, length."""
+        position = self.position.copy()
+        for axis in (a for a in range(2) if periodic[a]):
+            x = position[:, axis]
+            x -= size[axis] * np.floor(x / size[axis])
+            x[x >= size[axis]] = 0.0
+        return replace(self, position=position)
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """Number of discs of each species, by name."""
+        return dict(zip(self.names, np.bincount(self.species, minlength=len(self.names)).tolist(), strict=True))
+
+    @cached_property
+    def digest(self) -> str:
+        """Digest of all numbers and names."""
+        found = hashlib.sha256("\n".join(self.names).encode())
+        for array in (self.position, self.velocity, self.radius, self.mass, self.angular_velocity, self.species):
+            found.update(np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes())
+        return found.hexdigest()[:32]
+
+
+def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[int] | None = None) -> Discs:
+    """Discs from columns by name, without a check. names: species of each disc."""
+    numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    n = len(names)
+    return Discs(
+        position=np.array(columns["position"], float).reshape(n, 2),
+        velocity=np.array(columns["velocity"], float).reshape(n, 2),
+        radius=np.array(columns["radius"], float),
+        mass=np.array(columns["mass"], float),
+        angular_velocity=np.array(columns["angular_velocity"], float),
+        species=np.array([numbers[name] for name in names], np.uint32),
+        names=tuple(numbers),
+        index=np.arange(n) if index is None else np.array(index),
+    )
+
+
+def discs_of_tables(tables: Sequence[Any]) -> Discs:
+    """Discs of the valid tables [[disc]]; None marks the others."""
+    items = [(i, d) for i, d in enumerate(tables) if d is not None]
+    keys = ("position", "velocity", "radius", "mass")
+    columns = {key: [getattr(d, key) for _, d in items] for key in keys}
+    columns["angular_velocity"] = [d.angular_velocity or 0.0 for _, d in items]
+    return make_discs(columns, [d.species or EXPLICIT for _, d in items], [i for i, _ in items])
+
+
+NO_DISCS = discs_of_tables(())
+
+
+@dataclass(eq=False)
+class Given:
+    """Holder of the given discs of a scene; all are equal, as the digest of the table [start] distinguishes them.
+
+    Attributes:
+        discs: the discs.
+        update: keys of the table [start] that follow from its state.
+        tables: tables [[disc]] from which they were made; None for those of a start.
+    """
+
+    discs: Discs = NO_DISCS
+    update: Mapping[str, Any] = field(default_factory=dict)
+    tables: Sequence[Any] | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Given)
+
+    __hash__ = None  # type: ignore[assignment]

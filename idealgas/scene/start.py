@@ -1,0 +1,127 @@
+"""Discs from which a scene starts: columns by name, from a log, a file or a Python program.
+
+| column | unit | without it |
+|---|---|---|
+| `position` (n, 2) | length | required; `x` and `y` in a .csv file |
+| `velocity` (n, 2) | length/time | 0; `vx` and `vy` in a .csv file |
+| `radius`, `mass` (n,) | length, mass | those of the species' table; without a table, radius is required and mass 1 |
+| `angular_velocity` (n,) | 1/time | 0 |
+| `species` (n,) | names | that of the only table [[species]], or "disc" |
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from idealgas.scene.discs import EXPLICIT, Discs, make_discs
+from idealgas.toml.table import LARGEST, SMALLEST
+
+if TYPE_CHECKING:
+    from idealgas.scene.document import Document
+
+VECTORS = ("position", "velocity")
+COLUMNS = (*VECTORS, "radius", "mass", "angular_velocity", "species")
+"""Names of the columns."""
+
+
+class StartError(ValueError):
+    """A start is invalid: key of the table [start], what is wrong, what was found and what is allowed."""
+
+    def __init__(self, key: str, wrong: str, got: str, allowed: str) -> None:
+        super().__init__(wrong)
+        self.key, self.wrong, self.got, self.allowed = key, wrong, got, allowed
+
+
+def read_start(
+    scene: Document, folder: Path = Path(), columns: Mapping[str, Any] | None = None, discs: Discs | None = None
+) -> tuple[Discs, dict[str, Any]]:
+    """Discs from which a scene starts, and the keys of its table [start] that follow from them.
+
+    Args:
+        scene: the scene, with valid tables.
+        folder: folder from which paths start.
+        columns: columns of a Python program.
+        discs: discs of the log of this scene; its first ones are those from which it starts.
+
+    Raises:
+        StartError: if they cannot be read, or are invalid.
+    """
+    start = scene.start
+    assert start is not None
+    if discs is not None and start.number is not None:
+        return discs.first(start.number), {}
+    given = [key for key in ("log", "file") if getattr(start, key) is not None]
+    if len(given) != (columns is None):
+        raise StartError("log", "not one source of discs", " and ".join(given) or "nothing", "one of log and file")
+    update: dict[str, Any] = {}
+    if columns is None:
+        path = (folder / (start.source or "")).absolute()
+        module = "idealgas.log.start" if start.log is not None else "idealgas.initial.files"
+        columns, own = import_module(module).read_state(path, start.time)  # a log has a scene, which imports this
+        update = {given[0]: str(path), "overlap": own if start.overlap is None else start.overlap}
+    key = given[0] if given else "discs"
+    found = _checked(columns, key, {s.name: s for s in scene.species}).wrapped(scene.box.size, scene.box.periodic)
+    if start.velocities == "reversed":
+        found = found.reversed()
+    return found, update
+
+
+def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) -> Discs:
+    """Discs of columns, with the constants of their species. tables: tables [[species]] by name."""
+    if unknown := [name for name in columns if name not in COLUMNS]:
+        raise StartError(key, "unknown column", str(unknown[0]), ", ".join(COLUMNS))
+    if "position" not in columns:
+        raise StartError(key, "no column position", ", ".join(columns) or "nothing", ", ".join(COLUMNS))
+    arrays = {name: _numbers(name, values, key) for name, values in columns.items() if name != "species"}
+    n = len(arrays["position"])
+    if n == 0:
+        raise StartError(key, "no discs", "0 rows", "at least one")
+    names = _names(columns.get("species"), n, next(iter(tables)) if len(tables) == 1 else EXPLICIT, key)
+    arrays = {"velocity": np.zeros((n, 2)), "angular_velocity": np.zeros(n)} | arrays
+    arrays = {name: array if array.ndim else np.full(n, array) for name, array in arrays.items()}
+    for name, array in arrays.items():
+        if len(array) != n:
+            raise StartError(key, f"column {name} of another length", f"{len(array)} rows", f"{n}, as position")
+    for name, default in (("radius", math.nan), ("mass", 1.0)):
+        column = arrays.get(name, np.full(n, default))
+        arrays[name] = np.array(
+            [getattr(tables.get(kind), name, x) for kind, x in zip(names, column.tolist(), strict=True)]
+        )
+    for name, array in arrays.items():
+        size = np.abs(array).reshape(n, -1)
+        wrong = ~np.isfinite(size) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))
+        if name in ("radius", "mass"):
+            wrong |= array.reshape(n, -1) <= 0
+        if wrong.any():
+            row = int(wrong.any(axis=1).argmax())
+            allowed = f"numbers{' > 0' if name in ('radius', 'mass') else ''} up to {LARGEST:g}, 0 or >= {SMALLEST:g}"
+            raise StartError(key, f"column {name}, disc {row}: invalid number", str(array[row].tolist()), allowed)
+    return make_discs(arrays, names)
+
+
+def _numbers(name: str, values: Any, key: str) -> np.ndarray:
+    """Column of numbers, (n,) or (n, 2)."""
+    try:
+        array = np.array(values, float)
+    except (TypeError, ValueError, OverflowError):
+        raise StartError(key, f"column {name} not of numbers", type(values).__name__, "an array of numbers") from None
+    shape = (len(array) if array.ndim else 1, *((2,) if name in VECTORS else ()))
+    if (name not in VECTORS and array.ndim == 0) or array.shape == shape:
+        return array
+    raise StartError(key, f"column {name} of another shape", str(array.shape), "(n, 2)" if name in VECTORS else "(n,)")
+
+
+def _names(values: Any, n: int, default: str, key: str) -> list[str]:
+    """Name of the species of each disc."""
+    if values is None or isinstance(values, str):
+        return [values or default] * n
+    names = [values] if isinstance(values, bytes) else list(values)
+    if len(names) != n or not all(isinstance(name, str) and 0 < len(name) <= 255 for name in names):
+        raise StartError(key, "column species not of names", f"{len(names)} entries", f"{n} texts")
+    return [str(name) for name in names]
