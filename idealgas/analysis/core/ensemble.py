@@ -9,6 +9,7 @@ from scipy import special
 from idealgas.analysis.core.statistics import mean
 from idealgas.analysis.theory import conserved
 from idealgas.analysis.theory import ensemble as ensembles
+from idealgas.analysis.theory.barometric import ColumnProfile
 from idealgas.analysis.theory.ensemble import Ensemble, composition
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
@@ -68,6 +69,11 @@ def known_ensemble(log: Log) -> Ensemble | None:
 def column_temperature(log: Log, axis: int) -> float | None:
     """Temperature of the gas of a log under gravity along `axis`; None if unknown (`theory.ensemble`)."""
     return ensembles.column_temperature(log.scene, log.discs, _spin_energy(log), axis)
+
+
+def column_profiles(log: Log, axis: int) -> list[ColumnProfile]:
+    """Density and temperature by height of an isolated gas under gravity along `axis` (`theory.ensemble`)."""
+    return ensembles.column_profiles(log.scene, log.discs, _spin_energy(log), axis)
 
 
 def _spin_energy(log: Log) -> float:

@@ -37,9 +37,6 @@ BINS = 20
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for an estimate of its temperature."""
 
-FEW = 20
-"""Number of discs of a fixed energy below which their temperature falls with height, by 5 % and more."""
-
 DILUTE = 0.02
 """Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
 
@@ -248,8 +245,6 @@ def _limits(
             yield "Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them."
     elif densest > DILUTE:
         yield f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}."
-    if log.gravity[axis] and log.scene.properties.isolated and len(log.discs) < FEW:
-        yield f"The barometric law is that of many discs; {len(log.discs)} of a fixed energy are colder higher up."
 
 
 def _collect(log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Progress | None) -> np.ndarray:
@@ -278,7 +273,10 @@ def _of_species(
     def per_disc(k: int, column: int) -> Estimate:
         if np.count_nonzero(sums[:, k, 0]) < FEWEST_FRAMES:
             return Estimate(np.nan, np.nan, 0.0)
-        return ratio(sums[:, k, column], sums[:, k, 0], expected.of_temperature(s, k) if expected else None)
+        theory = None
+        if expected is not None:
+            theory = expected.of_temperature(s, k) if column == 1 else expected.of_spin(s, k)
+        return ratio(sums[:, k, column], sums[:, k, 0], theory)
 
     return SpeciesProfile(
         name,
@@ -307,7 +305,7 @@ def _gradient(
     influence = (energies - temperature * counts) / weight
     theory = None
     if expected is not None:
-        along = expected.temperature[s, known]
+        along = expected.share[s] * expected.temperature[s, known]
         slope = float(lever @ along) if np.ptp(along) > 0 else 0.0
         theory = Theory(slope, 2 * expected.error / float(np.ptp(place)), expected.law)
     return mean(lever @ temperature + influence @ lever, theory)

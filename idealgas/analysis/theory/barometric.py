@@ -17,6 +17,9 @@ DENSEST = 0.2
 
 LAYERS = 2000
 
+HEIGHTS, POINTS = 257, 513
+"""Numbers of heights and of points of integration at each of them, for a column of fixed energy."""
+
 TOP = 60.0
 """Scale heights above which there is no disc."""
 
@@ -44,6 +47,52 @@ def barometric_temperature(
 
     scale = max(energy, 1e-300) / float(number.sum())
     return float(brentq(excess, 1e-3 * scale, 2 * scale))
+
+
+class ColumnProfile(NamedTuple):
+    """Density, relative to that at the bottom, and temperature of a species (H,) at heights above its lowest, length.
+
+    Both are 0 where the energy does not lift a disc.
+    """
+
+    above: np.ndarray
+    density: np.ndarray
+    temperature: np.ndarray
+
+
+def fixed_energy_column(
+    energy: float, dof: float, mass: np.ndarray, number: np.ndarray, pull: float, height: np.ndarray
+) -> list[ColumnProfile]:
+    """Profiles of each species of a dilute column at fixed energy.
+
+    With a disc at the height h, the others and all motion share E' = E - m g h. Their number of states G'(E') is the
+    density, and G/G' the temperature. G is the inverse Laplace transform of Π z(β)/β^(D/2 + 1), with the mean z of
+    exp(-β m g h) over the heights of each other disc, and is integrated through the saddle point, at which 1/β is the
+    temperature of a column of the energy E'. For N discs in a tall box, T = (E - m g h)/(D/2 + N - 1).
+
+    Arguments are those of `barometric_temperature`; dof is its freedom D.
+    """
+    width, reach = math.sqrt(2 / dof), min(math.sqrt(10 ** (68 / dof) - 1), 1e3)  # beyond, it is below 1e-17, or 1e-6
+    u = np.linspace(0.0, math.asinh(reach / width), POINTS)
+    step = width * np.cosh(u)
+    step[0] /= 2
+    found = []
+    for s, (m, top) in enumerate(zip(mass.tolist(), height.tolist(), strict=True)):
+        others = number - (np.arange(len(number)) == s)
+        above = np.linspace(0.0, min(top, energy / (m * pull)), HEIGHTS)
+        weight, temperature = np.full(HEIGHTS, -math.inf), np.zeros(HEIGHTS)
+        for k, left in enumerate(energy - m * pull * above):
+            if left <= 1e-9 * energy:
+                break
+            saddle = 1 / barometric_temperature(left, dof, mass, others, pull, height)
+            beta = saddle * (1 + 1j * width * np.sinh(u))
+            x = np.multiply.outer(beta, mass * pull * height)
+            exponent = beta * left - dof / 2 * np.log(beta) + np.log(-np.expm1(-x) / x) @ others
+            states = np.exp(exponent - exponent[0].real) * step
+            weight[k] = exponent[0].real + math.log(states.real.sum() * saddle)
+            temperature[k] = (states / beta).real.sum() / states.real.sum()
+        found.append(ColumnProfile(above, np.exp(weight - weight[0]), temperature))
+    return found
 
 
 class ColumnRates(NamedTuple):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.analysis.theory import conserved, distributions
-from idealgas.analysis.theory.barometric import barometric_temperature
+from idealgas.analysis.theory.barometric import ColumnProfile, barometric_temperature, fixed_energy_column
 from idealgas.scene import Scene
 from idealgas.state import Gas
 
@@ -163,13 +163,25 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
         return None
     if baths := properties.temperatures:
         return min(baths) if len(baths) == 1 else None
+    column = _column(scene, gas, spin_energy, axis)
+    return barometric_temperature(*column) if column[0] > 0 else None
+
+
+def column_profiles(scene: Scene, gas: Gas, spin_energy: float, axis: int) -> list[ColumnProfile]:
+    """Density and temperature of each species of an isolated column."""
+    return fixed_energy_column(*_column(scene, gas, spin_energy, axis))
+
+
+def _column(
+    scene: Scene, gas: Gas, spin_energy: float, axis: int
+) -> tuple[float, int, np.ndarray, np.ndarray, float, np.ndarray]:
+    """Arguments of `barometric_temperature` for a gas under gravity along `axis`."""
     dof, energy = _shared(scene, gas, spin_energy)
-    g, place = properties.acceleration[axis], gas.position[:, axis]
+    g, place = scene.properties.acceleration[axis], gas.position[:, axis]
     above = place if g < 0 else gas.box[axis] - place
     energy += abs(g) * float(gas.mass @ (above - gas.radius))
-    discs = composition(gas)
-    height = gas.box[axis] - 2 * discs.radius
-    return barometric_temperature(energy, dof, discs.mass, discs.number, abs(g), height) if energy > 0 else None
+    _, radius, mass, number = composition(gas)
+    return energy, dof, mass, number, abs(g), gas.box[axis] - 2 * radius
 
 
 def _shared(scene: Scene, gas: Gas, spin_energy: float) -> tuple[int, float]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from idealgas import profile
-from idealgas.analysis.core.ensemble import column_temperature
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, column_temperature
 from idealgas.analysis.profile.theory import JUMP, conduct, expected_profile, natural_axis
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.theory.hard_discs import mean_free_path
@@ -89,8 +89,27 @@ def test_a_column_falls_off_with_height(make):
     assert energy == pytest.approx((discs.number * t * (2 - x / np.expm1(x))).sum(), rel=1e-9)
     expected = expected_profile(log, 1, np.linspace(1.0, 3.0, 3), 0.0)
     fall = expected.density[:, 1] / expected.density[:, 0]
-    assert fall == pytest.approx(np.exp(-discs.mass * 9 / t), rel=1e-12)
+    assert fall == pytest.approx(np.exp(-discs.mass * 9 / t), rel=1 / 60)  # to first order in 1/N
     assert expected_profile(log, 0, np.linspace(1.0, 3.0, 3), 0.0) is None
+
+
+def test_a_conserved_momentum_leaves_spins_alone(make):
+    """m v²/2 is T(1 - m/2M) where the total momentum along x is conserved, and I ω² is T."""
+    log = make("box.left=periodic", "box.right=periodic", "rotation.roughness=1")
+    expected, gas = expected_profile(log, 0, np.linspace(0, 12, 3), 0.0), log.discs
+    t = expected.of_spin(0, 0).value
+    energy = gas.kinetic_energy - gas.mass @ gas.velocity[:, 0] * centre_of_mass_velocity(log)[0] / 2
+    assert t == pytest.approx(2 * energy / (3 * len(gas) - 1), rel=1e-9)
+    for s, mass in enumerate(composition(gas).mass):
+        assert expected.of_temperature(s, 1).value == pytest.approx(t * (1 - mass / gas.mass.sum() / 2), rel=1e-12)
+
+
+def test_a_column_in_a_heat_bath(make):
+    log = make("gravity={ acceleration = [0, -9] }", "thermostat={ temperature = 5, rate = 1 }")
+    expected = expected_profile(log, 1, np.linspace(1.0, 3.0, 3), 0.0)
+    fall = expected.density[:, 1] / expected.density[:, 0]
+    assert fall == pytest.approx(np.exp(-composition(log.discs).mass * 9 / 5), rel=1e-12)
+    assert expected.temperature == pytest.approx(5.0, rel=1e-12)
 
 
 def test_between_two_thermal_sides(make):
