@@ -23,6 +23,9 @@ from typing import Any
 
 import numpy as np
 
+from idealgas import system
+from idealgas.errors import UserError
+
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 if INTERPRETED:
     np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
@@ -56,9 +59,11 @@ def sources() -> dict[Path, bytes]:
 
 @cache
 def cache_folder() -> Path:
-    """Folder of this process's machine code, made on the first call; a temporary one if no other can be written.
+    """Folder of this process's machine code, made on the first call; a temporary one if no other can be used.
 
-    It is in NUMBA_CACHE_DIR if that is set, else in `idealgas` in the user's cache folder.
+    It is in NUMBA_CACHE_DIR if that is set, else in `idealgas` in the user's cache folder, else in a folder of the user
+    among the temporary files. Machine code is loaded without further checks, so a folder that another user owns or can
+    write is not used.
     """
     import llvmlite
     import numba
@@ -66,18 +71,18 @@ def cache_folder() -> Path:
     digest = hashlib.sha256(f"{sys.version} {numba.__version__} {llvmlite.__version__} {np.__version__}".encode())
     for path, source in sources().items():
         digest.update(f"{path.relative_to(_PACKAGE)} {len(source)} ".encode() + source)
-    users = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    base = Path(numba.config.CACHE_DIR or os.path.join(users, "idealgas"))
-    folder = base / f"idealgas-{digest.hexdigest()[:16]}"
-    try:
-        folder.mkdir(0o700, parents=True, exist_ok=True)
-        os.utime(folder)  # used now, so that no other process removes it
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="idealgas-"))
-        atexit.register(_remove_if_own, folder, os.getpid())
-    else:
-        _remove_old(base)
+    home = system.cache_home()
+    users = Path(numba.config.CACHE_DIR).absolute() if numba.config.CACHE_DIR else home and home / "idealgas"
+    for base in filter(None, (users, Path(tempfile.gettempdir(), f"idealgas-{system.user_number()}").absolute())):
+        folder = base / f"idealgas-{digest.hexdigest()[:16]}"
+        with suppress(OSError):
+            if system.make_private(folder):
+                os.utime(folder)  # used now, so that no other process removes it
+                tempfile.TemporaryFile(dir=folder).close()
+                _remove_old(base)
+                return folder
+    folder = Path(tempfile.mkdtemp(prefix="idealgas-"))
+    atexit.register(_remove_if_own, folder, os.getpid())
     return folder
 
 
@@ -188,7 +193,10 @@ def _watched(compiled: Any) -> Callable:
             _seconds = before + time.perf_counter() - started  # with that of entry points called by this one
         if signature not in compiled.signatures:
             shutil.rmtree(cache_folder(), ignore_errors=True)
-        return make(signature)  # at once, if it is compiled
+        try:
+            return make(signature)  # at once, if it is compiled
+        except (OSError, RuntimeError, ValueError) as error:  # which callers take for errors of a file that they read
+            raise UserError(f"machine code cannot be made: {' '.join(str(error).split())}") from error
 
     return compile_for
 

@@ -179,6 +179,7 @@ def make_private(folder: Path) -> bool:
         above = [path.stat() for path in folder.resolve().parents if path.exists()]
         if any(path.st_uid not in (0, user) or path.st_mode & (0o002 | stat.S_ISVTX) == 0o002 for path in above):
             return False
-    folder.mkdir(0o700, parents=True, exist_ok=True)
+    for path in (folder.parent, folder):
+        path.mkdir(0o700, parents=True, exist_ok=True)
     own = folder.lstat()
     return user is None or (stat.S_ISDIR(own.st_mode) and own.st_uid == user and not own.st_mode & 0o022)

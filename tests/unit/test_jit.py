@@ -2,14 +2,17 @@
 
 import ast
 import importlib
+import os
 import shutil
 from pathlib import Path
-from types import FunctionType
+from types import FunctionType, SimpleNamespace
 
 import pytest
 from helpers.fresh_python import python, start
 from helpers.support import ROOT
 
+from idealgas import jit
+from idealgas.errors import UserError
 from idealgas.jit import sources
 
 COMPILED = [path for path in sources() if "from idealgas.jit import" in path.read_text(encoding="utf-8")]
@@ -74,7 +77,7 @@ def law(x):
 """
 CALL = """
 from idealgas.engine.entry import entry
-print(entry(20), *(sum(each.values()) for each in (entry.stats.cache_hits, entry.stats.cache_misses)))
+print(entry(20), *(sum(each.values()) for each in (entry.compiled.stats.cache_hits, entry.compiled.stats.cache_misses)))
 """
 
 
@@ -85,7 +88,8 @@ def package(tmp_path):
     (folder / "engine").mkdir(parents=True)
     for path in (folder / "__init__.py", folder / "engine" / "__init__.py"):
         path.touch()
-    shutil.copy(ROOT / "idealgas" / "jit.py", folder)
+    for name in ("jit.py", "system.py", "errors.py"):
+        shutil.copy(ROOT / "idealgas" / name, folder)
     (folder / "engine" / "entry.py").write_text(ENTRY)
     (folder / "engine" / "law.py").write_text(LAW.format(2))
     return folder
@@ -138,9 +142,10 @@ def test_damaged_and_swapped_files_are_compiled_again(package, cached):
 def test_a_temporary_cache_where_no_other_can_be_written(package, tmp_path):
     (tmp_path / "file").touch()
     (tmp_path / "temporary").mkdir()
+    (tmp_path / "temporary" / f"idealgas-{os.geteuid()}").touch()
     variables = {"NUMBA_CACHE_DIR": str(tmp_path / "file"), "TMPDIR": str(tmp_path / "temporary")}
     assert python(CALL, package.parent, **variables) == "41 0 1"
-    assert not list((tmp_path / "temporary").iterdir())
+    assert [path.name for path in (tmp_path / "temporary").iterdir()] == [f"idealgas-{os.geteuid()}"]
 
 
 @pytest.mark.parametrize(
@@ -207,3 +212,75 @@ def test_prefetching_beyond_an_array_changes_nothing(package, cached):
     """The last row has no line behind it; in Python nothing is prefetched."""
     (package / "engine" / "entry.py").write_text(PREFETCHING)
     assert python(BEYOND_THE_END, package.parent, **cached) == "1 1 1"
+
+
+FOLDER = "from idealgas.jit import cache_folder; print(cache_folder())"
+
+
+def cache_folder_with(folder, **environment):
+    """Cache folder of a fresh Python in a folder, with no other variables; it still exists unless it was temporary."""
+    return Path(python(FOLDER, folder, TMPDIR=str(folder / "tmp"), **environment))
+
+
+@pytest.fixture
+def place(tmp_path):
+    """An empty folder with an empty folder for temporary files."""
+    (tmp_path / "tmp").mkdir()
+    return tmp_path
+
+
+posix = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="folders of users are private")
+
+
+@posix
+def test_a_relative_cache_home_is_ignored(place):
+    """Source: XDG Base Directory Specification: relative paths are invalid and to be ignored."""
+    found = cache_folder_with(place, HOME=str(place / "home"), XDG_CACHE_HOME="cache")
+    assert found.parent == place / "home" / ".cache" / "idealgas"
+    assert found.stat().st_mode & 0o777 == found.parent.stat().st_mode & 0o777 == 0o700
+
+
+@posix
+def test_a_user_without_a_home_has_a_cache_among_temporary_files(place):
+    for _ in range(2):
+        found = cache_folder_with(place, HOME="~")  # what `expanduser` leaves of a user without a home
+        assert found.parent == place / "tmp" / f"idealgas-{os.geteuid()}"
+        assert found.is_dir()
+    assert [path.name for path in place.iterdir()] == ["tmp"]
+
+
+@posix
+@pytest.mark.parametrize("what", ["owner", "writable", "link", "writable above", "owner above"])
+def test_a_cache_that_others_can_write_is_not_read(place, what):
+    if "owner" in what and os.geteuid() != 0:
+        pytest.skip("only root can give a folder away")
+    cached = {"NUMBA_CACHE_DIR": str(place / "cache")}
+    own = cache_folder_with(place, **cached)
+    assert own.parent == place / "cache"
+    planted = own.parent if "above" in what else own
+    if "owner" in what:
+        os.chown(planted, 12345, 12345)
+    elif "writable" in what:
+        planted.chmod(0o777)
+    else:
+        own.rename(place / "elsewhere")
+        own.symlink_to(place / "elsewhere")
+    (own / "planted").touch()
+    found = cache_folder_with(place, **cached)
+    assert found.parent == place / "tmp" / f"idealgas-{os.geteuid()}"
+    if "owner" in what and what != "owner":
+        shutil.rmtree(own)
+        cache_folder_with(place, **cached)
+        assert not own.exists(), "nothing is made in a folder of another user"
+
+
+@pytest.mark.parametrize("error", [OSError, RuntimeError, ValueError])
+def test_compilation_that_fails_is_no_error_of_a_file(tmp_path, monkeypatch, error):
+    """Readers take these errors for damage of what they read."""
+
+    def fail(_):
+        raise error("no memory\nfor code")
+
+    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path / "cache")
+    with pytest.raises(UserError, match=r"^machine code cannot be made: no memory for code$"):
+        jit._watched(SimpleNamespace(compile=fail, signatures=()))(())
