@@ -181,8 +181,9 @@ class Analysis:
             raise NotApplicableError(f"{log.path}: not applicable to {differ}; `disc.species` gives them several")
         values = {name: option.default for name, option in known.items()} | options
         found = cls.measure(log, start=start, end=end, progress=progress, **values)
+        slow = caveats.of_window(found.window) if hasattr(found, "window") else ()
         origin = caveats.origin_of(log.scene, str(log.path))
-        return replace(found, caveats=(*caveats.of_log(log), *found.caveats), origin=origin, title=origin.title)
+        return replace(found, caveats=(*caveats.of_log(log), *slow, *found.caveats), origin=origin, title=origin.title)
 
     @classmethod
     def function(cls) -> Callable[..., Any]:

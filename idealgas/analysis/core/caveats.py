@@ -6,6 +6,7 @@ that all analyses share, and those of several logs together, are here.
 
 from collections.abc import Sequence
 
+from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.result import Origin, Result
 from idealgas.analysis.theory import conserved, time_steps
 from idealgas.errors import UserError
@@ -19,6 +20,9 @@ MOST = 6
 NAMED = 3
 """Largest number of logs that one sentence names."""
 
+RELAXATIONS = 20.0
+"""Length of a window in relaxation times of the structure from which on errors are right (measured to 10 %)."""
+
 WIDE, WIDE_PERIODIC = 20.0, 5.0
 """Diameters of the discs by which a box is wide between walls, which take a twentieth of it, and if it is periodic."""
 
@@ -26,6 +30,17 @@ WIDE, WIDE_PERIODIC = 20.0, 5.0
 def of_log(log: Log) -> tuple[str, ...]:
     """Caveats of every average over time of a log: those of its gas and of its method of simulation."""
     return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
+
+
+def of_window(window: Window) -> tuple[str, ...]:
+    """Caveat of a window that is too short for the slow structure of its gas."""
+    if window.duration >= RELAXATIONS * window.relaxation:
+        return ()
+    return (
+        f"The structure of this gas relaxes slowly, in t = {window.relaxation:.2g}; the window is only "
+        f"{window.duration / window.relaxation:.2g} times as long. Standard errors, above all of collision rates and "
+        f"free paths, may be up to 3 times too small; from {RELAXATIONS:g} times on they are right.",
+    )
 
 
 def origin_of(scene: Scene, path: str) -> Origin:

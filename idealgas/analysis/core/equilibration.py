@@ -9,7 +9,7 @@ these transients too, but more than a tenth of every fourth short run of a stead
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -27,11 +27,8 @@ from idealgas.analysis.core.ensemble import (
     not_steady,
 )
 from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
-from idealgas.analysis.core.flights import DensityBins, Moments
-from idealgas.analysis.core.impacts import Impacts
+from idealgas.analysis.core.observables import Observable, TimeSeries
 from idealgas.analysis.core.stream import Tally, block_edges, stream
-from idealgas.analysis.theory.conserved import are_fixed
-from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 
@@ -53,14 +50,11 @@ MARGIN = 2
 MEMORIES = 10.0
 """Correlation times after which a gas has forgotten its initial positions, where its equilibrium is not known."""
 
-BINS = 4
-"""Number of bins along each axis in which discs are counted for the centre of a species."""
-
 FEWEST_SAMPLES = 4.0
 """Least number of independent samples with which a series counts as longer than its fluctuations."""
 
-_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float], int]] = WeakKeyDictionary()
-"""First block of the steady gas of a log, by the number of event rows and the end of the window."""
+_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float, float, bool], tuple[int, float]]] = WeakKeyDictionary()
+"""First block of the steady gas of a log and its relaxation time, by the number of event rows and what was asked."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +62,14 @@ class Window:
     """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
 
     edges: (B + 1,), times between the blocks. first: index of the first block used. detected: whether it was detected.
-    state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`.
+    state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`. relaxation: see `relaxation_time`.
     """
 
     edges: Annotated[np.ndarray, OMITTED]
     first: Annotated[int, OMITTED]
     detected: Annotated[bool, Key("equilibration_detected")]
     state: Annotated[str, OMITTED] = "equilibrium"
+    relaxation: Annotated[float, OMITTED] = 0.0
 
     @property
     @reported
@@ -131,95 +126,20 @@ def measure(
         UserError: if the log has no events in the window, the gas lacks a needed property, or does not become steady.
     """
     must_apply(log, start, needs)
-    edges = block_edges(log, start, end)
-    if start is not None:
-        if tallies:
-            stream(log, edges, tallies, progress)
-        return Window(edges, 0, detected=False)
+    edges, detected = block_edges(log, start, end), start is None
     known = _KNOWN.setdefault(log, {})
-    key = (len(log), edges[-1])
+    key = (len(log), edges[0], edges[-1], detected)
     if key not in known:
-        series = TimeSeries(log, edges, tallies)
+        series, first = TimeSeries(log, edges, tallies), 0
         stream(log, edges, series.tallies, progress)
-        first = equilibrated_from(log, edges, [*series.observables(), *series.centres()])
-        must_be_shared(log, series.rates[first:, :, 1:])
-        known[key] = first
+        if detected:
+            first = equilibrated_from(log, edges, [*series.observables(), *series.centres()])
+            must_be_shared(log, series.rates[first:, :, 1:])
+        known[key] = first, series.relaxation_time(first)
     elif tallies:
         stream(log, edges, tallies, progress)
-    return Window(edges, known[key], detected=True, state=kind_of_state(log))
-
-
-# ── what is looked at ──
-
-
-class Observable(NamedTuple):
-    """Means over blocks of what is steady in equilibrium, and what theory knows of its variance.
-
-    Attributes:
-        values: (n,), means.
-        least: variance of fluctuations that may be slower than the series is long. Unless its start differs from the
-            rest by more than these explain, the series is ignored.
-        most: variance at an instant, which that of no mean exceeds.
-    """
-
-    values: np.ndarray
-    least: float = 0.0
-    most: float = math.inf
-
-
-class TimeSeries:
-    """Observables of a gas in blocks of time that are steady in equilibrium, and the tallies that fill them."""
-
-    def __init__(self, log: Log, edges: np.ndarray, present: Iterable[Tally] = ()) -> None:
-        """Take the gas of a log and the times (B + 1,) between blocks, and use the tallies `present` that fit."""
-        self.discs, self.ensemble, self.width = composition(log.discs), known_ensemble(log), edges[1] - edges[0]
-        self.tallies = list(present)
-        self.moments = self._get(Moments, lambda: Moments(log.gravity))
-        self.impacts: Impacts | None = None
-        self.bins: DensityBins | None = None
-        if log.has_positions:
-            self.impacts = self._get(Impacts, lambda: Impacts(len(log.walls), log.periodic))
-            self.bins = self._get(DensityBins, lambda: DensityBins(BINS))
-
-    def _get(self, kind: type[Any], make: Callable[[], Any]) -> Any:
-        if not any(isinstance(tally, kind) for tally in self.tallies):
-            self.tallies.append(make())
-        return next(tally for tally in self.tallies if isinstance(tally, kind))
-
-    @property
-    def rates(self) -> np.ndarray:
-        """Sums (B, S, 3) of |v|, m vx² and m vy² over the discs of each species."""
-        return self.moments.flights / self.width
-
-    def observables(self) -> Iterator[Observable]:
-        """Speed and energy of each species, energy along x less along y, numbers of events, virial.
-
-        At a fixed energy, equal speeds are 0.84 √N standard deviations of the speed, 0.50 √N of v⁴ from equilibrium.
-        """
-        speeds, energies = self.rates[:, :, 0], self.rates[:, :, 1:]
-        moments = np.array([speeds.T, energies.sum(axis=2).T])
-        known = (
-            np.full(moments.shape[:2], math.inf)
-            if self.ensemble is None
-            else self.ensemble.variances(self.discs.number)
-        )
-        mobile = ~are_fixed(self.discs.mass)
-        for values, most in zip(moments[:, mobile], known[:, mobile], strict=True):
-            yield from map(Observable, values, np.zeros(len(most)), most)  # those of fixed discs rise without end
-        yield Observable(energies.sum(axis=1) @ (1.0, -1.0))
-        yield from (Observable(numbers.astype(float)) for numbers in self.moments.events.T)
-        if self.impacts is not None:
-            yield Observable(self.impacts.pair_virial)
-
-    def centres(self) -> Iterator[Observable]:
-        """Sums of the positions of each species along x and y, in bins, with their variance for independent discs.
-
-        In a dense gas and in a sound wave they fluctuate more slowly than a short log can show.
-        """
-        if self.bins is not None:
-            place = np.arange(self.bins.bins) - (self.bins.bins - 1) / 2
-            for discs in np.moveaxis(self.bins.discs, 0, 2).reshape(-1, *self.bins.discs.shape[::3]):
-                yield Observable(discs @ place, least=float(discs[0].sum() * (place**2).mean()))
+    first, relaxation = known[key]
+    return Window(edges, first, detected, kind_of_state(log), relaxation)
 
 
 # ── detection ──

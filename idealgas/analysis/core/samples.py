@@ -3,7 +3,8 @@
 import numpy as np
 
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, kind_of_state, must_apply, must_be_shared
-from idealgas.analysis.core.equilibration import Observable, Window, equilibrated_from
+from idealgas.analysis.core.equilibration import Window, equilibrated_from
+from idealgas.analysis.core.observables import Observable
 from idealgas.analysis.core.stream import MOST_BLOCKS, span
 from idealgas.columns import FIRST_SEGMENT, OUTWARD
 from idealgas.errors import UserError

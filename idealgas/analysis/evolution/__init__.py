@@ -12,8 +12,9 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
-from idealgas.analysis.core.equilibration import Observable, detect_equilibration
+from idealgas.analysis.core.equilibration import detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
+from idealgas.analysis.core.observables import Observable
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import frames, span

@@ -11,7 +11,8 @@ import numpy as np
 
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
-from idealgas.analysis.core.equilibration import Observable, equilibrated_from, measure
+from idealgas.analysis.core.equilibration import equilibrated_from, measure
+from idealgas.analysis.core.observables import Observable
 from idealgas.analysis.core.statistics import Estimate, estimate, mean
 from idealgas.analysis.theory import hard_discs, values
 from idealgas.analysis.theory.values import Theory

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.equilibration import MARGIN, Observable, detect_equilibration, unsteady
+from idealgas.analysis.core.equilibration import MARGIN, detect_equilibration, unsteady
+from idealgas.analysis.core.observables import Observable
 
 
 def noise(rng, length, memory=0.0):

@@ -1,0 +1,61 @@
+"""A gas whose structure relaxes more slowly than its log can show says so; `calibration.csv` has the errors of each."""
+
+import math
+
+import pytest
+
+from idealgas import analyse, open_log, parse_scene, simulate
+from idealgas.analysis.core.caveats import of_window
+from idealgas.analysis.core.equilibration import Window
+
+PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+
+
+def equal(number, phi):
+    radius = math.sqrt(phi / (number * math.pi))
+    return f'[[species]]\nname = "gas"\ncount = {number}\nradius = {radius!r}\ntemperature = 1\n'
+
+
+def mixture(number, phi):
+    """Half of the discs 1.6 times as large and three times as heavy as the others."""
+    radius = math.sqrt(2 * phi / (number * math.pi * (1 + 1.6**2)))
+    each = '[[species]]\nname = "{}"\ncount = {}\nradius = {!r}\nmass = {}\ntemperature = 1\n'
+    return each.format("light", number // 2, radius, 1) + each.format("heavy", number // 2, 1.6 * radius, 3)
+
+
+SLOW = {  # rms of deviations over errors of collision rates: 2.6, 2.2, 2.1, 1.4, 1.7, 1.3
+    "20 discs, 0.45": (mixture(20, 0.45), 300),
+    "40 discs, 0.45": (mixture(40, 0.45), 300),
+    "100 discs, 0.45": (mixture(100, 0.45), 300),
+    "20 discs, 0.3": (mixture(20, 0.3), 300),
+    "40 discs, 0.3": (mixture(40, 0.3), 300),
+    "30 equal discs, 0.6": (equal(30, 0.6), 300),
+    "40 discs, 0.45, long": (mixture(40, 0.45), 2000),  # 1.5
+}
+FAST = {  # 1.0
+    "20 discs, 0.05": (mixture(20, 0.05), 300),
+    "50 equal discs, 0.2": (equal(50, 0.2), 300),
+    "64 equal discs, 0.3, periodic": (PERIODIC + equal(64, 0.3), 300),
+    "30 equal discs, 0.6, long": (equal(30, 0.6), 2000),
+}
+
+
+@pytest.mark.parametrize("name", [*SLOW, *FAST])
+@pytest.mark.parametrize("start", [None, 0.5])
+def test_slow_structure_is_said(name, start, tmp_path):
+    discs, collisions = (SLOW | FAST)[name]
+    scene = f"scene.seed = 1\n[box]\nsize = [1, 1]\n{discs}[run]\ncollisions_per_disc = {collisions}\n"
+    simulate(parse_scene(scene), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = [analyse(log, analysis, start=start) for analysis in ("pressure", "temperature")]
+    for result in found:
+        said = [sentence for sentence in result.caveats if "relaxes slowly" in sentence]
+        assert bool(said) == (name in SLOW)
+        assert all(f"in t = {result.window.relaxation:.2g}" in sentence for sentence in said)
+
+
+def test_window_of_many_relaxation_times_needs_no_caveat():
+    edges = [0.0, 100.0]
+    assert of_window(Window(edges, 0, True, relaxation=5.0)) == ()
+    (said,) = of_window(Window(edges, 0, True, relaxation=10.0))
+    assert "in t = 10; the window is only 10 times as long" in said
