@@ -122,7 +122,7 @@ def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]
     try:
         from pandas import Categorical, DataFrame
     except ModuleNotFoundError as error:
-        raise LogError(f"to_pandas needs {error.name}: pip install 'idealgas[notebook]'") from error
+        raise LogError(f"to_pandas needs {error.name}: pip install 'idealgas-md[notebook]'") from error
     parts: dict[str, list[np.ndarray]] = {}
     for block in blocks:
         for name, column in block.items():

@@ -157,7 +157,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         from distributed.comm import parse_address, parse_host_port
         from distributed.utils import silence_logging_cmgr
     except ImportError:
-        raise UserError("a sweep needs dask.distributed: pip install 'idealgas[sweep]'") from None
+        raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'") from None
     if scheduler is not None:
         try:
             parse_host_port(parse_address(scheduler)[1])  # a client of an invalid address cannot be closed cleanly

@@ -211,7 +211,7 @@ def test_code_of_the_log_runs(folder):
     assert "1000 discs" in read
     assert read.endswith(" wall hits\n")
     assert "mean kinetic energy" in run_python(flights, LOG)
-    pytest.importorskip("pandas", reason="no pandas: pip install 'idealgas[notebook]'")
+    pytest.importorskip("pandas", reason="no pandas: pip install 'idealgas-md[notebook]'")
     assert "disc" in run_python(frame, LOG)
 
 

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tarfile
 import venv
 from pathlib import Path
 from zipfile import ZipFile
@@ -121,7 +122,7 @@ def test_install(fresh, tmp_path):
     """The interface, the licence and the marker of types are there, and a user's script runs."""
     (packages,) = fresh.glob("lib/python*/site-packages")
     assert (packages / "idealgas" / "py.typed").is_file()
-    (licence,) = packages.glob("idealgas-*.dist-info/licenses/**/LICENSE")
+    (licence,) = packages.glob("idealgas_md-*.dist-info/licenses/**/LICENSE")
     assert "MIT" in licence.read_text(encoding="utf-8")
     (tmp_path / "scene.toml").write_text(SCENE)
     (tmp_path / "script.py").write_text(SCRIPT)
@@ -166,3 +167,23 @@ def test_editable(source, tmp_path):
     _, entry_points = build(source, "build_editable", tmp_path)
     assert "idealgas = idealgas_cli.main:main" in entry_points
     assert found_in(tmp_path) == [str(source / name / "__init__.py") for name in ("idealgas", "cli")]
+
+
+def test_a_source_distribution_has_all_files_under_version_control(tmp_path):
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode:
+        pytest.skip("not a clone")
+    source = tmp_path / "source"
+    for name in listed.stdout.splitlines():
+        (source / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / name, source / name)
+    commit = ["git", "-c", "user.name=a", "-c", "user.email=a@b", "commit", "-qm", "all"]
+    for command in (["git", "init", "-q"], ["git", "add", "-A"], commit):
+        subprocess.run(command, cwd=source, check=True)
+    command = [sys.executable, "-W", "ignore", "-c", BUILD, "build_sdist", str(tmp_path)]
+    made = subprocess.run(command, cwd=source, capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    (packed,) = tmp_path.glob("idealgas_md-*.tar.gz")
+    with tarfile.open(packed) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    assert set(listed.stdout.splitlines()) <= names

@@ -74,7 +74,7 @@ def export(
         try:
             return made.write(log, times, target)
         except ModuleNotFoundError as error:
-            raise LogError(f"{kind} needs {error.name}: pip install 'idealgas[export]'") from error
+            raise LogError(f"{kind} needs {error.name}: pip install 'idealgas-md[export]'") from error
 
 
 @contextmanager
