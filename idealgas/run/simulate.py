@@ -198,16 +198,16 @@ class LoggedRun:
             self._slice(alone or slice_events)
             if simulation.paused and self._scene.log.snapshot_every:  # not at the largest representable time
                 self._snapshot()
-            if simulation.epoch_over and not simulation.finished(stop):
-                self._stall.end_epoch()
-                simulation.next_epoch()
-                self._begin_epoch()
             if (disc := self._stall.stuck()) >= 0:
                 self._log.close()
                 raise UserError(
                     f"{self._log.path}: disc {disc} is stuck at t = {simulation.last_event_time:g}: "
                     f"more than {STUCK} collisions per contact duration; the log can be read"
                 )
+            if simulation.epoch_over and not simulation.finished(stop):
+                self._stall.end_epoch()
+                simulation.next_epoch()
+                self._begin_epoch()
             on_progress(self._progress())
             if interrupted():
                 break

@@ -26,7 +26,7 @@ QUIET_SAMPLES = 64
 """Number of consecutive epochs without an event that are sampled; later ones are not."""
 
 STUCK = 1000
-"""Collisions of a disc per contact duration, on average over an epoch, above which it is stuck; one at rest has 1/e.
+"""Collisions of a disc per contact duration, averaged over one or more, above which it is stuck; one at rest has 1/e.
 
 Between walls, or under an arch of other discs, gaps may be so small that all collisions count as contacts at rest. They
 are elastic, so the disc keeps its speed.
@@ -53,6 +53,8 @@ class StallDetector:
         self._expected = 0.0  # collisions of two discs to be expected in these
         self._missed = 0.0  # the same since two discs collided, where only they end the run
         self._overdue: float = OVERDUE
+        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id, in the epochs before, since
+        self._hits_since = simulation.time
 
     def end_epoch(self) -> None:
         """Count the epoch that is over, before the next one begins."""
@@ -92,14 +94,18 @@ class StallDetector:
         return ""
 
     def stuck(self) -> int:
-        """Id of an inelastic disc that is stuck; -1 if there is none."""
+        """Id of an inelastic disc that is stuck; -1 if there is none. To be called at the end of every epoch, too."""
         simulation, restitution = self._simulation, self._simulation.effects.restitution
         if restitution is None or simulation.method.single_epoch:
             return -1
-        discs, elapsed = simulation.method.discs, simulation.last_event_time - simulation.time
-        most = int(discs.record.count.argmax())
-        allowed = STUCK * (1 + elapsed / restitution.contact_duration)
-        return int(discs.id[most]) if discs.record.count[most] > allowed else -1
+        discs, hits = simulation.method.discs, self._hits.copy()
+        hits[discs.id] += discs.record.count
+        durations = (simulation.last_event_time - self._hits_since) / restitution.contact_duration
+        if simulation.epoch_over:
+            self._hits = hits if durations < 1 else np.zeros_like(hits)
+            self._hits_since = self._hits_since if durations < 1 else simulation.time + simulation.length
+        disc = int(hits.argmax())
+        return disc if hits[disc] > STUCK * (1 + durations) else -1
 
     def busy(self) -> str:
         """Notice, once per run, that few discs have most events of an epoch with far too many; else empty."""
