@@ -19,7 +19,14 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
 from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates
 from idealgas.analysis.histogram.distribution import Distribution, distribution_of
-from idealgas.analysis.histogram.laws import FEW, expectation, free_flight_rates, velocity_laws
+from idealgas.analysis.histogram.laws import (
+    FEW,
+    FINITE_NUMBER,
+    RECOLLISIONS,
+    expectation,
+    free_flight_rates,
+    velocity_laws,
+)
 from idealgas.analysis.histogram.samples import independent_samples
 from idealgas.analysis.theory import distributions
 from idealgas.analysis.theory.ensemble import composition, ensemble_at
@@ -97,9 +104,10 @@ class HistogramAnalysis(Analysis):
         """Measure a distribution between two times of a log, species by species, and test it against its laws.
 
         Velocities are compared with the Maxwell-Boltzmann distribution and that of N discs at fixed energy, free
-        flights with a dilute gas, and waiting times with an exponential distribution. The p-values are those of the
-        Kolmogorov-Smirnov test of independent samples. Under gravity or a piston the temperature of the law is the
-        measured one. A gas that never reaches equilibrium has no law, and its window is the whole log by default.
+        flights with a dilute gas, and waiting times with an exponential distribution; `law_error` is how far these two
+        are off. The p-values are those of the Kolmogorov-Smirnov test of independent samples. Under gravity or a piston
+        the temperature of the law is the measured one. A gas that never reaches equilibrium has no law, and its window
+        is the whole log by default.
 
         Args:
             log: log with events.
@@ -136,8 +144,9 @@ class HistogramAnalysis(Analysis):
         for found in result.distributions:
             low, high, spacing = found.edges[:-1], found.edges[1:], Number(found.correlation_time, ".4g")
             for test in found.tests:
-                distance, p = Number(test.distance, ".4f"), Number(test.p_value, ".3g")
-                tests.append((found.name, test.law_name, distance, p, Number(found.samples, "d"), spacing))
+                distance, error = Number(test.distance, ".4f"), Number(test.law_error, ".2g")
+                p, samples = Number(test.p_value, ".3g"), Number(found.samples, "d")
+                tests.append((found.name, test.law_name, distance, error, p, samples, spacing))
             law = [None] * len(low)
             if found.tests:  # the first of the laws as theory, as its mean over a bin
                 law = (np.diff(found.tests[0].law.cdf(found.edges)) / (high - low)).tolist()
@@ -147,8 +156,8 @@ class HistogramAnalysis(Analysis):
         notes = (describe(result.window), *([f"No law here: {result.no_law}."] if result.no_law else []))
         tables = [estimates(f"Mean {result.quantity} ({result.unit})", means, notes)]
         if tests:
-            heads = ("", "law", "distance", "p", "samples", "spacing (time)")
-            tables.append(Table("Kolmogorov-Smirnov tests (no unit)", heads, tests))
+            columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)")
+            tables.append(Table("Kolmogorov-Smirnov tests (no unit)", columns_of_tests, tests))
         heads = ("", "from", "to", "value", "± s.e.", "theory")
         return [*tables, Table(f"Density of {result.quantity} (per {result.unit})", heads, bins, most=0)]
 
@@ -240,12 +249,13 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     window = measure(log, [tally], start, end, progress)
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
+    finite = FINITE_NUMBER / len(log.discs)
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
     found = []
     for s, name in enumerate(discs.name):
         dilute = law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
         possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
-        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected))
+        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
     return window, found, why_not
 
 
@@ -259,8 +269,8 @@ def _waiting_times(log: Log, start: float | None, end: float | None, progress: P
         why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
-    possible = {} if why_not else {"exponential": law}
-    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None)], why_not
+    possible, error = {} if why_not else {"exponential": law}, FINITE_NUMBER / len(log.discs)
+    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None, error)], why_not
 
 
 def _intervals(
@@ -271,9 +281,11 @@ def _intervals(
     high: float,
     possible: Mapping[str, distributions.Law],
     expected: float | None,
+    law_error: float,
 ) -> Distribution:
     """Distribution of the intervals of species s in some blocks of time."""
     counts = tally.counts[blocks, s].astype(float)
     chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
     average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
-    return distribution_of(name, np.linspace(0, high, BINS + 1), counts, average, tally.sample[chosen], None, possible)
+    samples, edges = tally.sample[chosen], np.linspace(0, high, BINS + 1)
+    return distribution_of(name, edges, counts, average, samples, None, possible, law_error)

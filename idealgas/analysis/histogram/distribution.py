@@ -8,7 +8,7 @@ import numpy as np
 from scipy import stats
 
 from idealgas.analysis.core.fields import OMITTED, Key, reported
-from idealgas.analysis.core.statistics import Estimate, ratio
+from idealgas.analysis.core.statistics import Estimate, ks_distance, ratio
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
 
@@ -21,12 +21,14 @@ class Test:
     """Kolmogorov-Smirnov test of samples against a law.
 
     law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
-    unit). p_value: probability of at least this distance by chance.
+    unit). law_error: largest error of the law's own distribution function, no unit. p_value: probability of at least
+    this distance by chance and that error.
     """
 
     law_name: Annotated[str, Key("law")]
     law: Annotated[distributions.Law, OMITTED]
     distance: float
+    law_error: float
     p_value: float
 
 
@@ -69,6 +71,7 @@ def distribution_of(
     samples: np.ndarray,
     correlation_time: float | None,
     possible: Mapping[str, distributions.Law],
+    law_error: float = 0.0,
 ) -> Distribution:
     """Distribution from counts (B, bins + 2) of B blocks; the first and last bin count values outside the edges."""
     if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
@@ -77,8 +80,9 @@ def distribution_of(
     error = np.array([_error(column, total) for column in counts[:, 1:-1].T])
     tests = []
     for law_name, law in possible.items():
-        result = stats.kstest(samples, law.cdf)
-        tests.append(Test(law_name, law, float(result.statistic), float(result.pvalue)))
+        distance = ks_distance(samples, law.cdf)
+        p_value = float(stats.kstwo.sf(max(distance - law_error, 0.0), len(samples)))
+        tests.append(Test(law_name, law, distance, law_error, p_value))
     width, number = np.diff(edges), len(samples)
     return Distribution(name, edges, share / width, error / width, average, number, correlation_time, tuple(tests))
 

@@ -20,6 +20,18 @@ FEWEST_DOF = 3
 FEW = 30
 """Number of discs below which free paths and waiting times do not follow the law of many."""
 
+RECOLLISIONS = 0.011
+"""Largest error of the distribution function of free flights in many discs, where two discs may collide again soon.
+
+Largest of equal discs at φ = 0.02 to 0.6: 0.0105(10) at φ = 0.2 with 1000 discs in a periodic box.
+"""
+
+FINITE_NUMBER = 0.16
+"""Number of discs times the largest error of the distribution functions of free flights and waiting times of few discs.
+
+Waiting times of 30 discs are off by 0.0046(5), and free times of 64 by 0.002 more than those of 1000.
+"""
+
 
 @dataclass(frozen=True)
 class Expectation:

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from scipy import signal, stats
 
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.histogram.distribution import distribution_of
 from idealgas.analysis.histogram.samples import independent_samples
+from idealgas.analysis.theory.distributions import WaitingTimeLaw
 
 DISCS, INSTANTS, RUNS = 40, 600, 300
 LEAST_P = 0.001
@@ -43,3 +46,19 @@ def test_what_is_conserved_sets_no_spacing():
     values -= values.mean(axis=1, keepdims=True)
     assert np.ptp(values.mean(axis=1)) > 0
     assert independent_samples(values)[1] <= 2
+
+
+def test_only_more_than_the_error_of_a_law_is_rejected():
+    """Rates 1 and 1 + ε differ by ε/e in the distribution function: 0.0074 for 0.02, and 0.035 for 0.1."""
+    rng = np.random.default_rng(3)
+    samples, counts = rng.exponential(size=50_000), np.ones((20, 4))
+
+    def p_value(rate, error):
+        law = {"exponential": WaitingTimeLaw(rate)}
+        found = distribution_of("gas", np.arange(3.0), counts, Estimate(1, 0, 1), samples, None, law, error)
+        return found.tests[0].p_value
+
+    assert p_value(1.0, 0.0) > LEAST_P
+    assert p_value(1.02, 0.01) > 0.5
+    assert p_value(1.02, 0.0) < 0.05
+    assert p_value(1.1, 0.01) < 1e-6
