@@ -14,6 +14,9 @@ import numpy as np
 SIDES = ("left", "right", "bottom", "top")
 """Names of walls 0 to 3."""
 
+MOST_SPECIES, MOST_WALLS = 1_000, 10_000
+"""Largest numbers of species, whose pairs are counted, and of wall segments."""
+
 FIRST_SEGMENT = len(SIDES)
 """Number of the first wall segment; the others follow in the order of the scene."""
 

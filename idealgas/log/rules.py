@@ -10,7 +10,19 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from idealgas.columns import BATH, EVENT_COLUMNS, IMAGE, SIDES, TRIALS, VELOCITY, Column, Kind, side_ends
+from idealgas.columns import (
+    BATH,
+    EVENT_COLUMNS,
+    IMAGE,
+    MOST_SPECIES,
+    MOST_WALLS,
+    SIDES,
+    TRIALS,
+    VELOCITY,
+    Column,
+    Kind,
+    side_ends,
+)
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.schema import (
     BOX,
@@ -291,5 +303,8 @@ def check_sizes(discs: int, species: int, walls: int, file_size: int) -> None:
         raise ValueError(f"discs/id: {discs:,} discs in a file of {file_size:,} bytes")
     if not 1 <= species <= discs:
         raise ValueError(f"discs/species_name: {species} names of {discs} discs")
-    if walls < len(SIDES):
-        raise ValueError(f"walls/name: {walls} walls (allowed from {len(SIDES)} on)")
+    if species > MOST_SPECIES:
+        raise ValueError(f"discs/species_name: {species:,} names (allowed up to {MOST_SPECIES:,})")
+    if not len(SIDES) <= walls <= len(SIDES) + MOST_WALLS:
+        most = len(SIDES) + MOST_WALLS
+        raise ValueError(f"walls/name: {walls:,} walls (allowed from {len(SIDES)} to {most:,})")

@@ -14,12 +14,22 @@ from typing import Any
 from idealgas.files import HEAD, describe_file_type
 from idealgas.toml.issues import Issue, Key, SceneError
 
+MOST_BYTES, MOST_TEXT = 2_000_000, 8_000_000
+"""Largest sizes of a TOML file, bytes, and of a text, which may have all defaults of a file, characters."""
+
+MOST_PARTS = 32
+"""Largest number of parts of a dotted key; a scene needs 4; the time to parse one grows with their square."""
+
+_DOTTED = re.compile(rf"""(?<![\w"'.-])(?:(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
+
 
 def read_text(path: str | PathLike[str]) -> str:
     """Text of a TOML file. Raises SceneError if it cannot be read."""
     try:
-        raw = Path(path).read_bytes()
-        return raw.decode()
+        with open(path, "rb") as file:
+            raw = file.read(MOST_BYTES + 1)
+        if len(raw) <= MOST_BYTES:
+            return raw.decode()
     except UnicodeDecodeError as error:
         if b"\0" in raw[:HEAD]:
             raise SceneError([f"{path}: not TOML text, but {describe_file_type(raw[:HEAD])}"]) from None
@@ -28,10 +38,17 @@ def read_text(path: str | PathLike[str]) -> str:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise SceneError([f"{path}: cannot be read ({reason})"]) from None
+    allowed = f"<= {MOST_BYTES:,} bytes; [start] file takes many discs"
+    raise SceneError([f"{path}: too large (got more; allowed {allowed})"])
 
 
 def parse_document(text: str, name: str) -> dict[str, Any]:
-    """Values of a TOML text. Raises SceneError if it is not TOML."""
+    """Values of a TOML text. Raises SceneError if it is not TOML, or too large to be parsed in seconds."""
+    if len(text) > MOST_TEXT:
+        raise SceneError([f"{name}: too long (got {len(text):,} characters; allowed <= {MOST_TEXT:,})"])
+    if found := _DOTTED.search(text):
+        line = text.count("\n", 0, found.start()) + 1
+        raise SceneError([f"{name}:{line}: a key of too many parts (got {MOST_PARTS} dots; allowed fewer)"])
     try:
         return tomllib.loads(text)
     except RecursionError:

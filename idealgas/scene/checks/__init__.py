@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, TypeVar
 
+from idealgas.columns import MOST_SPECIES, MOST_WALLS
 from idealgas.effects import EFFECTS
 from idealgas.scene.checks import piston
 from idealgas.scene.checks.discs import placement_issues, room_issues, species_issues
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
+MOST_DISCS = 2_000_000
+"""Largest number of discs, which take 2 GB."""
+
 MAX_THERMOSTAT_COLLISIONS = 1e10
 """Largest number of thermostat collisions of a run, which takes hours."""
 
@@ -29,6 +33,9 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
 
     Tables in `invalid`, and None in an array of tables, have other errors and are left out.
     """
+    if too_many := list(_size_issues(scene)):
+        yield from too_many  # before anything that takes long for so many
+        return
     box = None if "box" in invalid else scene.box
     if not scene.species and not scene.disc and scene.start is None:
         yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]], or [start]")
@@ -57,6 +64,18 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
             yield from number_issues(scene, invalid)
     if "run" not in invalid:
         yield from method_issues(scene, invalid)
+
+
+def _size_issues(scene: Document) -> Iterator[Issue]:
+    """Check the numbers of species, walls and discs, whose arrays have to fit into memory."""
+    names = {s.name for s in scene.species if s is not None} | set(scene.given.names)
+    for key, what, number, most in (
+        ("species", "species", len(names), MOST_SPECIES),
+        ("wall", "walls", len(scene.wall), MOST_WALLS),
+        ("species", "discs", scene.number_of_discs, MOST_DISCS),
+    ):
+        if number > most:
+            yield Issue(((key,), ("start",), ("disc",)), f"too many {what}", f"{number:,}", f"<= {most:,}")
 
 
 def _valid(items: Sequence[Item | None]) -> list[tuple[int, Item]]:
