@@ -148,7 +148,6 @@ NO_THEORY = {
     "corner",
     "crystal",
     "effusion",
-    "free-expansion",
     "melting",
     "mixing",
     "novak-bortz",

@@ -137,6 +137,17 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
     return ""
 
 
+def becomes_uniform(log: Log, start: float | None) -> bool:
+    """Whether the gas in equilibrium is the same everywhere from time `start` on; None for the time of equilibrium.
+
+    Walls inside the box do not count once they all are gone for good.
+    """
+    gone = log.scene.properties.last_wall_removed_at
+    walls_are_gone = 0 < gone < log.end_time and (start is None or start >= gone)
+    uneven = [effect.properties for effect in log.scene.active_effects if not effect.properties.uniform]
+    return all(walls_are_gone and not one.empty for one in uneven)
+
+
 def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
     """Refuse a log whose scene lacks a needed property, or, without a given start, whose gas never becomes stationary.
 

@@ -122,9 +122,12 @@ def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
 
 
 def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
-    """Table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS of the instants."""
+    """Table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS of the instants.
+
+    What is not finite is an empty cell.
+    """
     shown = {name: values.tolist() for name, values in columns.items() if values is not None}
-    rows = [tuple(map(Number, row)) for row in zip(*shown.values(), strict=True)]
+    rows = [tuple(Number(x if math.isfinite(x) else None) for x in row) for row in zip(*shown.values(), strict=True)]
     return Table(title, tuple(shown), rows, notes, most=SHOWN_ROWS)
 
 

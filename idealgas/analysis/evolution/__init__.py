@@ -20,12 +20,11 @@ from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, format_estimate, time_series
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
-from idealgas.analysis.evolution.theory import Law, expected_law
+from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_gate
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
-from idealgas.scene.walls import walls_inside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,6 +53,8 @@ class Evolution(Result):
         temperature: (F,), mean m v²/2 per disc, energy.
         spin: (F,), mean I ω² per disc, energy; None without spin.
         beyond: fraction of the discs of each species beyond the first gate along an axis, (F,), by species.
+        spread: fractions in equilibrium without walls inside, by species; their error is the standard deviation of a
+            binomial distribution.
         law: theory of the temperature at these times; None without one.
         samples: (P,), times of the samples.
         parts: parts of the energy, (P,), by name.
@@ -71,6 +72,7 @@ class Evolution(Result):
     temperature: np.ndarray
     spin: Annotated[np.ndarray | None, OPTIONAL]
     beyond: Series
+    spread: dict[str, Estimate]
     law: Law | None
     samples: np.ndarray
     parts: Series
@@ -141,6 +143,7 @@ class EvolutionAnalysis(Analysis):
         pressure = pressure_series(log, first, last)
         return Evolution(
             *frames,
+            equilibrium_spread(log, last) if frames[-1] else {},
             law,
             samples[inside],
             parts,
@@ -164,7 +167,12 @@ class EvolutionAnalysis(Analysis):
             "I ω² per disc": result.spin,
             **{f"fraction of {name} beyond the gate": share for name, share in result.beyond.items()},
         }
-        tables = [time_series("Time series", series, (f"law: {law.text if law else 'none for this scene'}",))]
+        notes = [f"law: {law.text if law else 'none for this scene'}"]
+        notes += [
+            f"beyond the gate in equilibrium: {one.value:.1%} ± {one.standard_error:.1%} of {name} (binomial)"
+            for name, one in result.spread.items()
+        ]
+        tables = [time_series("Time series", series, notes)]
         if found := result.pressure:
             columns = {"t": found.middles, "area": found.area}
             for name in found.shown:
@@ -269,8 +277,7 @@ def _samples(log: Log, inside: np.ndarray) -> Frames:
 def _frames(log: Log, first: float, last: float, progress: Progress | None) -> Frames:
     """Evolution at evenly spaced times, from the events of a log."""
     gas, frame, inertia = log.discs, centre_of_mass_velocity(log), log.inertia
-    walls = [wall for wall in walls_inside(log.scene) if wall.is_gate]
-    gates = [(axis, wall.start[axis]) for wall in walls for axis in range(2) if wall.start[axis] == wall.end[axis]]
+    gate = first_gate(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -278,9 +285,10 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
         temperature[k] = (gas.mass * ((state.velocity - frame) ** 2).sum(axis=1)).mean() / 2
         if inertia is not None and state.angular_velocity is not None:
             spin[k] = (inertia * state.angular_velocity**2).mean()
-        for axis, place in gates[:1]:
+        if gate:
+            axis, place = gate
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
-    shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gates else {}
+    shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gate else {}
     return time, temperature, None if inertia is None else spin, shares
 
 

@@ -1,20 +1,24 @@
-"""Temperature of a gas against time by theory."""
+"""Temperature of a gas against time, and what is beyond an open gate in the end, by theory."""
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.ensemble import (
+    becomes_uniform,
     centre_of_mass_velocity,
     column_temperature,
     degrees_of_freedom,
     known_ensemble,
 )
 from idealgas.analysis.core.fields import OMITTED
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 
 SLOW = 0.05
 """Largest speed of a piston, relative to the mean speed of the discs, at which the adiabat is a good law."""
@@ -208,3 +212,22 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
         return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
     return Law(text, t * one, None, piston, table.pressure, piston_error=REST_ERROR / n * length)
+
+
+def first_gate(log: Log) -> tuple[int, float] | None:
+    """Axis across which the first gate along an axis stands, and its coordinate; None without one."""
+    gates = (wall for wall in walls_inside(log.scene) if wall.is_gate)
+    return next(((k, wall.start[k]) for wall in gates for k in range(2) if wall.start[k] == wall.end[k]), None)
+
+
+def equilibrium_spread(log: Log, end: float) -> dict[str, Estimate]:
+    """Fractions of the discs of each species beyond the first gate in equilibrium, where centres reach both alike."""
+    gate, gas = first_gate(log), log.discs
+    if gate is None or known_ensemble(log) is None or not becomes_uniform(log, end):
+        return {}
+    axis, place = gate
+    reach = gas.radius[np.unique(gas.species, return_index=True)[1]] * (not log.periodic[axis])
+    share = (log.box[axis] - reach - place) / (log.box[axis] - 2 * reach)
+    error = np.sqrt(share * (1 - share) / np.bincount(gas.species))
+    both = zip(gas.species_names, share.tolist(), error.tolist(), strict=True)
+    return {name: Estimate(value, spread, math.inf) for name, value, spread in both}

@@ -23,7 +23,7 @@ from idealgas.analysis.core.collisions import (
     theory_of,
 )
 from idealgas.analysis.core.currents import Currents, pressure_tensor
-from idealgas.analysis.core.ensemble import known_ensemble, nonstationary_reason
+from idealgas.analysis.core.ensemble import becomes_uniform, known_ensemble, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
 from idealgas.analysis.core.flights import Moments
@@ -138,22 +138,22 @@ def pressure(
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
     equilibrium = known_ensemble(log)
-    if equilibrium is None or not log.scene.properties.uniform:
+    if equilibrium is None or not becomes_uniform(log, start):
         return _without_theory(log, start, end, progress)
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    gas, discs, needs = log.discs, composition(log.discs), ("uniform",)
+    gas, discs = log.discs, composition(log.discs)
     theory = theory_of(log, discs)
     expected = expected_rates(discs, gas.box, equilibrium, theory)
     impacts: Impacts | SampledImpacts
     if log.has_events:
         moments, events, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
-        window, impacts = measure(log, [moments, events, currents], start, end, progress, needs), events
+        window, impacts = measure(log, [moments, events, currents], start, end, progress), events
         flow = currents.flow
         paths = free_paths(discs, expected, equilibrium, window, moments, events)
         bulk = bulk_in_events(gas, log.periodic, window, moments, events)
     else:
-        window, samples = sampled(log, start, end, needs)
+        window, samples = sampled(log, start, end, ())
         impacts, paths, flow = samples, (), samples.flow
         bulk = bulk_in_samples(gas, log.periodic, window, samples, log.scene.properties.thermostat_rate > 0)
     tensor = pressure_tensor(log, equilibrium, theory, window.of(flow))
@@ -212,7 +212,7 @@ def _without_theory(
         tensor={},
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
         mechanical=found,
-        caveats=_ends(log),
+        caveats=(*_ends(log), *_chambers(log, window)),
     )
 
 
@@ -221,6 +221,20 @@ def _ends(log: Log) -> tuple[str, ...]:
     if log.has_events or not walls_inside(log.scene):
         return ()
     return ("Without events the pressure on a face has also what discs give to the ends of its wall.",)
+
+
+def _chambers(log: Log, window: Window) -> tuple[str, ...]:
+    """Sentence for each wall inside that divides sides of the box, whose pressure is then a mean over chambers."""
+    found = []
+    for wall in walls_inside(log.scene):
+        places = [(wall.start[axis_of(k)], wall.end[axis_of(k)]) for k in range(len(SIDES))]
+        met = [SIDES[k] for k, ends in enumerate(places) if log.box[axis_of(k)] * (k % 2) in ends]
+        opens, closes = wall.absence
+        if met and not opens <= window.start < window.end <= closes:
+            found.append(
+                f"{wall.name} meets the {' and the '.join(met)} wall: the pressure there is a mean over both its sides."
+            )
+    return tuple(found)
 
 
 def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:

@@ -71,7 +71,8 @@ class Mechanical:
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
     some, why = slice(window.first, None), nonstationary_reason(log)
-    faces = [(face, _external_pressure(gauge, face, window)) for face in gauge.faces(window.edges)]
+    present = (face for face in gauge.faces(window.edges) if face.exposed[some].any())
+    faces = [(face, _external_pressure(gauge, face, window)) for face in present]
     balances = None if why else _balances(log, gauge, window, faces)
     return Mechanical(
         area=float(gauge.area(window.edges)[some].mean()),

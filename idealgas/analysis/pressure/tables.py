@@ -14,6 +14,11 @@ from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, Equ
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
 
+WALLS_AND_VIRIAL = (
+    "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
+    "than the pressure by the virial, and each has its own theory."
+)
+
 
 def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
     """Tables of routes, theories and collisions of one log, or of states and virial coefficients of several logs."""
@@ -22,10 +27,11 @@ def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
 
 def _of_walls(result: Pressure, found: Mechanical) -> list[Table]:
     """Tables of the mechanical pressure of every wall, and of the forces on walls."""
+    ideal = result.number * result.temperature / result.area
     notes = [
         describe(result.window),
         f"N = {result.number}, A = {result.area:.6g}, φ = {result.packing_fraction:.5g}, m v²/2 = "
-        f"{result.temperature:.6g} a disc (means over the window)",
+        f"{result.temperature:.6g} per disc, ideal gas N T/A = {ideal:.6g} in all of A (means over the window)",
         f"No theory here: {result.no_theory}.",
     ]
     if found.unsteady:
@@ -58,10 +64,14 @@ def _of_log(result: Pressure) -> list[Table]:
         estimates(
             "Z = PA/NT (no unit)",
             [(route.name, route.compressibility_factor) for route in result.routes],
-            (describe(result.window), *gas),
+            (describe(result.window), *gas, WALLS_AND_VIRIAL),
         ),
         Table("Z by theory (no unit)", ("", "value", "± error"), theories, missing),
-        estimates("P (energy/length²)", [(route.name, route.pressure) for route in result.routes]),
+        estimates(
+            "P (energy/length²)",
+            [(route.name, route.pressure) for route in result.routes],
+            (f"ideal gas: P = N T/A = {result.number * result.temperature / result.area:.6g}",),
+        ),
         pressure_table(result.tensor),
         *collision_tables(result.collision_rates, result.free_paths),
     ]

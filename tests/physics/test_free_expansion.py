@@ -1,0 +1,49 @@
+"""A gas that expands into the void: what is known before and after its gate opens."""
+
+import math
+
+import pytest
+
+from idealgas import evolution, pressure
+from idealgas.analysis.core.tables import as_text
+from idealgas.analysis.pressure.measure import PAIRS, WALLS
+
+
+@pytest.fixture
+def log(run):
+    return run("free-expansion")
+
+
+def test_after_the_gate_is_open_the_theory_of_hard_discs_holds(log):
+    """Z N T/A with A of the whole box, N T/A = 5 and Z = 1 + 2φ to a thousandth (B₃ adds 3.128 φ² = 6e-4)."""
+    found = pressure(log)
+    z = {route.name: route.compressibility_factor for route in found.routes}
+    assert z[PAIRS].theory == pytest.approx(1 + 2 * found.packing_fraction, abs=1e-3)
+    assert found.check().agrees is True
+    assert {row.name for row in found.check().compared} == {WALLS, PAIRS}
+    for route in found.routes:
+        assert route.pressure.theory == pytest.approx(5 * route.compressibility_factor.theory)
+    assert "ideal gas: P = N T/A = 5" in as_text(found.tables())
+
+
+def test_a_closed_gate_divides_the_sides(log):
+    """Gas in half of the box: 10 is N T/A on the left and on the gate, 5 the mean over both halves; see the caveat."""
+    found = pressure(log, 0.0, 9.0)
+    assert found.routes == ()
+    (caveat,) = found.caveats
+    assert caveat == "gate meets the bottom and the top wall: the pressure there is a mean over both its sides."
+    names = {wall.name for wall in found.mechanical.walls}
+    assert {"gate, left", "gate, right"} < names
+
+
+def test_half_of_the_discs_end_beyond_the_gate(log):
+    """50 % with the standard deviation of a binomial distribution, 1/(2√1000); nothing is printed as nan."""
+    found = evolution(log)
+    one = found.spread["gas"]
+    assert one.value == pytest.approx(0.5)
+    assert one.standard_error == pytest.approx(1 / (2 * math.sqrt(1000)))
+    late = found.beyond["gas"][found.time > 100]
+    assert abs(late.mean() - 0.5) < 4 * one.standard_error
+    text = as_text(found.tables())
+    assert "beyond the gate in equilibrium: 50.0% ± 1.6% of gas (binomial)" in text
+    assert "nan" not in text
