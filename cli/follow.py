@@ -1,6 +1,7 @@
 """Command `idealgas follow`: status of a run in progress."""
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -55,6 +56,8 @@ def follow(path: str, once: bool) -> None:
 def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group":
     from rich.console import Group
 
+    from idealgas.analysis.core.tables import format_estimate
+
     rows = {
         "time": f"{seen.time:.6g}",
         "events": f"{seen.events:,}",
@@ -62,7 +65,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
         "temperature": f"{seen.temperature:.6g}",
     }
     for name, estimate in (("pressure", seen.pressure), ("Z = PA/NT", seen.compressibility_factor)):
-        rows[name] = "-" if estimate is None else f"{estimate.value:.5g} ± {estimate.standard_error:.2g}"
+        rows[name] = "-" if estimate is None else format_estimate(replace(estimate, theory=None))
     rows["KS distance of speeds"] = "-" if seen.ks_distance is None else f"{seen.ks_distance:.4f}"
     table = as_rich(facts(f"{log.path}: {log.run_state}", rows), width)
     return Group(*(f"caveat: {sentence}" for sentence in seen.caveats), *table, _histogram(seen))

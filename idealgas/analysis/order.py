@@ -19,7 +19,7 @@ from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.tables import Number, Table, describe, estimates
+from idealgas.analysis.core.tables import Number, Table, describe, estimates, with_error
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
@@ -227,8 +227,7 @@ class OrderAnalysis(Analysis):
 def _function(title: str, of: str, *columns: np.ndarray) -> Table:
     """Table of a function of distance or wave number, with its standard error."""
     rows = [
-        (Number(float(x), ".4g"), Number(float(y), ".5g"), Number(float(error), ".2g"))
-        for x, y, error in zip(*columns, strict=True)
+        (Number(float(x), ".4g"), *with_error(float(y), float(error))) for x, y, error in zip(*columns, strict=True)
     ]
     return Table(title, (of, "value", "± s.e."), rows, most=MOST_ROWS)
 

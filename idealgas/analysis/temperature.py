@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -27,6 +27,9 @@ from idealgas.log import Log
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+CONSERVED = 1e-9
+"""Largest relative change of a conserved energy by rounding; chance changes that of fewer than 10¹⁸ discs by more."""
 
 LEAST_RANGE = 0.05
 """Smallest relative range of the temperature axis, so that rounding of a conserved quantity is not visible."""
@@ -104,6 +107,7 @@ def temperature(
     window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
     equilibrium = known_ensemble(log)
+    isolated = equilibrium is not None and math.isfinite(equilibrium.dof)
     sums, shared = moments.flights[:, :, 1:3] / window.width, is_ergodic(log.scene, log.discs)
 
     def entry(name: str, chosen: slice) -> SpeciesTemperature:
@@ -117,7 +121,10 @@ def temperature(
         if axes.any():  # not of fixed discs
             along_x, along_y = axes.tolist() if shared else (None, None)
             both = float(axes.mean())
-        return SpeciesTemperature(name, number, mean(x, along_x), mean(y, along_y), mean((x + y) / 2, both), means)
+        energy = mean((x + y) / 2, both)
+        if isolated and number == len(log.discs) and np.ptp(x + y) < CONSERVED * (x + y).mean():
+            energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved, but for rounding
+        return SpeciesTemperature(name, number, mean(x, along_x), mean(y, along_y), energy, means)
 
     entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
     entries.append(entry("all discs", slice(None)))

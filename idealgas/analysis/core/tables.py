@@ -65,6 +65,9 @@ class Table:
 
 ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "deviation (σ)")
 
+MOST_DIGITS = 9
+"""Largest number of digits before and after the decimal point."""
+
 SHOWN_ROWS = 9
 """Number of instants of a series that the terminal and the report show; CSV has all."""
 
@@ -81,6 +84,26 @@ CSV_HEADS = {
 """Column names in CSV that differ from the shown headings; they are those of the results of a sweep."""
 
 
+def digits(error: float, *shown: float | None) -> str:
+    """Format of numbers by which an error has two digits, and the numbers `shown` with it as many decimals.
+
+    With powers of ten where these decimals are too many, or beyond MOST_DIGITS; six digits without an error.
+    """
+    if not (math.isfinite(error) and error > 0):
+        return ".6g"
+    decimals = 1 - int(f"{error:.1e}".partition("e")[2])
+    largest = max([error, *(abs(number) for number in shown if number is not None and math.isfinite(number))])
+    if decimals <= MOST_DIGITS and largest < 10**MOST_DIGITS:
+        return f".{max(decimals, 0)}f"
+    return f".{max(int(f'{largest:e}'.partition('e')[2]) + decimals, 0)}e"
+
+
+def with_error(value: float | None, error: float | None) -> tuple[Number, Number]:
+    """Cells of a number and of its error: two digits of the error, and the number to match."""
+    form = digits(math.nan if error is None else error, value)
+    return Number(value, form), Number(error, form if "e" not in form else ".1e")
+
+
 def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequence[str] = ()) -> Table:
     """Table of named estimates with value, standard error, independent samples, theory, its error and deviation."""
     rows = list(rows)
@@ -90,10 +113,12 @@ def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequenc
         by_law = math.isinf(found.independent_samples)
         samples = Number(found.independent_samples, ".0f", instead="" if by_law else None)
         said = "exact" if by_law and found.standard_error == 0 else "" if math.isnan(found.standard_error) else None
-        spread = Number(found.standard_error, ".2g", instead=said)
-        error = [Number(None if found.theory is None else found.theory_error, ".2g")] if rough else []
-        theory = Number(found.theory), *error, Number(found.deviation, "+.2f")
-        return name, Number(found.value), spread, samples, *theory
+        value, spread = with_error(found.value, found.standard_error)
+        known = (
+            with_error(found.theory, found.theory_error) if found.theory_error else (Number(found.theory), Number(0.0))
+        )
+        theory = (known if rough else known[:1]) if found.theory is not None else (Number(None),) * (1 + rough)
+        return name, value, spread._replace(instead=said), samples, *theory, Number(found.deviation, "+.2f")
 
     heads = (*ESTIMATE_HEADS[:-1], *[THEORY_ERROR] * rough, ESTIMATE_HEADS[-1])
     return Table(title, heads, [cells(*row) for row in rows], notes)
@@ -124,10 +149,13 @@ def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
 def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
     """Table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS of the instants.
 
-    What is not finite is an empty cell.
+    What is not finite is an empty cell. A column whose name begins with ± has the errors of the column before it.
     """
     shown = {name: values.tolist() for name, values in columns.items() if values is not None}
-    rows = [tuple(Number(x if math.isfinite(x) else None) for x in row) for row in zip(*shown.values(), strict=True)]
+    rows = [[Number(x if math.isfinite(x) else None) for x in row] for row in zip(*shown.values(), strict=True)]
+    for k, name in enumerate(shown):
+        for row in rows if name.startswith("±") else ():
+            row[k - 1 : k + 1] = with_error(row[k - 1].value, row[k].value)
     return Table(title, tuple(shown), rows, notes, most=SHOWN_ROWS)
 
 
@@ -180,10 +208,8 @@ def _plain(cell: Cell) -> str | float:
 
 def format_estimate(found: "Estimate") -> str:
     """An estimate with as many digits as its standard error allows, and its theory, such as "1.02 ± 0.03, theory 1"."""
-    error = found.standard_error
-    known = math.isfinite(error) and error > 0
-    digits = max(1 - math.floor(math.log10(error)), 0) if known else None
-    text = f"{found.value:.6g}" if digits is None else f"{found.value:.{digits}f} ± {error:.{digits}f}"
+    value, error = with_error(found.value, found.standard_error)
+    text = f"{value} ± {error}" if found.standard_error > 0 else str(value)
     return text if found.theory is None else f"{text}, theory {found.theory:.6g}"
 
 

@@ -9,6 +9,7 @@ from idealgas.analysis.core.tables import (
     estimates,
     format_estimate,
     pressure_table,
+    with_error,
 )
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
 from idealgas.analysis.pressure.measure import PAIRS, Pressure
@@ -56,7 +57,7 @@ def _of_log(result: Pressure) -> list[Table]:
         result.routes[-1].compressibility_factor.theory,
     )  # of the ideal gas, and of this number of discs in this box
     theories = [
-        (name if one.value in exact else f"{name}, N → ∞", Number(one.value, ".6f"), Number(one.error, ".1g"))
+        (name if one.value in exact else f"{name}, N → ∞", *with_error(one.value, one.error))
         for name, one in result.known_theories.items()
     ]
     missing = (f"No theory here: {result.no_theory}.",) if result.no_theory else ()
@@ -98,8 +99,7 @@ def _of_states(result: EquationOfState) -> list[Table]:
             Number(state.packing_fraction, ".5g"),
             Number(state.number, "d"),
             Number(state.runs, "d"),
-            Number(state.infinite.value, ".5f"),
-            Number(state.infinite.standard_error, ".1g"),
+            *with_error(state.infinite.value, state.infinite.standard_error),
             Number(state.infinite.deviation, "+.2f"),
             *(Number(value, ".5f") for value in (state.infinite.theory, state.virial, state.henderson)),
             state.source or "",

@@ -20,7 +20,6 @@ from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.stream import frames
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
-from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
@@ -41,7 +40,7 @@ DILUTE = 0.02
 """Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
 
 LAYERED = 0.02
-"""Part by which layers at walls may raise the density of the strips there without a caveat, about (Z - 1) R/width."""
+"""Part by which layers at walls may raise the density of the strips there without a caveat."""
 
 CLEAR = 5.0
 """Difference of two strips, in standard errors, from which on the summary reports it."""
@@ -240,8 +239,7 @@ def _limits(
     density = np.array([[found.value for found in entry.density] for entry in species])
     densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
     if not expected.dilute:
-        crowding = float(hard_discs.compressibility_factor(min(log.discs.packing_fraction, hard_discs.HIGHEST))) - 1
-        if not log.periodic[axis] and crowding * min(log.discs.radius.max() / width, 1.0) > LAYERED:
+        if expected.layers > LAYERED:
             yield "Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them."
     elif densest > DILUTE:
         yield f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}."

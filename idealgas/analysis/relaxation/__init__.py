@@ -17,7 +17,7 @@ from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.stream import frames
-from idealgas.analysis.core.tables import Cell, Number, Table
+from idealgas.analysis.core.tables import Cell, Number, Table, with_error
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance, acceptance_tables
 from idealgas.analysis.relaxation.speeds import (
     SpeedDistributions,
@@ -275,8 +275,7 @@ def _row(result: Relaxation, fit: Estimate | None, series: np.ndarray) -> tuple[
     return (
         result.path,
         Number(result.number, "d"),
-        Number(fit.value if fit else None, ".4g", absent="none seen"),
-        Number(fit.standard_error if fit else None, ".2g"),
+        *(with_error(fit.value, fit.standard_error) if fit else (Number(None, absent="none seen"), Number(None))),
         Number(SETTLED * fit.value if fit else None, ".4g"),
         Number(None if first is None else float(series[first]), ".3g", absent="not reached"),
     )

@@ -12,6 +12,7 @@ from idealgas.analysis.core.tables import (
     describe,
     estimates,
     pressure_table,
+    with_error,
 )
 from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
 from idealgas.analysis.transport.combine import States
@@ -31,8 +32,7 @@ def _of_states(result: States) -> list[Table]:
             f"{symbol} at φ = {state.packing_fraction:.5g}",
             Number(state.number, "d"),
             Number(state.runs, "d"),
-            Number(one.value, ".4f"),
-            Number(one.standard_error, ".1g"),
+            *with_error(one.value, one.standard_error),
             Number(one.theory_error, ".2g"),
             Number(one.deviation, "+.2f"),
         )

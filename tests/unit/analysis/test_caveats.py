@@ -242,8 +242,11 @@ def test_exact_numbers_are_shown_as_exact(made):
     isolated = registry.analyse(made(*column), "heat-capacity")
     assert (isolated.energy.standard_error, isolated.energy.independent_samples) == (0.0, math.inf)
     assert 0 < isolated.temperature.independent_samples < math.inf
+    *_, both = registry.analyse(made(), "temperature").species
+    assert (both.both.standard_error, both.both.independent_samples, both.both.deviation) == (0.0, math.inf, None)
+    assert 0 < both.x.independent_samples < math.inf
     table = estimates("t", [("walls", Estimate(1.0, 0.0, math.inf)), ("gas", Estimate(1.0, 0.1, 20.0))])
-    assert [row[1:4] for row in table.shown] == [["1", "exact", ""], ["1", "0.1", "20"]]
+    assert [row[1:4] for row in table.shown] == [["1", "exact", ""], ["1.00", "0.10", "20"]]
 
 
 def test_tests_of_laws_take_samples(made):

@@ -189,3 +189,11 @@ def test_a_narrow_box_has_none(low, high):
     assert conduct(low, high, 0.5 * path, 1.0, 0.1) is None
     wide = conduct(low, high, 100 * path, 1.0, 0.1)
     assert min(low, high) < min(wide.low, wide.high) < max(wide.low, wide.high) < max(low, high)
+
+
+def test_layers_at_walls_are_part_of_the_error(make):
+    """At φ = 0.4 strips at walls are denser by about a tenth (six errors), and theory has an error of that size."""
+    log = make("species=[{ name = 'gas', count = 136, radius = 0.3, temperature = 1 }]", "run.collisions_per_disc=400")
+    density = profile(log, "x", bins=10).species[0].density
+    assert all(one.value > 1.05 * one.theory for one in (density[0], density[-1]))
+    assert all(abs(one.deviation) < 4 for one in density)
