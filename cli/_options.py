@@ -6,6 +6,7 @@ from contextlib import suppress
 import click
 
 from idealgas.errors import UserError
+from idealgas.toml.text import STDIN
 
 from ._terminal import be_quiet
 
@@ -28,9 +29,7 @@ def scene_argument(command: Callable) -> Callable:
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
         help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
     )  # fmt: skip
-    path = click.argument(
-        "path", metavar="SCENE.toml", callback=lambda _, __, path: "/dev/stdin" if path == "-" else path
-    )
+    path = click.argument("path", metavar="SCENE.toml", callback=lambda _, __, path: STDIN if path == "-" else path)
     return path(overrides(command))
 
 

@@ -1,5 +1,6 @@
 """Reading of TOML files, and the line number of each key, which `tomllib` does not report."""
 
+import os
 import re
 import tomllib
 from bisect import bisect_left
@@ -22,11 +23,14 @@ MOST_PARTS = 32
 
 _DOTTED = re.compile(rf"""(?<![\w"'.-])(?:(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 
+STDIN = "/dev/stdin"
+"""Path of the standard input, also on systems without such a file."""
+
 
 def read_text(path: str | PathLike[str]) -> str:
     """Text of a TOML file. Raises SceneError if it cannot be read."""
     try:
-        with open(path, "rb") as file:
+        with open(os.dup(0) if str(path) == STDIN and not Path(STDIN).exists() else path, "rb") as file:
             raw = file.read(MOST_BYTES + 1)
         if len(raw) <= MOST_BYTES:
             return raw.decode()

@@ -203,7 +203,7 @@ for column in (np.arange(3.0), np.ones((3, 2)), np.zeros(3, np.uint8)):
     before = column.copy()
     assert prefetch_next_line(column, 2) is None and entry(column, np.uintp(2)) is None
     assert (column == before).all()
-print(*(code.count("call void @llvm.prefetch") for code in entry.inspect_llvm().values()))
+print(*(code.count("call void @llvm.prefetch") for code in entry.compiled.inspect_llvm().values()))
 """
 
 
