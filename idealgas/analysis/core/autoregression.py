@@ -108,9 +108,10 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
         return Spread(math.nan, float(n))
     if is_constant(series):
         return Spread(math.nan if changes(series) else 0.0, float(n))
-    block = max(n // BLOCKS, 1)
-    coarse = series[n % block :].reshape(-1, block).mean(axis=1)
-    return process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
+    block, unit = max(n // BLOCKS, 1), unit_of(series)
+    coarse = (series[n % block :] / unit).reshape(-1, block).mean(axis=1)
+    found = process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
+    return Spread(found.error * unit, found.samples)
 
 
 def inefficiency(series: np.ndarray) -> float:
@@ -132,10 +133,16 @@ def inefficiency(series: np.ndarray) -> float:
         return 1.0
     if np.ptp(series, axis=0).max() <= NOISE * np.abs(series).max():
         return float(n)
-    covariance = process_of(series - series.mean()).covariances(n)
+    scaled = series / unit_of(series)
+    covariance = process_of(scaled - scaled.mean()).covariances(n)
     ends = np.flatnonzero(covariance <= 0)
     lags = np.arange(1, ends[0] if len(ends) else n)
     return float(1 + 2 * ((1 - lags / n) * covariance[lags]).sum() / covariance[0])
+
+
+def unit_of(series: np.ndarray) -> float:
+    """Power of two of the size of a series: in this unit squares of large numbers are finite, and digits the same."""
+    return float(np.ldexp(1.0, np.frexp(np.abs(series).max())[1] - 1))
 
 
 def is_constant(series: np.ndarray) -> bool:

@@ -192,7 +192,7 @@ class HistogramAnalysis(Analysis):
             x = np.linspace(found.edges[0], found.edges[-1], 600)
             for test, colour, style in zip(found.tests, COLOURS, ("-", "--"), strict=False):
                 ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
-            last = np.flatnonzero(found.density > 1e-3 * found.density.max())[-1]
+            last = np.flatnonzero(found.density >= 1e-3 * found.density.max())[-1]
             ax.set_xlim(found.edges[0], found.edges[last + 1])
             ax.set_xlabel(f"{result.quantity} ({result.unit})")
             ax.set_ylabel(f"density ({'time/length' if result.unit == 'length/time' else f'1/{result.unit}'})")

@@ -1,6 +1,7 @@
 """Which gases have laws of their velocities and free flights, and what stands in their place."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -87,3 +88,11 @@ def test_free_flights_in_a_gas_that_is_not_uniform(make):
 def test_a_single_disc_has_no_law(make):
     found = histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"))
     assert found.no_law == "a single disc shares its energy with no other"
+
+
+def test_figure_of_values_outside_all_bins(make):
+    """The range follows from samples of the energy, between which a gas may be far hotter."""
+    found = histogram(make())
+    (gas,) = found.distributions
+    beyond = replace(found, distributions=(replace(gas, density=np.zeros_like(gas.density)),))
+    assert beyond.plot().axes[0].get_xlim() == (gas.edges[0], gas.edges[-1])

@@ -120,3 +120,13 @@ def test_inefficiency_of_constant_and_short_series():
     assert autoregression.inefficiency(np.arange(3.0)) == 1.0
     frozen = np.tile(np.random.default_rng(7).normal(size=8), (40, 1))
     assert autoregression.inefficiency(frozen) == 40.0
+
+
+@pytest.mark.parametrize("scale", [1e-120, 1e176, 1e300])
+def test_errors_of_series_of_any_size(scale):
+    """Squares of a series of squared energies of 1e88 overflow in its own unit."""
+    series = np.random.default_rng(5).normal(3, 1, 400)
+    scaled, plain = (autoregression.error_of_mean(values) for values in (series * scale, series))
+    assert scaled.error / scale == pytest.approx(plain.error, rel=1e-10)
+    assert scaled.samples == pytest.approx(plain.samples, rel=1e-10)
+    assert autoregression.inefficiency(series * scale) == pytest.approx(autoregression.inefficiency(series), rel=1e-10)
