@@ -1,7 +1,7 @@
 """A log of a run, open for reading, also during its run and after it was interrupted or killed."""
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from time import sleep
@@ -21,14 +21,43 @@ from idealgas.log.dataframes import (
     flat_flights,
     flat_samples,
 )
-from idealgas.log.errors import LogError
+from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flights import FlightReader, Flights
 from idealgas.log.history import LogHistory
-from idealgas.log.log_file import ATTEMPTS, PAUSE, LogFile, Table
+from idealgas.log.log_file import ATTEMPTS, PAUSE, LogFile
 from idealgas.log.replay import LogState
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+
+class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
+    """Times and values of the samples by name, each read from the file when it is first asked for."""
+
+    def __init__(self, file: LogFile, names: Sequence[str], times: str) -> None:
+        """Samples of a file. names: of the observables. times: path of the times, which all share."""
+        self._file, self._names, self._times = file, tuple(names), times
+        self._read: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+
+    def __getitem__(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        if name not in self._read:
+            if name not in self._names:
+                raise DamageError(self._file.path, f"observables: has no {name}")
+            self._read[name] = self._shared, self._file.column(f"observables/{name}/value")
+        return self._read[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    @cached_property
+    def _shared(self) -> np.ndarray:
+        return self._file.column(f"observables/{self._times}")
 
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
@@ -95,8 +124,8 @@ class Log(LogHistory):
         return "\n".join(plain(line.replace("\n", "\\n")) for line in lines)
 
     @cached_property
-    def observables(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name.
+    def observables(self) -> "Samples":
+        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name; read when asked for.
 
         Every log has kinetic_energy, momentum, energy (of the discs), overlap (deepest, relative to the sum of two
         radii), outside (farthest reach out of the box, in diameters), and the numbers of events, disc_collisions,
@@ -109,11 +138,7 @@ class Log(LogHistory):
         """
         names = [name.partition("/")[0] for name in self._file.names("observables") if name.endswith("/value")]
         times = next((name for name in self._file.names("observables") if name.endswith("/time")), "")
-        found = {
-            name: (self._file.column(f"observables/{times}"), self._file.column(f"observables/{name}/value"))
-            for name in names
-        }
-        return Table(self.path, "observables", found)
+        return Samples(self._file, names, times)
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:

@@ -100,6 +100,7 @@ def read_all(log: Log) -> None:
     """Read all data of a log."""
     for name in ("attributes", "runs", "discs", "walls", "inertia", "observables", "snapshot_times", "summary"):
         getattr(log, name)
+    dict(log.observables)
     list(log.checkpoints)
     rows = sum(len(block.time) for block in log.chunks())
     assert rows == len(log)
