@@ -8,7 +8,7 @@ folder of a sweep with the analysis "heat-capacity".
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -64,6 +64,7 @@ class Measured(Result):
         temperature: energy (k_B = 1).
         thermometer: how the temperature was measured.
         routes: heat capacity per disc (k_B = 1) by the name of each route.
+        refused: reason why the log gives no value by a route that applies to it, by the name of the route.
         theory, theory_error: heat capacity per disc by theory, and its error.
         excess: C_P - C_A per disc by theory, None without a piston.
     """
@@ -78,6 +79,7 @@ class Measured(Result):
     theory: float | None
     excess: float | None
     theory_error: float = 0.0
+    refused: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -162,7 +164,7 @@ class HeatCapacityAnalysis(Analysis):
             temperature, thermometer = mean(2 * series.kinetic / dof), "kinetic energy"
             route, fluctuating = "fluctuations of the kinetic energy", series.kinetic
             found = kinetic_fluctuations(series.kinetic, n, dof, other, capacity)
-        lacking = too_few(route, found, fluctuating)
+        why = too_few(found, fluctuating)
         return Measured(
             str(log.path),
             ", ".join(kinds),
@@ -170,11 +172,12 @@ class HeatCapacityAnalysis(Analysis):
             _mean_energy(series.energy / n),
             temperature,
             thermometer,
-            {} if lacking else {route: found},
+            {} if why else {route: found},
             None if capacity is None else capacity.value,
             excess,
             0.0 if capacity is None else capacity.error,
-            caveats=lacking,
+            refused={route: why} if why else {},
+            caveats=(f"No heat capacity from {route}: {why}.",) if why else (),
         )
 
     @staticmethod
@@ -184,7 +187,10 @@ class HeatCapacityAnalysis(Analysis):
         routes = [route for (kind, gas), members in groups.items() for route in _of_gas(kind, gas, members)]
         routes += _gammas(tuple(routes), groups)
         used = {route.name for route in routes}
-        refused = {name: why for name, why in ROUTES.items() if name not in used}
+        reasons = ROUTES | {name: why for log in logs for name, why in log.refused.items()}
+        if any(log.excess is not None for log in logs):
+            reasons["γ"] = "no heat capacity of the gas with the piston was measured, or theory has none"
+        refused = {name: why for name, why in reasons.items() if name not in used}
         return HeatCapacity(tuple(routes), refused, tuple(logs), caveats=tuple(_apart(groups)))
 
     @staticmethod

@@ -86,7 +86,8 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
     if start is None:
         first = equilibrated_from(log, time[at], (Observable(kinetic), Observable(energy)))
     if len(at) - first < FEWEST:
-        raise UserError(f"{log.path}: {len(at) - first} samples of the energy in equilibrium are too few")
+        few = f"{len(at) - first} samples of the energy in equilibrium are too few"
+        raise UserError(f"{log.path}: {few} ({FEWEST} needed; log.snapshot_every stores more)")
     position = None if position is None else position[first:]
     return EnergySeries(kinetic[first:], energy[first:], position, float(time[at[first]]))
 
@@ -132,16 +133,16 @@ def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, ca
     return estimate(per_disc, kinetic, kinetic**2, theory=capacity)
 
 
-def too_few(route: str, found: Estimate, series: np.ndarray) -> tuple[str, ...]:
-    """Why the fluctuations of a series give no heat capacity, as one sentence; empty if its samples are enough."""
+def too_few(found: Estimate, series: np.ndarray) -> str:
+    """Why the fluctuations of a series give no heat capacity, as part of a sentence; empty if they do."""
     samples, error = len(series) / inefficiency(series), found.standard_error
     if samples < LEAST_SAMPLES:
         why = f"{samples:.0f} independent samples of the energy are too few ({LEAST_SAMPLES} needed)"
     elif 0 < error <= LARGEST_ERROR * found.value:
-        return ()
+        return ""
     else:
         why = f"its error is too large ({found.value:.2g} ± {error:.2g})"
-    return (f"No heat capacity from {route}: {why}; a longer run, or samples at shorter times, would give one.",)
+    return f"{why}; a longer run, or samples at shorter times, would give one"
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:
