@@ -23,8 +23,12 @@ from idealgas.physics.piston import piston_energy
 FEWEST = 16
 """Smallest number of samples from which fluctuations can be measured."""
 
-LEAST_SAMPLES = 32
-"""Least number of independent samples for heat capacities from fluctuations; the error of a variance is then 25 %."""
+LEAST_SAMPLES = 128
+"""Least number of independent samples for heat capacities from fluctuations; the error of a variance is then 13 %.
+
+Where it is larger, a variance that is too small has an error that is too small: with 32 samples deviations are 1.46
+times their errors (rms of made-up series), with 64 1.24, with 100 1.11.
+"""
 
 LARGEST_ERROR = 0.5
 """Largest standard error of such a heat capacity, relative to it."""

@@ -1,11 +1,14 @@
 """The estimators on energies drawn from the ensembles they are made for."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.heat_capacity import BATH, CLOSED, PISTON, HeatCapacityAnalysis, Measured
-from idealgas.analysis.heat_capacity.fluctuations import bath_fluctuations, kinetic_fluctuations
+from idealgas.analysis.heat_capacity.fluctuations import LEAST_SAMPLES, bath_fluctuations, kinetic_fluctuations
 
 N = 20
 
@@ -35,6 +38,16 @@ def test_isolated_gas(other, piston):
         low, high = kinetic_fluctuations(kinetic, N, 2 * N, of_piston, 1 + other).interval()
         hits += low < 1 + other < high
     assert 85 <= hits <= 100
+
+
+def test_errors_hold_with_the_least_number_of_samples():
+    """Gaussian energies of correlation time 4: rms deviation over error at most 1.1, within three errors of an rms."""
+    random, a, runs, deviations = np.random.default_rng(1), math.exp(-1 / 4), 400, []
+    length = int(LEAST_SAMPLES * (1 + a) / (1 - a))
+    for _ in range(runs):
+        energy = 50 + 10 * lfilter([math.sqrt(1 - a * a)], [1, -a], random.normal(size=length + 100))[100:]
+        deviations.append(bath_fluctuations(energy, 100, 1.0, 0.0, 1.0).deviation)
+    assert np.sqrt(np.mean(np.square(deviations))) < 1.1 + 3 / math.sqrt(2 * runs)
 
 
 def measured(kind, energy, temperature, errors, routes=None, theory=1.0, excess=None):
