@@ -335,7 +335,8 @@ def _new_file(path: Path) -> Iterator[h5py.File]:
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:
     """A row of `runs`, with a truncated command. Raises ValueError for a scene that does not fit."""
     scene_size, command_size = (column.dtype.itemsize for column in runs.columns.values())
-    scene, cut = scene_text.encode(), command.encode()[:command_size].decode(errors="ignore").encode()
+    line = command.encode(errors="backslashreplace")  # file names need not be UTF-8
+    scene, cut = scene_text.encode(), line[:command_size].decode(errors="ignore").encode()
     if len(scene) > scene_size:
         raise ValueError("the scene's text does not fit")
     return [np.array([scene], f"S{scene_size}"), np.array([cut], f"S{command_size}")]

@@ -289,3 +289,10 @@ def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
     with pytest.raises(OutputError, match="No space left"):
         writer.close()
     assert not any(thread.name == "log writer" for thread in threading.enumerate())
+
+
+def test_a_command_with_a_file_name_that_is_not_utf_8(tmp_path):
+    path = tmp_path / os.fsdecode(b"gas\xff.h5")
+    write_log(path, 10, command="idealgas run gas\udcff.toml")
+    with open_log(path) as log:
+        assert log.command == r"idealgas run gas\udcff.toml"
