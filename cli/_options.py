@@ -6,7 +6,7 @@ from contextlib import suppress
 import click
 
 from idealgas.errors import UserError
-from idealgas.toml.text import STDIN
+from idealgas.system import STDIN
 
 from ._terminal import be_quiet
 

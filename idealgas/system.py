@@ -30,6 +30,9 @@ _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.
 MOVES_OPEN_FILES = os.name != "nt"
 """Whether a file that is open can be moved and replaced."""
 
+STDIN = "/dev/stdin"
+"""Path of the standard input, also on systems without such a file."""
+
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0)
 """Flag of `os.open` with which opening a FIFO does not wait."""
 

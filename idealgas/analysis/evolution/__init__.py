@@ -102,6 +102,7 @@ class EvolutionAnalysis(Analysis):
     """Evolution in time."""
 
     position = 20
+    takes_unlike_discs = True
     results = (Evolution,)
     sections = (
         Section(

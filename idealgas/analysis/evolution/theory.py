@@ -76,7 +76,12 @@ def expected_law(log: Log, time: np.ndarray) -> Law | None:
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
-    alone = len(discs.name) == 1 and discs.radius[0] > 0 and log.discs.packing_fraction <= hard_discs.HIGHEST
+    alone = (
+        len(discs.name) == 1
+        and not log.discs.unlike
+        and discs.radius[0] > 0
+        and log.discs.packing_fraction <= hard_discs.HIGHEST
+    )
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
     if single and alone and not properties.fixed_walls:
@@ -85,7 +90,7 @@ def expected_law(log: Log, time: np.ndarray) -> Law | None:
         axis = int(log.gravity[1] != 0)
         t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis)
         return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t)
-    if (equilibrium := known_ensemble(log)) is None:
+    if log.discs.unlike or (equilibrium := known_ensemble(log)) is None:
         return None
     t = equilibrium.temperature
     kinetic = float(discs.number @ equilibrium.of_species / discs.number.sum())
@@ -139,7 +144,7 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     """
     table, gas = log.scene.piston, log.discs
     lacking = log.scene.lacking("uniform", "straight_flight", "elastic")
-    if table is None or len(lacking) > 1 or len(gas.species_names) > 1 or not gas.radius[0] > 0:
+    if table is None or len(lacking) > 1 or len(gas.species_names) > 1 or gas.unlike or not gas.radius[0] > 0:
         return None
     across = log.box[1 - table.axis]
     first = float(room(log, log.observables["piston_position"][1][:1])[0])
@@ -223,7 +228,7 @@ def first_gate(log: Log) -> tuple[int, float] | None:
 def equilibrium_spread(log: Log, end: float) -> dict[str, Estimate]:
     """Fractions of the discs of each species beyond the first gate in equilibrium, where centres reach both alike."""
     gate, gas = first_gate(log), log.discs
-    if gate is None or known_ensemble(log) is None or not becomes_uniform(log, end):
+    if gate is None or gas.unlike or known_ensemble(log) is None or not becomes_uniform(log, end):
         return {}
     axis, place = gate
     reach = gas.radius[np.unique(gas.species, return_index=True)[1]] * (not log.periodic[axis])

@@ -165,8 +165,10 @@ def test_what_cannot_be_measured_is_refused(make, overrides, message):
 def test_samples_of_one_instant_have_no_heat(make):
     """A run that was interrupted has its last sample twice: no time, no heat, and no warning of numpy."""
     log = make("box.left={ thermal = 1 }")
-    for name, (times, values) in log.observables.items():
-        log.observables[name] = np.append(times, times[-1]), np.concatenate((values, values[-1:]))
+    vars(log)["observables"] = {
+        name: (np.append(times, times[-1]), np.concatenate((values, values[-1:])))
+        for name, (times, values) in log.observables.items()
+    }
     last = float(log.observables["wall_energy"][0][-1])
     assert profile(log, start=last * 0.999).heat == {}
 

@@ -111,12 +111,6 @@ def test_laws_of_many_discs_take_many(made):
     )
     assert spinning.species[0].both.theory is None
     assert registry.find("transport").figure(registry.analyse(one, "transport")).axes
-    column = ("gravity.acceleration=[0, -0.1]", "species.gas.radius=0.02", "run.collisions_per_disc=", "run.until=60")
-    only(
-        registry.analyse(made(*column, "species.gas.count=4"), "profile", bins=2, start=0.0),
-        "of a fixed energy are colder",
-    )
-    assert silent(registry.analyse(made(*column), "profile", bins=2, start=0.0), "of a fixed energy")
 
 
 def test_a_uniform_density_takes_no_layers(made):
@@ -124,15 +118,6 @@ def test_a_uniform_density_takes_no_layers(made):
     only(registry.analyse(dense, "profile", start=0.0), "lie in layers at walls")
     assert silent(registry.analyse(made(), "profile", start=0.0), "layers")
     only(registry.analyse(made("species.gas.count=120"), "profile", start=0.0, bins=40), "lie in layers at walls")
-
-
-def test_a_barometric_law_is_that_of_many_discs(made):
-    (column,) = registry.analyse(made("gravity.acceleration=[0, -0.2]"), "profile", start=0.0, bins=4).species
-    for entry in column.temperature:
-        assert entry.theory_error == pytest.approx(1.5 / 40 * entry.theory)
-    floor = ("gravity.acceleration=[0, -0.2]", "box={size=[8, 8], bottom={thermal=1}}")
-    (column,) = registry.analyse(made(*floor), "profile", start=0.0).species
-    assert column.temperature[0].theory_error == 0
 
 
 def test_a_slit_takes_a_thin_gas(made):

@@ -165,5 +165,5 @@ def test_what_cannot_be_asked_for(log, what, choice, line):
 
 def test_without_pandas(log, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(LogError, match=r"^to_pandas needs pandas: pip install 'idealgas\[notebook\]'$"):
+    with pytest.raises(LogError, match=r"^to_pandas needs pandas: pip install 'idealgas-md\[notebook\]'$"):
         log.to_pandas()

@@ -200,4 +200,4 @@ def test_a_stuck_disc_ends_the_run_with_one_line(tmp_path):
     ):
         simulate(scene, tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
-        assert sum(len(rows.time) for rows in log.chunks()) > 10_000
+        assert sum(len(rows.time) for rows in log.chunks()) > 1000

@@ -242,7 +242,7 @@ def test_events_need_a_table(log, kind, tmp_path):
 @pytest.mark.parametrize(("kind", "package"), [("csv", "pyarrow"), ("parquet", "pyarrow"), ("gsd", "gsd.hoomd")])
 def test_a_missing_package_is_named(log, kind, package, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(LogError, match=rf"{kind} needs {package}: pip install 'idealgas\[export\]'"):
+    with pytest.raises(LogError, match=rf"{kind} needs {package}: pip install 'idealgas-md\[export\]'"):
         export(log, kind, tmp_path / "out", [0.0])
     assert not list(tmp_path.iterdir())
 
