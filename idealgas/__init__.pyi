@@ -7,6 +7,7 @@ from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.evolution import EvolutionAnalysis
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram import HistogramAnalysis
+from idealgas.analysis.lyapunov import LyapunovAnalysis
 from idealgas.analysis.order import OrderAnalysis
 from idealgas.analysis.pressure.measure import pressure as pressure
 from idealgas.analysis.profile import ProfileAnalysis
@@ -37,6 +38,7 @@ effusion = EffusionAnalysis.measure
 evolution = EvolutionAnalysis.measure
 heat_capacity = HeatCapacityAnalysis.measure
 histogram = HistogramAnalysis.measure
+lyapunov = LyapunovAnalysis.measure
 order = OrderAnalysis.measure
 profile = ProfileAnalysis.measure
 relaxation = RelaxationAnalysis.measure

@@ -1,0 +1,297 @@
+"""Measure Lyapunov exponents: how fast small deviations grow, and digits are lost.
+
+With `--exponents K` the K largest ones; 4N are the whole spectrum.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.fields import OMITTED
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, mean, ratio
+from idealgas.analysis.core.tables import SHOWN_ROWS, Number, Table, describe, estimates
+from idealgas.columns import Kind
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.jit import njit
+from idealgas.log import Log
+from idealgas.physics.tangent import collide_smooth, fly, reflect
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ALIGNMENT = 20
+"""Collisions per disc in which deviations turn into the directions that grow fastest, before growth is measured."""
+
+FEWEST = 32
+"""Least number of intervals of one event per disc in which growth is measured."""
+
+MOST_NUMBERS = 2**26
+"""Largest number of components of all deviations: half a gigabyte."""
+
+PRECISIONS = (7, 16, 32)
+"""Digits of the number types whose loss is predicted."""
+
+COLUMNS = ("disc", "end", "kind", "partner", "end_velocity", "end_position")
+
+
+@dataclass(frozen=True)
+class Lyapunov(Result):
+    """Lyapunov exponents of a gas.
+
+    Attributes:
+        window: the time that was used.
+        number: N discs.
+        exponents: the largest ones in decreasing order, 1/time.
+        mean_free_time: window and discs, time.
+        digits: decimal digits that a disc's motion loses between two of its collisions (no unit).
+        localisation: exp(S)/N with the entropy S of the squares of the leading deviation of each disc: from 1/N, if one
+            disc has it all, to 1.
+        entropy: sum of the positive exponents (Kolmogorov-Sinai entropy), 1/time; None without the whole spectrum.
+        pairing: largest |λ_i + λ_(4N+1-i)|, which is 0 for conservative motion, 1/time; None as above.
+        zeros: number of exponents that are 0 by conservation laws: two for the energy and two for each momentum.
+        largest_zero: largest size of so many exponents in the middle of the spectrum, 1/time; it falls with time t as
+            ln(t)/t. None as above.
+        time: (n,), from the start of the measurement. growth: (n,), natural logarithm of the leading deviation.
+    """
+
+    window: Window
+    number: int
+    exponents: tuple[Estimate, ...]
+    mean_free_time: float
+    digits: Estimate
+    localisation: Estimate
+    entropy: Estimate | None
+    pairing: float | None
+    zeros: int
+    largest_zero: float | None
+    time: Annotated[np.ndarray, OMITTED]
+    growth: Annotated[np.ndarray, OMITTED]
+
+    def lifetime(self, digits: int) -> float:
+        """Time in which a deviation in the last of so many digits grows to the size of the motion itself."""
+        return digits * math.log(10) / self.exponents[0].value
+
+
+class LyapunovAnalysis(Analysis):
+    """Lyapunov exponents of smooth elastic discs in a box, by the tangent map of each flight and collision."""
+
+    position = 105
+    results = (Lyapunov,)
+    options = (
+        Option("exponents", int, "How many exponents, the largest ones; 4N are all.", default=1, least=1, metavar="K"),
+    )
+    sections = (Section("Chaos", "Growth of a small deviation of all positions and velocities"),)
+
+    @staticmethod
+    def measure(
+        log: Log,
+        start: float | None = None,
+        end: float | None = None,
+        progress: Progress | None = None,
+        exponents: int = 1,
+    ) -> Lyapunov:
+        """Measure Lyapunov exponents between two times of a log.
+
+        Deviations are taken through the recorded flights and collisions by the exact tangent map, and made orthogonal
+        after each event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth in the first collisions is left
+        out. Errors are those of the mean growth rate.
+
+        Args:
+            log: log with events of an exact method: smooth elastic discs, between plain sides at rest or periodic ones,
+                with or without gravity.
+            start: start of the window, time; by default detected equilibrium.
+            end: end of the window, time; by default the end of the log.
+            progress: called as progress(done, total) while events are read.
+            exponents: how many.
+
+        Raises:
+            UserError: for other effects and methods, more exponents than 4N, or a window of fewer than 52 events per
+                disc.
+        """
+        _must_apply(log)
+        number = len(log.discs)
+        if exponents > 4 * number:
+            raise UserError(f"exponents: {number} discs have {4 * number} (got {exponents})")
+        if 4 * number * exponents > MOST_NUMBERS:
+            raise UserError(f"exponents: at most {MOST_NUMBERS // (4 * number)} of {number} discs (got {exponents})")
+        window = measure(log, [], start, end)
+        steps = list(_steps(log, window, exponents, progress))[ALIGNMENT:]
+        if len(steps) < FEWEST:
+            raise UserError(
+                f"{log.path}: too short for Lyapunov exponents, which take {ALIGNMENT + FEWEST} events per disc"
+            )
+        durations, logs, shares, collisions = (np.array(column) for column in zip(*steps, strict=True))
+        found = tuple(ratio(logs[:, k], durations) for k in range(exponents))
+        free_time = number * durations.sum() / (2 * collisions.sum()) if collisions.any() else math.inf
+        values = np.array([one.value for one in found])
+        zeros = 2 * (1 + sum(log.scene.properties.conserves_momentum))
+        whole = exponents == 4 * number
+        middle = slice(2 * number - zeros // 2, 2 * number + zeros // 2)
+        return Lyapunov(
+            window,
+            number,
+            found,
+            free_time,
+            _scaled(found[0], free_time / math.log(10)),
+            mean(shares),
+            ratio(np.where(values > 0, logs, 0.0).sum(axis=1), durations) if whole else None,
+            float(np.abs(values + values[::-1]).max()) if whole else None,
+            zeros,
+            float(np.abs(values[middle]).max()) if whole else None,
+            durations.cumsum(),
+            logs[:, 0].cumsum(),
+        )
+
+    @staticmethod
+    def tables(result: Lyapunov) -> list[Table]:
+        """Exponents, of a long spectrum some; loss of digits and entropy; times after which digits are lost."""
+        exponents = [(f"λ{k}", one) for k, one in enumerate(result.exponents, 1)]
+        notes = [describe(result.window), "theory: none for any density; the largest exponent grows with N"]
+        other = [
+            ("digits lost per collision of a disc (no unit)", result.digits),
+            ("fraction of the discs in the leading deviation (no unit)", result.localisation),
+        ]
+        if result.entropy is not None:
+            other.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", result.entropy))
+            notes.append(f"λ and -λ in pairs: within {result.pairing:.1g}")
+            notes.append(f"{result.zeros} exponents are 0 by conservation laws: within {result.largest_zero:.1g}")
+        rows = [(f"{digits} digits", Number(result.lifetime(digits), ".3g")) for digits in PRECISIONS]
+        return [
+            replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
+            estimates(f"Chaos; mean free time {result.mean_free_time:.4g}", other),
+            Table("Time after which all digits are lost", ("numbers of", "time"), rows),
+        ]
+
+    @staticmethod
+    def summary(result: Lyapunov) -> list[str]:
+        """Sentence on the growth of deviations and the loss of digits."""
+        largest, lost = result.exponents[0], result.digits.value
+        return [
+            f"Small deviations grow by e in {1 / largest.value:.3g} units of time: each collision of a disc takes "
+            f"{lost:.2g} digits, and float64 has lost its 16 digits after t = {result.lifetime(16):.3g}."
+        ]
+
+    @staticmethod
+    def figure(result: Lyapunov) -> "Figure":
+        """Picture of the growth of the leading deviation, and of all exponents if there are several."""
+        from idealgas.analysis.core.style import BLACK, COLOURS, GREY, panels
+
+        figure, axes = panels(1 + (len(result.exponents) > 1))
+        largest = result.exponents[0].value
+        shown = result.time <= 2 * result.lifetime(32) if result.time[-1] > 2 * result.lifetime(32) else slice(None)
+        time, digits = result.time[shown], result.growth[shown] / math.log(10)
+        axes[0].plot(time, digits, color=COLOURS[0], label="leading deviation")
+        axes[0].plot(time, largest * time / math.log(10), "--", color=BLACK, label=f"λ = {largest:.4g}")
+        for lost in PRECISIONS:
+            if lost < digits[-1]:
+                axes[0].axhline(lost, color=GREY, linewidth=0.8)
+        axes[0].set_xlabel("time")
+        axes[0].set_ylabel("growth (decimal digits)")
+        axes[0].legend()
+        for ax in axes[1:]:
+            ax.plot(range(1, len(result.exponents) + 1), [one.value for one in result.exponents], ".", color=COLOURS[0])
+            ax.axhline(0, color=GREY, linewidth=0.8)
+            ax.set_xlabel("number of the exponent")
+            ax.set_ylabel("exponent (1/time)")
+        return figure
+
+
+def _must_apply(log: Log) -> None:
+    """Raise NotApplicableError unless the tangent map of all events of a log is known."""
+    gas = log.scene.properties
+    plain = gas.lossless and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty and not gas.spins
+    if not plain or log.scene.run.method not in ("event_driven", "brute_force"):
+        takes = "takes smooth elastic discs between plain sides, and an exact method"
+        raise NotApplicableError(f"{log.path}: not applicable: lyapunov {takes}")
+
+
+def _scaled(found: Estimate, factor: float) -> Estimate:
+    return Estimate(found.value * factor, found.standard_error * factor, found.independent_samples)
+
+
+def _steps(
+    log: Log, window: Window, exponents: int, progress: Progress | None
+) -> Iterator[tuple[float, np.ndarray, float, int]]:
+    """Duration, growth (K,) of deviations, localisation of the first and collisions of intervals of N event rows."""
+    number, masses = len(log.discs), log.discs.mass
+    if exponents == 4 * number:  # conjugate pairs, which remain so: their exponents are ±λ in each interval
+        components = np.arange(4 * number).reshape(number, 4)
+        start = np.zeros((4 * number, 4 * number))
+        start[[*components[:, :2].ravel(), *components[::-1, :1:-1].ravel()], range(4 * number)] = 1.0
+    else:
+        start = np.linalg.qr(np.random.default_rng(0).normal(size=(4 * number, exponents)))[0]
+    weight = np.repeat(np.sqrt(masses), 4)[:, None]
+    deviations = np.ascontiguousarray(start / weight).reshape(number, 4, exponents)
+    since = np.full(number, window.start)
+    begun, collisions, rows = window.start, 0, 0
+    size, sides = np.array(log.box), np.array(log.periodic)
+    for flights in log.flights([window.start, window.end], columns=COLUMNS):
+        columns = tuple(getattr(flights, name) for name in COLUMNS)
+        first = 0
+        while first < len(flights.disc):
+            first, pairs, now = _advance(deviations, since, columns, first, number, masses, size, sides, log.gravity)
+            collisions += pairs
+            if now < 0:  # the batch ended within an interval
+                break
+            if now > begun:
+                _synchronise(deviations, since, now)
+                q, r = np.linalg.qr(deviations.reshape(4 * number, exponents) * weight)
+                shares = (q[:, 0] ** 2).reshape(number, 4).sum(axis=1)
+                shares = shares[shares > 0]
+                localisation = math.exp(-float(shares @ np.log(shares))) / number
+                yield now - begun, np.log(np.abs(np.diag(r))), localisation, collisions
+                deviations = np.ascontiguousarray(q / weight).reshape(number, 4, exponents)
+                begun, collisions = now, 0
+        rows += len(flights.disc)
+        if progress is not None:
+            progress(rows, max(rows, len(log)))
+
+
+@njit
+def _advance(deviations, since, columns, first, most, masses, box, periodic, gravity):
+    """Take deviations through events from row `first` on, until there were `most` in this call or the rows end.
+
+    Returns the next row, the number of collisions of two discs, and the time of the last event; -1 if the rows ended.
+    """
+    disc, end, kind, partner, velocity, position = columns
+    row, pairs = first, 0
+    while row < len(disc):
+        if row - first >= most:
+            return row, pairs, end[row - 1]
+        i = disc[row]
+        if kind[row] == Kind.DISC:
+            j = disc[row + 1]
+            for one in (i, j):
+                fly(deviations, one, end[row] - since[one])
+                since[one] = end[row]
+            x, y = position[row, 0] - position[row + 1, 0], position[row, 1] - position[row + 1, 1]
+            if periodic[0]:
+                x -= box[0] * np.rint(x / box[0])
+            if periodic[1]:
+                y -= box[1] * np.rint(y / box[1])
+            vx, vy = velocity[row, 0] - velocity[row + 1, 0], velocity[row, 1] - velocity[row + 1, 1]
+            collide_smooth(deviations, i, j, masses, x, y, vx, vy)
+            row += 2
+            pairs += 1
+        else:
+            if kind[row] == Kind.WALL:
+                fly(deviations, i, end[row] - since[i])
+                since[i] = end[row]
+                axis = 0 if partner[row] >= -2 else 1
+                reflect(deviations, i, axis, velocity[row, axis], gravity[axis])
+            row += 1
+    return row, pairs, -1.0
+
+
+@njit
+def _synchronise(deviations, since, now):
+    """Move the deviations of all discs to one time."""
+    for i in range(len(since)):
+        fly(deviations, i, now - since[i])
+        since[i] = now
