@@ -26,7 +26,7 @@ GROUPS = {
     "Run": ("new", "examples", "schema", "check", "run", "resume", "scene", "recover", "warm-up"),
     "Look": ("info", "follow", "animate"),
     "Analyse": tuple(sorted(registry.commands(), key=registry.position_of)),
-    "Share": ("report", "export"),
+    "Share": ("report", "export", "events"),
     "Study": ("sweep", "accuracy", "bench"),
 }
 """All commands in the groups, and in the order, in which `--help` shows them."""

@@ -1,0 +1,65 @@
+"""Command `idealgas events`: event rows of a log as lines of JSON."""
+
+import json
+import time
+from typing import TYPE_CHECKING
+
+import click
+import numpy as np
+
+from ._analysis import log_argument, open_log
+from ._terminal import data
+
+if TYPE_CHECKING:
+    from idealgas.columns import EventBatch
+
+KINDS = ("disc", "wall", "wall_end", "piston", "thermostat")
+LINES = 200  # in one write, which a pipe takes as a whole
+SECONDS = 0.2  # between two looks at a log that is being written
+
+
+@click.command(epilog="Example: idealgas events gas.h5 --disc 0 | head")
+@log_argument
+@click.option("--disc", type=click.IntRange(min=0), metavar="ID", help="Only events of this disc.")
+@click.option("--kind", type=click.Choice(KINDS), help="Only events of this kind.")
+@click.option("--from", "t0", type=float, metavar="T", help="Only events at this time or later.")
+@click.option("--to", "t1", type=float, metavar="T", help="Only events before this time.")
+@click.option("--follow", is_flag=True, help="While the log is being written, wait for the next events.")
+def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: float | None, follow: bool) -> None:
+    """Print the event rows of a log, one line of JSON for each: time, disc, kind, partner, and the state afterwards.
+
+    A collision of two discs is two rows. Partners are ids of discs, or -1 - k for wall k.
+    """
+    from idealgas.errors import UserError
+
+    with open_log(path) as log:
+        if not log.has_events:
+            raise UserError(f"{path}: has no events (made with log.events = false)")
+        row = 0 if t0 is None else log.row_at(t0)
+        while True:
+            live = follow and log.live  # before the rows are read, so that none is missed
+            stop = len(log) if t1 is None else log.row_at(t1)
+            for batch in log.chunks(None, row, stop):
+                _print(batch, disc, None if kind is None else KINDS.index(kind))
+            row = max(row, stop)
+            if not live or (t1 is not None and stop < len(log)):
+                return
+            time.sleep(SECONDS)
+            log.refresh()
+
+
+def _print(batch: "EventBatch", disc: int | None, kind: int | None) -> None:
+    """Print the rows of a batch that are of a disc and of a kind, None for any."""
+    from idealgas.log.dataframes import flat
+
+    chosen = np.ones(len(batch.disc), bool)
+    if disc is not None:
+        chosen &= batch.disc == disc
+    if kind is not None:
+        chosen &= batch.kind == kind
+    columns = flat({name: None if column is None else column[chosen] for name, column in batch._asdict().items()})
+    columns["kind"] = np.array(KINDS)[columns["kind"]]
+    names, rows = list(columns), zip(*(column.tolist() for column in columns.values()), strict=True)
+    lines = [json.dumps(dict(zip(names, row, strict=True))) for row in rows]
+    for first in range(0, len(lines), LINES):
+        data("\n".join(lines[first : first + LINES]))

@@ -1,0 +1,72 @@
+"""Events as lines of JSON: filters, a log that is being written, and a reader that goes away."""
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+from helpers.support import IDEALGAS, called, output_of
+
+from idealgas import open_log
+
+SCENE = """
+box.size = [10, 10]
+species = [{ name = "gas", count = 50, radius = 0.2, temperature = 1 }]
+run.until = 200
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("events")
+    (folder / "scene.toml").write_text(SCENE)
+    output_of("run", "scene.toml", "-o", "run.h5", folder=folder)
+    return folder
+
+
+def rows(text):
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def test_every_row_with_every_digit(folder):
+    printed = rows(output_of("events", folder / "run.h5"))
+    with open_log(folder / "run.h5") as log:
+        (batch,) = log.chunks()
+    assert len(printed) == len(batch.time)
+    assert np.array_equal([row["time"] for row in printed], batch.time)
+    assert np.array_equal([[row["vx"], row["vy"]] for row in printed], batch.velocity)
+    assert np.array_equal([[row["x"], row["y"]] for row in printed], batch.position)
+    assert {row["kind"] for row in printed} == {"disc", "wall"}
+
+
+def test_filters(folder):
+    printed = rows(output_of("events", folder / "run.h5"))
+    some = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 20.5))
+    assert some == [row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 20.5]
+    assert some
+
+
+def test_a_log_that_is_being_written(folder):
+    """The reader starts with the run, ends with it, and has every row."""
+    run = [IDEALGAS, "run", "scene.toml", "-o", "live.h5", "-q", "--set", "run.until=2000"]
+    with subprocess.Popen(run, cwd=folder) as writer:
+        while not (folder / "live.h5").exists() and writer.poll() is None:
+            pass
+        reader = subprocess.run(
+            [IDEALGAS, "events", "live.h5", "--follow", "--kind", "wall"], cwd=folder, capture_output=True, text=True
+        )
+        writer.wait()
+    assert (writer.returncode, reader.returncode) == (0, 0), reader.stderr
+    assert reader.stdout == output_of("events", folder / "live.h5", "--kind", "wall")
+
+
+def test_a_reader_that_goes_away(folder):
+    command = f"{IDEALGAS} events run.h5 | head -n 1; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", command], cwd=folder, capture_output=True, text=True)
+    assert (done.returncode, done.stderr, len(rows(done.stdout))) == (141, "", 1)
+
+
+def test_a_log_without_events(folder):
+    output_of("run", "scene.toml", "-o", "none.h5", "--set", "log.events=false", folder=folder)
+    done = called("events", folder / "none.h5")
+    assert (done.returncode, "has no events" in done.stderr) == (2, True)
