@@ -5,7 +5,6 @@ import time
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 
 from ._analysis import log_argument, open_log
 from ._terminal import data
@@ -50,6 +49,8 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
 
 def _print(batch: "EventBatch", disc: int | None, kind: int | None) -> None:
     """Print the rows of a batch that are of a disc and of a kind, None for any."""
+    import numpy as np
+
     from idealgas.log.dataframes import flat
 
     chosen = np.ones(len(batch.disc), bool)

@@ -6,8 +6,10 @@ import subprocess
 import numpy as np
 import pytest
 from helpers.support import IDEALGAS, called, output_of
+from idealgas_cli.events import KINDS
 
 from idealgas import open_log
+from idealgas.log.dataframes import KIND_NAMES
 
 SCENE = """
 box.size = [10, 10]
@@ -40,6 +42,7 @@ def test_every_row_with_every_digit(folder):
 
 
 def test_filters(folder):
+    assert KINDS == KIND_NAMES
     printed = rows(output_of("events", folder / "run.h5"))
     some = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 20.5))
     assert some == [row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 20.5]
