@@ -17,7 +17,7 @@ LINES = 200  # in one write, which a pipe takes as a whole
 SECONDS = 0.2  # between two looks at a log that is being written
 
 
-@click.command(epilog="Example: idealgas events gas.h5 --disc 0 | head")
+@click.command(epilog="Example: idealgas events gas.h5 --disc 0 --follow")
 @log_argument
 @click.option("--disc", type=click.IntRange(min=0), metavar="ID", help="Only events of this disc.")
 @click.option("--kind", type=click.Choice(KINDS), help="Only events of this kind.")
