@@ -168,6 +168,8 @@ def _analyse(
             echo(f"caveat: {sentence}", err=True)
         data(tables.as_csv(analysis.shown_tables(result)), nl=False)
     else:
+        if headline := analysis.summary(result):
+            echo(headline)
         print_tables(analysis.shown_tables(result))
         if text := analysis.text(result):
             echo(text)

@@ -14,11 +14,12 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.caveats import narrow
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, degrees_of_freedom
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
 from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, estimates, time_series
+from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.analysis.theory.granular import GranularParameters
 from idealgas.analysis.theory.values import Theory
@@ -236,6 +237,16 @@ class CoolingAnalysis(Analysis):
             "flow": result.flow,
         }
         return [estimates("Cooling", rows, notes), time_series("Time series", columns)]
+
+    @staticmethod
+    def summary(result: Cooling) -> str:
+        """How far the gas cools, its loss per collision, and whether loss and Haff's time agree with theory."""
+        first, last = result.temperature[[0, -1]]
+        said = agreement([("loss per collision", result.loss), ("Haff's time", result.haff)], "that of a uniform gas")
+        return (
+            f"The gas cools from m v²/2 = {first:.4g} to {last:.4g} in {result.collisions[-1]:.4g} collisions per disc "
+            f"and loses {format_estimate(result.loss)} of it per collision. Loss and Haff's time: {said}."
+        )
 
     @staticmethod
     def figure(result: Cooling) -> "Figure":

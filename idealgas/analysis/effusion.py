@@ -12,12 +12,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import INLINE, OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, estimates
+from idealgas.analysis.core.tables import Table, estimates, format_estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.errors import UserError
@@ -181,6 +182,13 @@ class EffusionAnalysis(Analysis):
     def tables(found: Effusions) -> list[Table]:
         """Table of the flux over density of each gas, length/time."""
         return [estimates("Flux over density (length/time), theory ⟨v⟩/π", found.together.items())]
+
+    @staticmethod
+    def summary(found: Effusions) -> str:
+        """Flux over density of the first gas, and whether those of all gases agree with kinetic theory."""
+        first, *_ = found.together.values()
+        said = agreement(found.together.items(), "⟨v⟩/π of kinetic theory")
+        return f"{format_estimate(first)} n discs pass per time and length of the slit at the density n; {said}."
 
     @staticmethod
     def figure(found: Effusions) -> "Figure":

@@ -15,7 +15,7 @@ from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
-from idealgas.analysis.core.tables import SHOWN_ROWS, Number, Table, describe, estimates
+from idealgas.analysis.core.tables import SHOWN_ROWS, Number, Table, describe, estimates, format_estimate
 from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.jit import njit
@@ -169,13 +169,13 @@ class LyapunovAnalysis(Analysis):
         ]
 
     @staticmethod
-    def summary(result: Lyapunov) -> list[str]:
-        """Sentence on the growth of deviations and the loss of digits."""
-        largest, lost = result.exponents[0], result.digits.value
-        return [
-            f"Small deviations grow by e in {1 / largest.value:.3g} units of time: each collision of a disc takes "
-            f"{lost:.2g} digits, and float64 has lost its 16 digits after t = {result.lifetime(16):.3g}."
-        ]
+    def summary(result: Lyapunov) -> str:
+        """Growth of deviations and the loss of digits, for which there is no theory."""
+        return (
+            f"Small deviations grow at the rate λ = {format_estimate(result.exponents[0])}: a collision of a disc "
+            f"takes {format_estimate(result.digits)} digits, and float64 has lost its 16 digits after t = "
+            f"{result.lifetime(16):.3g}; no theory here."
+        )
 
     @staticmethod
     def figure(result: Lyapunov) -> "Figure":

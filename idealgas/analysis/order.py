@@ -19,7 +19,7 @@ from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.tables import Number, Table, describe, estimates, with_error
+from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate, with_error
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
@@ -191,6 +191,14 @@ class OrderAnalysis(Analysis):
             title = "Structure factor, all directions (no unit)"
             tables.append(_function(title, "k (1/length)", found.k, found.value, found.error))
         return tables
+
+    @staticmethod
+    def summary(result: Order) -> str:
+        """Hexagonal order of all discs, from 0 to 1, for which there is no theory."""
+        return (
+            f"|Ψ₆| of all discs is {format_estimate(result.whole)} (0 without order, 1 in a perfect crystal), and "
+            f"{100 * result.hexagons.value:.0f} % have six neighbours; there is no theory of either."
+        )
 
     @staticmethod
     def figure(result: Order) -> "Figure":

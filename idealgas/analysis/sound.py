@@ -12,13 +12,14 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.caveats import narrow
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.stream import sample_trajectories
-from idealgas.analysis.core.tables import Table, describe, estimates
+from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.theory.waves import Decay, Fluid, fit, sound_of_discs
@@ -163,6 +164,18 @@ class SoundAnalysis(Analysis):
             "conductivity",
         )
         return [replace(tables[0], notes=notes), *tables[1:]]
+
+    @staticmethod
+    def summary(result: Sound) -> str:
+        """Speed and adiabatic exponent of the first wave, and whether both agree with theory in all waves."""
+        rows = [
+            (f"{name} along {wave.axes}", one)
+            for wave in result.waves
+            for name, one in (("speed", wave.speed), ("γ", wave.exponent))
+        ]
+        (_, speed), (_, exponent), *_ = rows
+        found = f"The speed of sound is {format_estimate(speed)}, γ is {format_estimate(exponent)} (2 for an ideal gas)"
+        return f"{found}; {agreement(rows, 'hydrodynamics')}."
 
     @staticmethod
     def figure(result: Sound) -> "Figure":

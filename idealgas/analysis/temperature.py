@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Section
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import (
     conserved_momentum,
     known_ensemble,
@@ -59,11 +60,11 @@ class SpeciesTemperature:
 
 @dataclass(frozen=True)
 class Temperature(Result):
-    """Temperatures of each species, and last of all discs.
+    """Temperatures of each species, and of several last of all discs.
 
     window: the time that was used. expected: mean m v²/2 of all discs in equilibrium, energy; None if it is not known
     beforehand. law: equipartition of this gas in words; None where it is not known. species: temperatures of each
-    species and of all discs.
+    species and, of several, of all discs.
     """
 
     window: Window
@@ -76,11 +77,6 @@ class Temperature(Result):
     def block_edges(self) -> np.ndarray:
         """Times (B + 1,) between the blocks that were read."""
         return self.window.edges
-
-    @property
-    def apart(self) -> tuple[SpeciesTemperature, ...]:
-        """Temperatures that are not the same: with one species only those of all discs."""
-        return self.species[:1] if len(self.species) == 2 else self.species
 
 
 def temperature(
@@ -127,7 +123,8 @@ def temperature(
         return SpeciesTemperature(name, number, mean(x, along_x), mean(y, along_y), energy, means)
 
     entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
-    entries.append(entry("all discs", slice(None)))
+    if len(entries) > 1:
+        entries.append(entry("all discs", slice(None)))
     law = None if equilibrium is None else _equipartition(log, equilibrium)
     return Temperature(window, entries[-1].both.theory, law, tuple(entries))
 
@@ -142,20 +139,25 @@ def _equipartition(log: Log, equilibrium: Ensemble) -> str:
     return f"T = {equilibrium.temperature:.6g} ({source}){along}"
 
 
-def temperature_tables(result: Temperature) -> list[Table]:
-    """Table of the temperature of every degree of freedom of each species."""
-    rows = [
+def _rows(result: Temperature) -> list[tuple[str, Estimate]]:
+    """Temperature of every degree of freedom of each species, by its name."""
+    return [
         (f"{entry.species}: {direction}", estimate)
         for entry in result.species
         for direction, estimate in (("m vx²", entry.x), ("m vy²", entry.y), ("m v²/2", entry.both))
     ]
+
+
+def temperature_tables(result: Temperature) -> list[Table]:
+    """Table of the temperature of every degree of freedom of each species."""
     notes = (describe(result.window), f"theory: {result.law or 'none for this scene'}")
-    return [estimates("Temperatures (energy, k_B = 1)", rows, notes)]
+    return [estimates("Temperatures (energy, k_B = 1)", _rows(result), notes)]
 
 
-def temperature_summary(result: Temperature) -> list[str]:
-    """Sentence on the temperature of all discs."""
-    return [f"The temperature is {format_estimate(result.species[-1].both)}."]
+def temperature_summary(result: Temperature) -> str:
+    """Kinetic energy per disc, and whether all degrees of freedom agree with equipartition."""
+    found = f"m v²/2 = {format_estimate(result.species[-1].both)} per disc (k_B = 1)"
+    return f"{found}; {agreement(_rows(result), 'equipartition')}."
 
 
 def temperature_figure(result: Temperature) -> "Figure":
@@ -164,11 +166,11 @@ def temperature_figure(result: Temperature) -> "Figure":
 
     figure, (ax,) = panels(1)
     edges = result.window.edges
-    if len(result.apart) == 1:
-        x, y = result.apart[0].directions.T
-        curves = {"m vx²": (x, result.apart[0].x), "m vy²": (y, result.apart[0].y)}
+    if len(result.species) == 1:
+        x, y = result.species[0].directions.T
+        curves = {"m vx²": (x, result.species[0].x), "m vy²": (y, result.species[0].y)}
     else:
-        curves = {f"{entry.species} (N = {entry.number})": (entry.history, entry.both) for entry in result.apart}
+        curves = {f"{entry.species} (N = {entry.number})": (entry.history, entry.both) for entry in result.species}
     for k, (name, (values, _)) in enumerate(curves.items()):
         colour, line, _ = curve_style(k)
         ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)

@@ -91,7 +91,7 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     title = log.scene.scene.title or Path(log.path).name
     names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
-    said = [_summary(log, found), *(sentence for section in sections for sentence in section.words)]
+    said = [_summary(log, found), *(section.words for section in sections if section.words)]
     return Template(_text("report.html")).substitute(
         title=escape(title),
         style=_text("report.css"),
@@ -171,7 +171,8 @@ def _shown(value: object) -> str:
 def _section(section: Section, key: str) -> str:
     notes = "".join(f'<p class="note">{escape(note)}</p>' for table in section.tables for note in table.notes)
     picture = "" if section.picture is None else html_pictures(section.picture, section.caption, key)
-    return f"{picture}{notes}{_tables([table for table in section.tables if table.shown])}"
+    headline = f"<p>{escape(section.words)}</p>" if section.words else ""
+    return f"{headline}{picture}{notes}{_tables([table for table in section.tables if table.shown])}"
 
 
 def _tables(tables: Sequence[Table]) -> str:

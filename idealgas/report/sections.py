@@ -16,7 +16,7 @@ class Section:
     """A section of the report page.
 
     title: heading. picture: figure of the analysis. caption: text below the picture, also read aloud to blind readers.
-    tables: tables of the analysis. words: what it found, in sentences. left_out: reason why the analysis does not
+    tables: tables of the analysis. words: headline, what it found. left_out: reason why the analysis does not
     apply; None if it does.
     """
 
@@ -24,7 +24,7 @@ class Section:
     picture: Figure | None = None
     caption: str = ""
     tables: tuple[Table, ...] = ()
-    words: tuple[str, ...] = ()
+    words: str = ""
     left_out: str | None = None
 
 
@@ -36,7 +36,7 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
         try:
             result = analysis.combined([analysis.analyse(log, **section.options)])
             tables = tuple(analysis.shown_tables(result))
-            figure, words = analysis.figure(result), tuple(analysis.summary(result))
+            figure, words = analysis.figure(result), analysis.summary(result)
             found.append(Section(section.title, figure, section.caption, tables, words))
         except DamageError:
             raise

@@ -53,6 +53,9 @@ def test_tables_and_json(folder, command):
     table = output_of(*command, "run.h5", folder=folder)
     assert max(map(len, table.splitlines())) <= 400
     assert json.loads(output_of(*command, "run.h5", "--json", folder=folder))
+    if command != ("info",):
+        assert "agree" in (headline := table.splitlines()[0]) or "heory" in headline
+        assert called(*command, "run.h5", "--csv", folder=folder).stdout.startswith("table,")
     assert listing(folder) == before
 
 
@@ -94,6 +97,11 @@ def test_a_file_that_is_not_a_log_is_the_same_line_for_all_commands(name, folder
 def test_window(path):
     found = json.loads(called("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
     assert found["window"] == {"start": 10.0, "end": 20.0, "equilibration_detected": False}
+
+
+def test_temperatures_of_one_species_are_printed_once(path):
+    rows = list(csv.DictReader(output_of("temperature", path, "--csv").splitlines()))
+    assert [row["name"] for row in rows] == ["gas: m vx²", "gas: m vy²", "gas: m v²/2"]
 
 
 def test_check_names_what_it_compares(path):

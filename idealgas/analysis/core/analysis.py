@@ -143,9 +143,9 @@ class Analysis:
             kind.analysis = cls
 
     @staticmethod
-    def summary(result: Any) -> list[str]:
-        """Sentences on the main findings, for readers of a report."""
-        return []
+    def summary(result: Any) -> str:
+        """Headline of a combined result, one or two sentences: what was found, and whether it agrees with theory."""
+        return ""
 
     @staticmethod
     def text(result: Any) -> str:

@@ -129,3 +129,29 @@ def check_theory(found: Iterable[tuple[str, str | None, Estimate]], why_not: str
     if any(one.estimate.deviation is None or not math.isfinite(one.estimate.deviation) for one in compared):
         raise UserError("nothing to check: too few events for an error bar")
     return CheckResult(compared, None if compared else why_not)
+
+
+def agreement(found: Iterable[tuple[str, Estimate]], theory: str = "theory", why_not: str | None = None) -> str:
+    """Whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
+
+    Args:
+        found: estimates by name; of several the one that deviates most is named.
+        theory: name of the theory.
+        why_not: why theory has no value, as part of a sentence.
+    """
+    known = [Comparison(name, theory, one) for name, one in found if one.theory is not None]
+    if not known:
+        return f"no theory here: {why_not}" if why_not else "no theory here"
+    rows = [row for row in known if row.estimate.deviation is not None]
+    if not rows:
+        return f"{theory} has {known[0].estimate.theory:.6g}, but there is no error bar"
+    failed = [row for row in rows if not abs(row.difference) <= row.allowed]
+    worst = max(failed or rows, key=lambda row: abs(row.estimate.deviation or 0.0))
+    sigma = f"{worst.estimate.deviation:+.1f}σ".replace("-", "−")
+    if len(rows) == 1:
+        value = f"{worst.estimate.theory:.5g}, {sigma}"
+        return f"differs from {theory} ({value})" if failed else f"agrees with {theory} ({value})"
+    most = f"largest deviation {sigma}, {worst.name}"
+    if failed:
+        return f"{len(failed)} of {len(rows)} differ from {theory} ({most})"
+    return f"{'both' if len(rows) == 2 else f'all {len(rows)}'} agree with {theory} ({most})"

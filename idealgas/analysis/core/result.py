@@ -59,17 +59,21 @@ class Result:
         """Picture of the result, that of `--plot`: a figure of matplotlib that notebooks show, and `savefig` writes."""
         return self.analysis.titled_figure(self._combined())
 
+    def summary(self) -> str:
+        """Headline of the result: what was found, and whether it agrees with theory."""
+        return self.analysis.summary(self._combined())
+
     def __str__(self) -> str:
-        """Tables of the result as text."""
+        """Headline and tables of the result as text."""
         from idealgas.analysis.core.tables import as_text
 
-        return as_text(self.tables())
+        return "\n".join(filter(None, (self.summary(), as_text(self.tables()))))
 
     def _repr_html_(self) -> str:
-        """Tables of the result, as notebooks show what a cell ends with."""
-        from idealgas.analysis.core.tables import html_tables
+        """Headline and tables of the result, as notebooks show what a cell ends with."""
+        from idealgas.analysis.core.tables import escape, html_tables
 
-        return html_tables(self.tables())
+        return f"<p><b>{escape(self.summary())}</b></p>{html_tables(self.tables())}"
 
     def _combined(self) -> "Result":
         """The result as tables and picture take it; a result without a single origin is combined already."""

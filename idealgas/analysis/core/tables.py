@@ -207,10 +207,22 @@ def _plain(cell: Cell) -> str | float:
 
 
 def format_estimate(found: "Estimate") -> str:
-    """An estimate with as many digits as its standard error allows, and its theory, such as "1.02 ± 0.03, theory 1"."""
-    value, error = with_error(found.value, found.standard_error)
-    text = f"{value} ± {error}" if found.standard_error > 0 else str(value)
-    return text if found.theory is None else f"{text}, theory {found.theory:.6g}"
+    """An estimate with its standard error in units of its last digit, such as "1.1099(3)" for 1.1099 ± 0.0003.
+
+    The error has one digit, and two if the first one is 1; the value of an estimate without an error has six.
+    """
+    value, error = found.value, found.standard_error
+    if not (math.isfinite(value) and math.isfinite(error) and error > 0):
+        return f"{value:.6g}"
+    power = math.floor(math.log10(max(abs(value), error)))
+    if power not in range(-4, 6):
+        return f"{format_estimate(found.times(10.0**-power))}e{power}"
+    one_digit = f"{error:.0e}"
+    last = int(one_digit[2:]) - (one_digit[0] == "1")  # power of ten of the last digit
+    digits = max(-last, 0)
+    rounded = round(error, -last)
+    shown = f"{rounded:.{digits}f}" if rounded >= 1 else f"{rounded * 10**digits:.0f}"
+    return f"{round(value, -last):.{digits}f}({shown})"
 
 
 def escape(text: str) -> str:

@@ -5,12 +5,13 @@ equilibrium for isolated gases, gases under gravity and heat baths. The pressure
 With a piston the picture has the pressure against the area, with the isotherm and the adiabat through the start.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
@@ -37,9 +38,6 @@ PISTON, HEAT_BATH = "piston", "the heat bath"
 
 ROUNDING = 1e-12
 """Energy that collisions lose, relative to the largest energy, that is rounding."""
-
-CHANGED = 1.2
-"""Ratio of two temperatures above which the summary reports a change."""
 
 Series = dict[str, np.ndarray]
 
@@ -190,18 +188,27 @@ class EvolutionAnalysis(Analysis):
         return [*tables, time_series("Energy", energy)]
 
     @staticmethod
-    def summary(result: Evolution) -> list[str]:
-        """Sentences on a changed temperature, the position of a piston, and discs beyond a gate."""
-        found = []
+    def summary(result: Evolution) -> str:
+        """Temperature at the start and the end beside its law, the piston, and discs beyond a gate at the end."""
         first, last = result.temperature[[0, -1]]
-        if max(first, last) > CHANGED * min(first, last):
-            found.append(f"The temperature went from {first:.4g} to {last:.4g}.")
+        law = (
+            "no theory here"
+            if result.law is None
+            else f"by theory it is {result.law.temperature[-1]:.4g} on the average"
+        )
+        found = [f"The temperature goes from {first:.4g} to {last:.4g}; {law}."]
         if result.rest:
-            found.append(f"The piston rests at {format_estimate(result.rest)}.")
+            said = agreement([("rest", result.rest)])
+            found.append(f"The piston rests at {format_estimate(result.rest)}; {said}.")
         elif result.track:
-            found.append("The piston went from {:.4g} to {:.4g}.".format(*result.track[1][[0, -1]]))
-        shares = result.beyond.items()
-        return [*found, *(f"At the end {share[-1]:.1%} of {name} are beyond the gate." for name, share in shares)]
+            found.append("The piston goes from {:.4g} to {:.4g}.".format(*result.track[1][[0, -1]]))
+        for name, share in result.beyond.items():
+            expected = [
+                replace(one, value=share[-1], theory=one.value) for n, one in result.spread.items() if n == name
+            ]
+            said = agreement([(name, one) for one in expected], "equilibrium")
+            found.append(f"At the end {100 * share[-1]:.1f} % of {name} are beyond the gate; {said}.")
+        return " ".join(found)
 
     @staticmethod
     def figure(result: Evolution) -> "Figure":

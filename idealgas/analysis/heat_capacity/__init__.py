@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
 from idealgas.analysis.core.fields import OPTIONAL, Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_replicates, mean_theory
-from idealgas.analysis.core.tables import Table, estimates
+from idealgas.analysis.core.tables import Table, estimates, format_estimate
 from idealgas.analysis.heat_capacity.fluctuations import (
     bath_fluctuations,
     energy_series,
@@ -214,6 +215,15 @@ class HeatCapacityAnalysis(Analysis):
         routes = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
         refused = [f"no {name}: {why}" for name, why in result.refused.items()]
         return [*tables, estimates("C per disc, and γ (no unit, k_B = 1)", routes, refused)]
+
+    @staticmethod
+    def summary(result: HeatCapacity) -> str:
+        """Heat capacity per disc by the first route, and whether all routes agree with theory."""
+        rows = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
+        if not rows:
+            return "No route gives a heat capacity here, so that there is nothing to compare with theory."
+        name, found = rows[0]
+        return f"C = {format_estimate(found)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."
 
     @staticmethod
     def figure(result: HeatCapacity) -> "Figure":

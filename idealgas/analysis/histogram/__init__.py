@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.check import FALSE_ALARM
 from idealgas.analysis.core.ensemble import degrees_of_freedom, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
-from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates
+from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates, format_estimate
 from idealgas.analysis.histogram.distribution import Distribution, distribution_of
 from idealgas.analysis.histogram.laws import (
     FEW,
@@ -162,6 +163,12 @@ class HistogramAnalysis(Analysis):
         return [*tables, Table(f"Density of {result.quantity} (per {result.unit})", heads, bins, most=0)]
 
     @staticmethod
+    def summary(result: Histogram) -> str:
+        """Which law the values of each species follow; the mean of those without one."""
+        found = [_follows(result, one) for one in result.distributions]
+        return " ".join([*found, *([f"No law here: {result.no_law}."] if result.no_law else [])])
+
+    @staticmethod
     def text(result: Histogram) -> str:
         """Histogram of each species in characters, with the first of its laws."""
         lines = []
@@ -201,6 +208,19 @@ class HistogramAnalysis(Analysis):
 
 
 Found = tuple[Window, list[Distribution], str]  # the text is why no law holds, empty if one does
+
+
+def _follows(result: Histogram, found: Distribution) -> str:
+    """Sentence on the laws of a distribution and its mean."""
+    quantity = result.quantity.replace("-", " ")
+    average = f"{format_estimate(found.mean)} on the average"
+    if not found.tests:
+        return f"The {quantity} of {found.name} is {average}."
+    tests = [
+        f"{'agrees with' if test.p_value > FALSE_ALARM else 'differs from'} {test.law_name} (p = {test.p_value:.2g})"
+        for test in found.tests
+    ]
+    return f"The {quantity} of {found.name}, {average}, {' and '.join(tests)}."
 
 
 def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:

@@ -1,5 +1,6 @@
 """Tables of the pressure and of the equation of state."""
 
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.tables import (
     Cell,
     Number,
@@ -114,11 +115,31 @@ def _of_states(result: EquationOfState) -> list[Table]:
     return [states, estimates("Virial coefficients, fitted", fitted)]
 
 
-def pressure_summary(result: Pressure) -> list[str]:
-    """Sentence on Z, or on the pressure of every wall that stands beside an outer pressure, else of the first wall."""
-    if result.mechanical is None:
-        (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)
-        return [f"Z = PA/NT is {format_estimate(z)} (1 for an ideal gas)."]
-    walls = result.mechanical.walls
-    shown = [wall for wall in walls if wall.pressure.theory is not None] or walls[:1]
-    return [f"The pressure on the {wall.name} is {format_estimate(wall.pressure)}." for wall in shown]
+def pressure_summary(result: Pressure | EquationOfState) -> str:
+    """Z beside the ideal gas and hard discs; of walls the pressure, where one presses from outside its own."""
+    if isinstance(result, EquationOfState):
+        return _summary_of_states(result)
+    ideal = result.number * result.temperature / result.area
+    if result.mechanical:
+        walls = result.mechanical.walls
+        shown = [wall for wall in walls if wall.pressure.theory is not None] or walls[:1]
+        beside = f"N T/A of an ideal gas is {ideal:.4g}; "
+        said = agreement([(wall.name, wall.pressure) for wall in shown], "the outer pressure", result.no_theory)
+        found = ", ".join(f"{format_estimate(wall.pressure)} on the {wall.name}" for wall in shown)
+        return f"P = {found or 'unknown without walls'}; {beside}{said}."
+    (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)
+    more = z.value - 1
+    beside = f"{abs(100 * more):.2g} % {'above' if more > 0 else 'below'} the ideal gas"
+    if abs(more) < z.standard_error:
+        beside = "an ideal gas within the error"
+    theory = f"hard discs at φ = {result.packing_fraction:.3g}"
+    return f"P A = {format_estimate(z)} N T: {beside}; {agreement([(PAIRS, z)], theory, result.no_theory)}."
+
+
+def _summary_of_states(result: EquationOfState) -> str:
+    rows = [(f"φ = {state.packing_fraction:.5g}", state.infinite) for state in result.states]
+    name, z = rows[-1]
+    found = f"P A = {format_estimate(z)} N T at {name} (1 for the ideal gas); {agreement(rows, 'hard discs')}."
+    if result.b2 is not None:
+        found += f" B2 = {format_estimate(result.b2)} areas of a disc; {agreement([('B2', result.b2)])}."
+    return found

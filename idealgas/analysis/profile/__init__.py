@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
@@ -170,19 +171,23 @@ class ProfileAnalysis(Analysis):
         return [replace(tables[0], notes=notes), *tables[1:]]
 
     @staticmethod
-    def summary(result: Profile) -> list[str]:
-        """Sentences on density and temperature of the first and the last known strip, where a law has them differ."""
-        found = []
-        for entry in result.species if result.law is not None else ():
+    def summary(result: Profile) -> str:
+        """Density and temperature of the first and the last known strip, and whether all strips agree with theory."""
+        middles = [f"{result.axis} = {x:.4g}" for x in result.middles]
+        found, rows = [], []
+        for entry in result.species:
             for name, column in (("density", entry.density), ("temperature", entry.temperature)):
-                known = [(x, e) for x, e in zip(result.middles, column, strict=True) if np.isfinite(e.standard_error)]
+                known = [(x, e) for x, e in zip(middles, column, strict=True) if e.standard_error > 0]
+                rows += [(f"{name} of {entry.species} at {x}", e) for x, e in known]
                 if not known:
                     continue
                 (x0, first), (x1, last) = known[0], known[-1]
                 if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
-                    ends = f"{format_estimate(first)} at {result.axis} = {x0:.4g} to {format_estimate(last)}"
-                    found.append(f"The {name} of {entry.species} goes from {ends} at {result.axis} = {x1:.4g}.")
-        return found
+                    ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
+                    found.append(f"The {name} of {entry.species} is {ends}.")
+        same = "No density or temperature differs clearly between the first and the last strip."
+        law = f"theory, {result.law}"
+        return f"{' '.join(found) or same} In strips: {agreement(rows, law)}."
 
     @staticmethod
     def figure(result: Profile) -> "Figure":

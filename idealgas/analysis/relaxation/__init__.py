@@ -17,7 +17,7 @@ from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, ks_distance
 from idealgas.analysis.core.stream import frames
-from idealgas.analysis.core.tables import Cell, Number, Table, with_error
+from idealgas.analysis.core.tables import Cell, Number, Table, format_estimate, with_error
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance, acceptance_tables
 from idealgas.analysis.relaxation.speeds import (
     SpeedDistributions,
@@ -229,6 +229,17 @@ class RelaxationAnalysis(Analysis):
             Table("The same in collisions per disc", HEADS, in_collisions),
             *(acceptance_tables(tried) if tried else ()),
         ]
+
+    @staticmethod
+    def summary(found: Relaxations) -> str:
+        """Relaxation time of each gas, beside that of theory near equilibrium."""
+        times = [
+            f"{one.number} discs in {format_estimate(one.in_collisions)}" for one in found.logs if one.in_collisions
+        ]
+        theory = f"Theory: {LINEAR:g} near equilibrium; none for the whole way from equal speeds, which takes longer."
+        if not times:
+            return f"No relaxation is seen: the velocities are those of equilibrium from the start. {theory}"
+        return f"Velocities relax to Maxwell–Boltzmann's: {', '.join(times)} collisions per disc. {theory}"
 
     @staticmethod
     def figure(found: Relaxations) -> "Figure":

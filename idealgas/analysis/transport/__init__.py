@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from idealgas.analysis.core.analysis import Analysis, Option, Section
 from idealgas.analysis.transport.combine import Sample, States, combine_transport, restore_transport
 from idealgas.analysis.transport.measure import Transport, transport
-from idealgas.analysis.transport.tables import transport_tables
+from idealgas.analysis.transport.tables import transport_summary, transport_tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,6 +48,7 @@ class TransportAnalysis(Analysis):
     tables = staticmethod(transport_tables)
     combine = staticmethod(combine_transport)
     restore = staticmethod(restore_transport)
+    summary = staticmethod(transport_summary)
 
     @staticmethod
     def figure(result: Any) -> "Figure":

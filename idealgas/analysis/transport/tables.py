@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import (
     THEORY_ERROR,
@@ -11,6 +12,7 @@ from idealgas.analysis.core.tables import (
     collision_tables,
     describe,
     estimates,
+    format_estimate,
     pressure_table,
     with_error,
 )
@@ -85,3 +87,23 @@ def _rows(name: str, found: Coefficient) -> list[tuple[str, Estimate]]:
         rows += [(f"   by {route}", value) for route, value in found.routes.items()]
         rows.append((f"   {one} less {other}", found.difference))
     return rows
+
+
+def transport_summary(result: Transport | States) -> str:
+    """Diffusion coefficients, else mean free paths, and whether all coefficients agree with Enskog's."""
+    if isinstance(result, States):
+        rows = [
+            (f"{symbol} at φ = {state.packing_fraction:.5g}", one)
+            for state in result.states
+            for symbol, one in state.coefficients.items()
+        ]
+        name, one = rows[-1]
+        return f"{name} is {format_estimate(one)} of Enskog's; {agreement(rows, 'Enskog')}."
+    rows = [(f"D of {entry.species}", entry.coefficient) for entry in result.diffusion if entry.coefficient]
+    if result.collective:
+        rows += [(SYMBOLS[name], one.value) for name, one in result.collective.coefficients.items()]
+    theory = "Enskog's theory"
+    if not rows:
+        theory, rows = "kinetic theory", [(f"Mean free path of {one.species}", one.path) for one in result.free_paths]
+    found = ", ".join(f"{name} = {format_estimate(one)}" for name, one in rows)
+    return f"{found}; {agreement(rows, theory)}."

@@ -116,6 +116,12 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
     assert isinstance(result.as_dict()["caveats"], list)
     tables = analysis.shown_tables(result)
     assert any(table.rows for table in tables)
+    headline = measured.summary()
+    assert headline == result.summary() == str(measured).splitlines()[0]
+    assert len(headline) < 300
+    assert any(
+        word in headline.lower() for word in ("agree", "differ", "theory")
+    )  # no number without a theory or its absence
     rows = list(csv.DictReader(io.StringIO(as_csv(tables))))
     assert [row["table"] for row in rows] == [table.title for table in tables for _ in table.rows]
     text = json.dumps(result.as_dict(), allow_nan=False)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from idealgas.analysis.core.check import FALSE_ALARM, POWER, Comparison, check_theory
+from idealgas.analysis.core.check import FALSE_ALARM, POWER, Comparison, agreement, check_theory
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import as_text
+from idealgas.analysis.core.tables import as_text, format_estimate
 from idealgas.errors import UserError
 
 
@@ -63,3 +63,45 @@ def test_a_check_reports_what_it_compares():
     assert str(check_theory([("a", None, Estimate(1.0, 0.1, 10.0))], "why")) == "No theory here: why."
     with pytest.raises(UserError, match="nothing to check"):
         check_theory([("a", "law", Estimate(1.0, math.nan, 0.0, 1.0))])
+
+
+@pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        ([Estimate(1.02, 0.02, math.inf, 1.0)], "agrees with the law (1, +1.0σ)"),
+        ([Estimate(0.92, 0.03, math.inf, 1.0, 0.04)], "agrees with the law (1, −1.6σ)"),
+        ([Estimate(1.1, 0.02, math.inf, 1.0)], "differs from the law (1, +5.0σ)"),
+        ([Estimate(1.1, 0.02, 5.0, 1.0)], "agrees with the law (1, +5.0σ)"),  # Student's t of 4: up to 17σ
+        ([Estimate(1.0, math.nan, 0.0, 2.0)], "the law has 2, but there is no error bar"),
+        ([Estimate(1.0, 0.1, 9.0)], "no theory here: why"),
+        ([Estimate(1.0, 0.1, 99.0, z) for z in (1.1, 1.2)], "both agree with the law (largest deviation −2.0σ, 1)"),
+        ([Estimate(1.0, 0.1, 99.0, z) for z in (1, 3, 2)], "2 of 3 differ from the law (largest deviation −20.0σ, 1)"),
+    ],
+)
+def test_agreement_is_that_of_checks_in_words(found, said):
+    rows = [(str(k), one) for k, one in enumerate(found)]
+    assert agreement(rows, "the law", "why") == said
+    if rows[0][1].theory and rows[0][1].standard_error > 0:
+        checked = check_theory((name, None, one) for name, one in rows)
+        assert ("agree" in said) == checked.agrees
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (1.10986, 0.00029, "1.1099(3)"),  # CODATA's notation: the error in units of the last digit
+        (1.10986, 0.00013, "1.10986(13)"),
+        (16.23, 4.1, "16(4)"),
+        (16.23, 1.33, "16.2(1.3)"),
+        (16.23, 0.97, "16.2(1.0)"),
+        (0.998, 0.098, "1.00(10)"),
+        (-0.0123, 0.004, "-0.012(4)"),
+        (1.2345e-9, 3e-12, "1.234(3)e-9"),
+        (6.02e23, 4e21, "6.02(4)e23"),
+        (1234.5, 56.0, "1230(60)"),
+        (0.5, 0.0, "0.5"),
+        (0.5, math.nan, "0.5"),
+    ],
+)
+def test_an_estimate_has_as_many_digits_as_its_error_tells(value, error, text):
+    assert format_estimate(Estimate(value, error, 10.0)) == text
