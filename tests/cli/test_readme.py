@@ -208,7 +208,7 @@ def test_code_of_the_log_runs(folder):
     (all_walls,) = (r["pressure"]["value"] for r in routes if r["route"] == "all walls")
     assert whole_run == pytest.approx(all_walls, rel=0.02)
     read = run_python(package, LOG)
-    assert "1000 discs" in read
+    assert "1,000 discs" in read
     assert read.endswith(" wall hits\n")
     assert "mean kinetic energy" in run_python(flights, LOG)
     pytest.importorskip("pandas", reason="no pandas: pip install 'idealgas-md[notebook]'")
