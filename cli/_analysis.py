@@ -151,7 +151,7 @@ def _analyse(
         if as_json:
             print_json(inapplicable.as_dict())
         else:
-            echo(f"{inapplicable}")
+            echo(f"{inapplicable}", err=True)
         return
     checked = result.check() if check else None
     if plot:
@@ -175,7 +175,7 @@ def _analyse(
             echo(text)
         if checked:
             print_tables(checked.tables())
-            echo(f"{checked}")
+            echo(f"{checked}", err=checked.agrees is None)
     if plot:
         written(plot, err=as_json or as_csv)
     if checked and checked.agrees is False:

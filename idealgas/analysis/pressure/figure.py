@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, LINES, name_rows, panels
+from idealgas.analysis.core.style import BLACK, COLOURS, GREY, LINES, name_rows, panels
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
-from idealgas.analysis.pressure.measure import Pressure
+from idealgas.analysis.pressure.measure import IDEAL, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
@@ -29,6 +29,8 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
         if wall.pressure.theory is not None:
             theory = [wall.pressure.theory] * 2
             ax.plot(theory, [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label="outer pressure")
+    ideal = result.number * result.temperature / result.area
+    ax.axvline(ideal, color=BLACK, linewidth=1, label=f"{IDEAL}, N T/A: {ideal:.5g}")
     name_rows(ax, [wall.name for wall in walls])
     ax.set_xlabel("P (energy/length²)")
     ax.set_ylabel("pressure on every wall")
@@ -56,8 +58,10 @@ def _of_log(result: Pressure) -> Figure:
     name_rows(ax, [route.name for route in routes])
     low, high = ax.get_xlim()
     for (name, theory), style in zip(result.known_theories.items(), cycle(LINES), strict=False):
-        if low < theory.value < high and theory.value not in (z for z, _ in known):
-            ax.axvline(theory.value, color=GREY, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
+        shown = name == IDEAL or low < theory.value < high
+        if shown and theory.value not in (z for z, _ in known):
+            colour = BLACK if name == IDEAL else GREY
+            ax.axvline(theory.value, color=colour, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
     ax.set_xlabel("Z = PA/NT (no unit)")
     ax.set_ylabel(f"Z by every route, at packing fraction {result.packing_fraction:.4g}")
     figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)

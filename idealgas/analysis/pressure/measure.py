@@ -50,6 +50,9 @@ Where only one axis is periodic, the pressures along both differ, and names of t
 PAIRS alone is the mean of both.
 """
 
+IDEAL = "ideal gas"
+"""Name of its theory, Z = 1."""
+
 
 @dataclass(frozen=True)
 class Route:
@@ -240,7 +243,7 @@ def _chambers(log: Log, window: Window) -> tuple[str, ...]:
 def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:
     """Compressibility factor Z at the packing fraction of a gas, by the name of each theory that applies to it."""
     phi = gas.packing_fraction
-    theories = {"ideal gas": Theory(1.0, 0.0, "ideal gas")}
+    theories = {IDEAL: Theory(1.0, 0.0, IDEAL)}
     if in_box.pairs:
         theories[in_box.pairs.source] = in_box.pairs
     if phi >= SOLID and np.ptp(discs.radius) == 0:

@@ -185,3 +185,13 @@ def test_csv_has_all_digits_and_people_see_some():
     assert lines[11] == f'e,"a, b",,{1 / 3!r},,5.0,,'
     assert other.shown == [["a, b", "0.333333", "", "5", "", ""]]
     assert as_csv([Table("empty", ("",), [])]) == "table\n"
+
+
+@pytest.mark.parametrize(("overrides", "ideal"), [((), 1.0), (("gravity.acceleration=[0, -0.1]",), None)])
+def test_the_figure_of_the_pressure_has_the_ideal_gas(make, overrides, ideal):
+    found = idealgas.pressure(make(*overrides))
+    (ax,) = found.plot().axes
+    (line,) = (line for line in ax.get_lines() if str(line.get_label()).startswith("ideal gas"))
+    place = line.get_xdata()[0]
+    assert place == (ideal or found.number * found.temperature / found.area)
+    assert ax.get_xlim()[0] < place < ax.get_xlim()[1]
