@@ -1,7 +1,7 @@
 """Measure density and temperature in strips along an axis, and the heat given by walls.
 
-Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and T^(3/2) linear in the
-position between two thermal sides, with the temperature jumps at them.
+Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and between two thermal sides
+T^(3/2) linear in the position, with the temperature jumps at them, and n T Z constant.
 """
 
 from collections.abc import Iterator, Sequence
@@ -244,7 +244,7 @@ def _limits(
     density = np.array([[found.value for found in entry.density] for entry in species])
     densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
     if not expected.dilute:
-        if expected.layers > LAYERED:
+        if expected.layers.max() > LAYERED:
             yield "Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them."
     elif densest > DILUTE:
         yield f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}."

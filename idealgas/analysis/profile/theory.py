@@ -1,4 +1,4 @@
-"""Profiles of density and temperature by theory, for dilute gases of discs that are small compared with a strip."""
+"""Profiles of density and temperature by theory, for gases of discs that are small compared with a strip."""
 
 import math
 from dataclasses import dataclass
@@ -35,7 +35,10 @@ LEAST_INSIDE = 0.4
 """Least part of the difference of temperatures that is left in the gas; in narrower boxes the law is another."""
 
 ROUNDS, STEP = 200, 0.25
-"""Number and step of the iterations for the temperatures beside the sides."""
+"""Number of iterations for the pressure and for the temperatures beside the sides, and step of the latter."""
+
+GRID = 4097
+"""Number of points of the tables of the density between two sides and of the equation of state."""
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,13 @@ class Expected:
 
     Attributes:
         law: name of the law.
-        dilute: whether it holds in dilute gases only.
+        dilute: whether it holds in dilute gases only, at least for the temperature.
         density: (S, K), mean number density of each strip, 1/length².
         temperature: (S, K), mean temperature of each strip, energy.
         share: (S,), mean m v²/2 of a disc over the temperature, without a conserved motion of the whole gas; no unit.
         error: of temperatures, energy.
-        layers: part by which layers at walls may raise the density of the strips there, (1 - 1/Z) R/width: at φ = 0.1
-            and 0.5, by ten and twenty strips, 0.7 to 0.9 times that was found.
+        layers: (2,), part by which layers at walls may raise the density of the first and the last strip,
+            (1 - 1/Z) R/width: at φ = 0.1 and 0.5, by ten and twenty strips, 0.7 to 0.9 times that was found.
     """
 
     law: str
@@ -59,13 +62,14 @@ class Expected:
     temperature: np.ndarray
     share: np.ndarray
     error: float
-    layers: float
+    layers: np.ndarray
 
     def of_density(self, s: int, k: int) -> Theory:
         """Density of species s in strip k; errors of all temperatures change the pressure, which all strips have."""
         density, cold = self.density[s], self.error / self.temperature[s]
         last = len(density) - 1
-        layers = self.layers if k in (0, last) else 2 * self.layers / (last - 1)  # the others have that much less
+        low, high = self.layers
+        layers = low if k == 0 else high if k == last else (low + high) / (last - 1)  # the others have that much less
         error = math.hypot(cold[k], density @ cold / density.sum(), layers)
         return Theory(float(density[k]), float(density[k] * error), self.law)
 
@@ -104,10 +108,11 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     strips = np.diff(edges) * log.box[1 - axis]
     mean_temperature = (weight * temperature).mean(axis=2) / weight.mean(axis=2)
     share = ensemble_at(log.scene, log.discs, 1.0, math.inf).of_species
-    layers = 0.0
-    if law == UNIFORM and not log.periodic[axis]:
-        z = float(hard_discs.compressibility_factor(min(log.discs.packing_fraction, hard_discs.HIGHEST)))
-        layers = (1 - 1 / z) * min(float(log.discs.radius.max() / np.diff(edges).min()), 1.0)
+    layers = np.zeros(2)
+    if not log.periodic[axis] and not log.gravity[axis]:
+        phi = math.pi * discs.radius**2 @ (number / strips)[:, [0, -1]]
+        z = hard_discs.compressibility_factor(np.minimum(phi, hard_discs.HIGHEST))
+        layers = (1 - 1 / z) * min(float(discs.radius.max() / np.diff(edges).min()), 1.0)
     return Expected(law, law != UNIFORM, number / strips, mean_temperature, share, error, layers)
 
 
@@ -159,11 +164,31 @@ def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, flo
     found = conduct(*sides, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
     if found is None:
         return None
-    power = found.low**1.5 + (found.high**1.5 - found.low**1.5) * places / log.box[axis]
-    temperature = power ** (2 / 3)
+
+    def temperature(place: np.ndarray) -> np.ndarray:
+        power = found.low**1.5 + (found.high**1.5 - found.low**1.5) * place / log.box[axis]
+        return np.asarray(power ** (2 / 3))
+
+    radius, size = float(gas.radius[0]), log.box[axis]
+    grid = np.linspace(radius, size - radius, GRID)
+    mean_fraction = gas.packing_fraction * size / (size - 2 * radius)
+    fraction = _equal_pressure(temperature(grid), mean_fraction)
+    if fraction is None:
+        return None
     beside = f"from {found.low:.6g} to {found.high:.6g} beside the walls"
-    law = f"T^(3/2) in a straight line and nT the same (Fourier), {beside}"
-    return law, 1 / temperature, temperature, found.error
+    law = f"T^(3/2) in a straight line (Fourier) and the same pressure n T Z, {beside}"
+    return law, np.interp(places, grid, fraction), temperature(places), found.error
+
+
+def _equal_pressure(temperature: np.ndarray, mean_fraction: float) -> np.ndarray | None:
+    """Packing fractions of hard discs at temperatures (n,) that have one pressure n T Z; None beyond the fluid."""
+    fraction = np.linspace(0.0, hard_discs.HIGHEST, GRID)
+    pressure = fraction * hard_discs.compressibility_factor(fraction)  # over T, in units of 1/πR²
+    common = mean_fraction * temperature.mean()
+    for _ in range(ROUNDS):
+        found = np.interp(common / temperature, pressure, fraction)
+        common *= mean_fraction / found.mean()
+    return found if found.max() < hard_discs.HIGHEST else None
 
 
 class Conduction(NamedTuple):
