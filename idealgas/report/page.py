@@ -88,6 +88,7 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
         rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
         parts.append(("What does not apply", f"<ul>{rows}</ul>"))
+    about = log.scene.scene.description
     title = log.scene.scene.title or Path(log.path).name
     names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
@@ -98,6 +99,7 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
         script="\n".join(map(_text, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
+        description="".join(f"<p>{escape(' '.join(text.split()))}</p>" for text in about.split("\n\n") if text),
         words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
         sections="\n".join(
             f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)

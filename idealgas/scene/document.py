@@ -30,7 +30,7 @@ SHORT_CONTACT = 1e-6
 class _Discs(Table):
     """Box and discs."""
 
-    scene: Header = Field(default_factory=Header, description="[scene]: title, seed")
+    scene: Header = Field(default_factory=Header, description="[scene]: title, description, seed")
     box: Box = Field(description="[box]: size")
     species: Annotated[tuple[Species, ...], Field(strict=False)] = Field(default=(), description="[[species]] tables")
     disc: Annotated[tuple[Disc, ...], Field(strict=False)] = Field(default=(), description="[[disc]] tables")

@@ -83,7 +83,7 @@ def draws_random_numbers(scene: Scene) -> bool:
 def run_digest(scene: Scene) -> str:
     """Digest of everything that determines the motion: logs with the same digest have the same run, or parts of it.
 
-    The title, and the tables `run` and `log`, are left out.
+    Title and description, and the tables `run` and `log`, are left out.
     """
     tables = _tables(scene)
     if start := tables.get("start"):

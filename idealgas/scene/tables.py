@@ -145,9 +145,10 @@ Threads = Annotated[
 
 
 class Header(Table):
-    """`[scene]`: title, and seed of the random numbers."""
+    """`[scene]`: title, description, and seed of the random numbers."""
 
     title: str = Field(default="", description="one line for people")
+    description: str = Field(default="", description="what the scene shows, in paragraphs; the report begins with it")
     seed: Whole = Field(
         default=0, ge=0, lt=2**63, description="whole number from which all random numbers of the scene follow"
     )

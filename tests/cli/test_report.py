@@ -121,6 +121,7 @@ def test_the_discs_stay_beside_the_curves_on_a_wide_screen(sized):
 
 def test_the_first_words(pages):
     text = pages("piston")[1].read_text(encoding="utf-8")
+    assert "<p>A gas that &lt;presses&gt; on a piston.</p><p>Its end.</p>" in text
     assert "60 discs with piston, packing fraction 0.113, followed for" in text  # of the 15 by 10 below the piston
 
 

@@ -26,7 +26,9 @@ SCENES = {
         opens_at = 3
         closes_at = 5
     """,
-    "piston": PLAIN + 'piston = {side = "right", position = 15.0, mass = 20.0, pressure = 1.5}\n',
+    "piston": PLAIN
+    + 'scene.description = "A gas that\\n<presses> on a piston.\\n\\nIts end."\n'
+    + 'piston = {side = "right", position = 15.0, mass = 20.0, pressure = 1.5}\n',
     "two species": PLAIN.replace("}]", '}, {name = "heavy", count = 5, radius = 0.5, mass = 9, speed = 0.1}]'),
     "without positions": PLAIN + 'run.method = "monte_carlo"\nrun.v_ref = 12.0\n',
 }
