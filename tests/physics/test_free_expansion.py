@@ -26,14 +26,21 @@ def test_after_the_gate_is_open_the_theory_of_hard_discs_holds(log):
     assert "ideal gas: P = N T/A = 5" in as_text(found.tables())
 
 
-def test_a_closed_gate_divides_the_sides(log):
-    """Gas in half of the box: 10 is N T/A on the left and on the gate, 5 the mean over both halves; see the caveat."""
+def test_a_closed_gate_leaves_the_gas_its_half(log):
+    """N T/A = 10 with A = 100 on every wall beside the gas, (1 + 2φ)/(1 - 2R/L) = 1.06 times it with the layers; k = 4.
+
+    The empty half has no pressure, and no part in the means of the sides that it shares.
+    """
     found = pressure(log, 0.0, 9.0)
     assert found.routes == ()
-    (caveat,) = found.caveats
-    assert caveat == "gate meets the bottom and the top wall: the pressure there is a mean over both its sides."
-    names = {wall.name for wall in found.mechanical.walls}
-    assert {"gate, left", "gate, right"} < names
+    assert found.area == pytest.approx(100.0)
+    assert found.packing_fraction == pytest.approx(1000 * math.pi * 0.03**2 / 100)
+    assert "ideal gas N T/A = 10 " in as_text(found.tables())
+    walls = {wall.name: wall.pressure for wall in found.mechanical.walls}
+    for name in ("left wall", "bottom wall", "top wall", "gate, left"):
+        assert abs(walls[name].value - 10.6) < 4 * walls[name].standard_error, name
+    assert walls["right wall"].value == walls["gate, right"].value == 0.0
+    assert found.caveats == ("Lengths of sides and A = 100 are those of the chambers with gas, until they open.",)
 
 
 def test_half_of_the_discs_end_beyond_the_gate(log):

@@ -1,7 +1,8 @@
 """Pressure on every wall and face in blocks of time: momentum that discs give to it, per time and exposed length.
 
 This is what a gauge in the wall would show. It needs no equilibrium and no theory. Walls act on the centres of the
-discs one radius inside the box; the length is that of the wall itself.
+discs one radius inside the box; the length is that of the wall itself, of a side that of its part beside chambers with
+discs.
 """
 
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.analysis.core.chambers import Chambers
 from idealgas.analysis.core.impacts import is_wall_hit
 from idealgas.analysis.core.samples import SampledImpacts, face_directions
 from idealgas.analysis.core.stream import Tally, add_to
@@ -132,9 +134,9 @@ class WallGauge:
         return [*impulses, *moving]
 
     def area(self, edges: np.ndarray) -> np.ndarray:
-        """Area (B,) that the gas has in each block of time: the box, or the room that a piston leaves, length²."""
+        """Area (B,) of the gas in each block of time: of chambers with discs, or the room of a piston, length²."""
         if self.moving is None:
-            return np.full(len(edges) - 1, self._log.discs.area)
+            return np.full(len(edges) - 1, Chambers(self._log, float(edges[-1])).area)
         return self.moving.depth * self.moving.across
 
     def faces(self, edges: np.ndarray) -> list[Face]:
@@ -168,13 +170,16 @@ class WallGauge:
         absence: tuple[float, float],
         edges: np.ndarray,
     ) -> np.ndarray:
-        """Length of a wall times the time that it is there, in each block; of a side next to a piston, in its room."""
+        """Length of a wall times the time that it is there, in each block; of a side, where gas is beside it."""
         width = np.diff(edges)
         if wall < len(SIDES) and self.moving is not None and axis_of(wall) != self.moving.axis:
             return self.moving.depth * width
         opens, closes = absence
         absent = np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
-        return float(np.hypot(*np.subtract(end, start))) * (width - absent)
+        length = float(np.hypot(*np.subtract(end, start)))
+        if wall < len(SIDES) and self.moving is None:
+            length = Chambers(self._log, float(edges[-1])).length(wall)
+        return length * (width - absent)
 
 
 class MovingWall:

@@ -13,6 +13,7 @@ from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.chambers import Chambers
 from idealgas.analysis.core.check import CheckResult, check_theory
 from idealgas.analysis.core.collisions import (
     CollisionRate,
@@ -227,16 +228,19 @@ def _ends(log: Log) -> tuple[str, ...]:
 
 
 def _chambers(log: Log, window: Window) -> tuple[str, ...]:
-    """Sentence for each wall inside that divides sides of the box, whose pressure is then a mean over chambers."""
-    found = []
+    """Sentence for each wall inside with gas on both its sides at sides of the box: a mean over chambers."""
+    found, chambers = [], Chambers(log, window.end)
     for wall in walls_inside(log.scene):
         places = [(wall.start[axis_of(k)], wall.end[axis_of(k)]) for k in range(len(SIDES))]
-        met = [SIDES[k] for k, ends in enumerate(places) if log.box[axis_of(k)] * (k % 2) in ends]
+        meets = [k for k, ends in enumerate(places) if log.box[axis_of(k)] * (k % 2) in ends]
+        met = [SIDES[k] for k in meets if chambers.divided_gas(k, wall.start[1 - axis_of(k)])]
         opens, closes = wall.absence
         if met and not opens <= window.start < window.end <= closes:
             found.append(
                 f"{wall.name} meets the {' and the '.join(met)} wall: the pressure there is a mean over both its sides."
             )
+    if chambers.area < log.discs.area:
+        found.append(f"Lengths of sides and A = {chambers.area:g} are those of the chambers with gas, until they open.")
     return tuple(found)
 
 

@@ -1,0 +1,65 @@
+"""Chambers into which walls from side to side divide a box, and those of them that hold discs."""
+
+from collections import defaultdict
+
+import numpy as np
+
+from idealgas.columns import axis_of
+from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
+
+
+class Chambers:
+    """Chambers of the box while all of its dividing walls are there, from the start of a log to some time.
+
+    A row of walls from side to side along x or y, with no gap, divides the box, unless it may be passed by a periodic
+    boundary or reached by a piston. Chambers that are empty at the start stay empty.
+
+    cuts: places (K + 1,) of the dividing walls and of the sides along x and y. occupied: (Kx, Ky), whether discs are in
+    the chambers.
+    """
+
+    def __init__(self, log: Log, until: float) -> None:
+        """Find the chambers of a log up to a time."""
+        self.cuts = [_cuts(log, axis, until) for axis in range(2)]
+        self.occupied = np.histogram2d(*log.discs.position.T, bins=self.cuts)[0] > 0
+
+    @property
+    def area(self) -> float:
+        """Area of the chambers with discs, length²."""
+        x, y = map(np.diff, self.cuts)
+        return float(x @ self.occupied @ y)
+
+    def along(self, side: int) -> np.ndarray:
+        """Whether discs are in each of the chambers along a side of the box."""
+        return self.occupied.take(-(side % 2), axis=axis_of(side))
+
+    def length(self, side: int) -> float:
+        """Length of a side of the box beside chambers with discs; its whole length if there are none."""
+        lengths, there = np.diff(self.cuts[1 - axis_of(side)]), self.along(side)
+        return float(lengths[there].sum() if there.any() else lengths.sum())
+
+    def divided_gas(self, side: int, place: float) -> bool:
+        """Whether discs are at a side on both sides of a wall that meets it at a place, or may be."""
+        cuts, there = self.cuts[1 - axis_of(side)], self.along(side)
+        k = int(cuts.searchsorted(place))
+        return not (0 < k < len(there) and cuts[k] == place) or bool(there[k - 1] and there[k])
+
+
+def _cuts(log: Log, axis: int, until: float) -> np.ndarray:
+    """Places along an axis of the sides of the box and of the walls that divide it, length."""
+    if log.scene.piston or log.periodic[axis]:
+        return np.array([0.0, log.box[axis]])
+    rows: dict[float, list[tuple[float, float]]] = defaultdict(list)
+    for wall in walls_inside(log.scene):
+        if wall.start[axis] == wall.end[axis] and wall.absence[0] >= until:
+            low, high = sorted((wall.start[1 - axis], wall.end[1 - axis]))
+            rows[wall.start[axis]].append((low, high))
+    found = {0.0, log.box[axis]}
+    for place, parts in rows.items():
+        reached = 0.0
+        for low, high in sorted(parts):
+            reached = max(reached, high) if low <= reached else reached
+        if reached >= log.box[1 - axis]:
+            found.add(place)
+    return np.array(sorted(found))
