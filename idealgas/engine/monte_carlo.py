@@ -27,6 +27,7 @@ from idealgas.errors import UserError
 from idealgas.jit import inline, njit
 from idealgas.physics.collision_rates import mean_trial_time
 from idealgas.physics.disc_disc import random_contact
+from idealgas.physics.elementary import log
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
 from idealgas.state import Gas
@@ -93,7 +94,7 @@ def advance_trials(
     square = 0.0
     while collisions < most_collisions and counter.trials < last_trial and rows < capacity:
         start = key + GOLDEN * DRAWS * np.uint64(counter.trials)
-        time = counter.trial_time - trial_time * math.log(draw(start, 0))
+        time = counter.trial_time - trial_time * log(draw(start, 0))
         if time > until:
             reached = True
             break

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from idealgas.initial.contacts import static_contact_issues
+from idealgas.physics.elementary import cos_sin_turns
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas, rng
@@ -71,8 +72,7 @@ def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
     if species.velocities is not None:
         return np.array(species.velocities)
     if species.speed is not None:
-        angle = 2 * np.pi * random.random(n)
-        return species.speed * np.column_stack((np.cos(angle), np.sin(angle)))
+        return species.speed * np.column_stack(cos_sin_turns(random.random(n)))
     velocity = random.standard_normal((n, 2))
     if n > 1:
         velocity -= velocity.mean(axis=0)

@@ -3,6 +3,7 @@
 import math
 
 from idealgas.jit import inline, noinline
+from idealgas.physics.elementary import quarter_power, third_power
 from idealgas.physics.motion import NEVER
 
 BISECTIONS = 200  # enough to halve any interval of floats down to neighbouring ones
@@ -110,7 +111,7 @@ def first_contact_root(x, y, vx, vy, gx, gy, r, after):
         return 0.0
     largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
     last = 1.0 + largest / a  # Cauchy's bound on the roots
-    bound = 2.0 * max(max(abs(b / a), math.sqrt(abs(c / a))), max(abs(d / a) ** (1.0 / 3.0), abs(e / a) ** 0.25))
+    bound = 2.0 * max(max(abs(b / a), math.sqrt(abs(c / a))), max(third_power(abs(d / a)), quarter_power(abs(e / a))))
     last = min(last, bound)  # Fujiwara's bound
     first, second, third = cubic_extrema(4.0 * a, 3.0 * b, 2.0 * c, d, last)
     low = 0.0

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import inline
+from idealgas.physics.elementary import cos_sin_turns, log
 from idealgas.physics.random_numbers import disc_uniform
 
 
@@ -50,13 +51,13 @@ def emit(disc, own, nx, ny, wall, thermal, rotation):
     """
     if thermal is not None:
         temperature = thermal.temperature[np.uintp(wall)]
-        normal = math.sqrt(-2.0 * temperature / disc.m * math.log(uniform(thermal, own, 0)))
-        radius = math.sqrt(-2.0 * math.log(uniform(thermal, own, 1)))
-        angle = 2.0 * math.pi * uniform(thermal, own, 2)
-        tangent = math.sqrt(temperature / disc.m) * radius * math.cos(angle)
+        normal = math.sqrt(-2.0 * temperature / disc.m * log(uniform(thermal, own, 0)))
+        radius = math.sqrt(-2.0 * log(uniform(thermal, own, 1)))
+        cos, sin = cos_sin_turns(uniform(thermal, own, 2))
+        tangent = math.sqrt(temperature / disc.m) * radius * cos
         disc.vx = normal * nx - tangent * ny
         disc.vy = normal * ny + tangent * nx
         if rotation is not None:
             u = np.uintp(own)
-            rotation.omega[u] = math.sqrt(temperature / rotation.inertia[u]) * radius * math.sin(angle)
+            rotation.omega[u] = math.sqrt(temperature / rotation.inertia[u]) * radius * sin
         thermal.emissions[np.uintp(own)] += np.uint64(1)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import inline, njit
+from idealgas.physics.elementary import cos_sin_turns, log
 from idealgas.physics.random_numbers import disc_uniform
 
 
@@ -42,7 +43,7 @@ def uniform(thermostat, own, draw):
 @inline
 def interval(thermostat, own):
     """Time between two collisions of a disc with the bath: exponential, with a mean of one over the rate."""
-    return -math.log(uniform(thermostat, own, 3)) / thermostat.rate
+    return -log(uniform(thermostat, own, 3)) / thermostat.rate
 
 
 @njit
@@ -61,13 +62,13 @@ def andersen_collision(disc, own, thermostat, rotation):
     if thermostat is not None:
         u = np.uintp(own)
         temperature = thermostat.temperature
-        speed = math.sqrt(-2.0 * temperature / disc.m * math.log(uniform(thermostat, own, 4)))
-        angle = 2.0 * math.pi * uniform(thermostat, own, 5)
-        disc.vx = speed * math.cos(angle)
-        disc.vy = speed * math.sin(angle)
+        speed = math.sqrt(-2.0 * temperature / disc.m * log(uniform(thermostat, own, 4)))
+        cos, sin = cos_sin_turns(uniform(thermostat, own, 5))
+        disc.vx = speed * cos
+        disc.vy = speed * sin
         if rotation is not None:
-            spin = math.sqrt(-2.0 * temperature / rotation.inertia[u] * math.log(uniform(thermostat, own, 6)))
-            rotation.omega[u] = spin * math.cos(2.0 * math.pi * uniform(thermostat, own, 7))
+            spin = math.sqrt(-2.0 * temperature / rotation.inertia[u] * log(uniform(thermostat, own, 6)))
+            rotation.omega[u] = spin * cos_sin_turns(uniform(thermostat, own, 7))[0]
         thermostat.number[u] += np.uint64(1)
         thermostat.time[u] += interval(thermostat, own)
 

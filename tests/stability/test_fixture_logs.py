@@ -7,9 +7,6 @@ A new format gets fixtures of its own, and those of the previous one stay. Withi
 missing:
 
     PYTHONPATH=tests python tests/stability/test_fixture_logs.py
-
-The logarithm of the C library is in everything that thermal walls and a heat bath emit. Where it differs in the last
-bit, that fixture is read and resumed without a comparison.
 """
 
 import json
@@ -28,7 +25,7 @@ import pytest
 from click.testing import CliRunner
 from helpers.log_compare import differences as unequal
 from helpers.log_fuzz.commands import NAME, Form, forms, reading_commands
-from helpers.support import ROOT, joined
+from helpers.support import ROOT
 from idealgas_cli.main import main
 
 import idealgas.log.writer as log_writer
@@ -116,18 +113,6 @@ def differences(found: Any, expected: Any, place: str = "") -> list[str]:
     return [line for where, one, other in pairs for line in differences(one, other, where)]
 
 
-def skip_if_other_logarithm(name: str, fixture: Path, whole: Path) -> None:
-    """Skip where all that differs is the logarithm; the first events then agree but for rounding."""
-    if name != "thermal":
-        return
-    with open_log(fixture) as log, open_log(whole) as new:
-        pairs = [pair for pair in zip(joined(log.chunks()), joined(new.chunks()), strict=True) if pair[0] is not None]
-    if any(not np.array_equal(one, other[: len(one)]) for one, other in pairs):
-        for one, other in pairs:
-            np.testing.assert_allclose(one[:50], other[:50], rtol=1e-9, atol=1e-12)
-        pytest.skip("the logarithm of this C library differs in the last bit")
-
-
 @pytest.fixture(scope="module", params=LOGS)
 def pair(request, tmp_path_factory):
     """Name of a fixture, and the folders of its log and of that of a new run."""
@@ -149,8 +134,7 @@ def test_every_kind_has_a_fixture():
 @pytest.mark.parametrize("pair", [log for log in LOGS if not FIXTURES[kind_of(log)].killed], indirect=True)
 def test_every_command_gives_the_same_numbers(pair, monkeypatch):
     """A killed run ends earlier than a new one, so its log is compared once it is resumed."""
-    name, old, new = pair
-    skip_if_other_logarithm(name, old / NAME, new / NAME)
+    _, old, new = pair
     wanted = [form for command in reading_commands() for form in forms(command) if "--json" in form]
     for form in (*wanted, ("export", NAME, "--format", "csv", "--events", "-o", "events.csv")):
         found = []
@@ -161,8 +145,7 @@ def test_every_command_gives_the_same_numbers(pair, monkeypatch):
 
 
 def test_states_at_any_time(pair):
-    name, old, new = pair
-    skip_if_other_logarithm(name, old / NAME, new / NAME)
+    _, old, new = pair
     with open_log(old / NAME) as log, open_log(new / NAME) as whole:
         assert log.discs.species_names == whole.discs.species_names
         assert log.walls == whole.walls
@@ -179,7 +162,6 @@ def test_resumed_to_the_same_log(pair, tmp_path):
         assert log.unclosed == FIXTURES[name].killed
         assert len(log) > 100
         simulate(with_end(log.scene_text, end), whole)
-    skip_if_other_logarithm(name, path, whole)
     done = CliRunner().invoke(main, ["resume", str(path), *(f"--{end.removeprefix('run.')}",) * bool(end)])
     assert done.exit_code == 0, done.output
     assert unequal(path, whole) == []

@@ -1,0 +1,79 @@
+"""Logarithm, sine and cosine, and two powers, beside `mpmath`; compiled code gives the same bits as Python."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from idealgas.jit import njit
+from idealgas.physics.elementary import cos_sin_turns, log, quarter_power, third_power
+
+MANY = pytest.param(10**6, marks=pytest.mark.slow)
+NUMBERS = pytest.mark.parametrize("number", [10**4, MANY])
+
+
+def random_numbers(number):
+    """In (0, 1] as `unit_interval` makes them: half of them uniform, half of all orders of magnitude down to 2^-53."""
+    random = np.random.default_rng(number)
+    whole = random.integers(1, 2**53, number, endpoint=True)
+    whole[::2] >>= random.integers(0, 53, len(whole[::2]))
+    return [*(np.maximum(whole, 1) * 2.0**-53).tolist(), 2.0**-53, 1.0]
+
+
+def units(found, expected):
+    """Distance of a float from an exact number in units in its last place; 0 where both are 0."""
+    return float(abs(mpmath.mpf(float(found)) - expected) / math.ulp(float(expected))) if expected else abs(found)
+
+
+@pytest.mark.interpreted
+@NUMBERS
+def test_logarithm_is_within_one_unit_in_the_last_place(number):
+    """So fdlibm's comment on e_log.c has it: "the error is always less than 1 ulp"."""
+    with mpmath.workprec(90):
+        numbers = random_numbers(number)
+        assert max(units(log(x), mpmath.log(x)) for x in numbers) < 1
+        assert max(units(log(x), mpmath.log(x)) for x in (np.exp(700 * np.array(numbers[:1000]) - 350)).tolist()) < 1
+
+
+@pytest.mark.interpreted
+@NUMBERS
+def test_cosine_and_sine_are_within_one_unit_in_the_last_place(number):
+    with mpmath.workprec(120):
+        worst = [0.0, 0.0]
+        for turns in random_numbers(number):
+            exact = mpmath.cospi(2 * mpmath.mpf(turns)), mpmath.sinpi(2 * mpmath.mpf(turns))
+            worst = [max(pair) for pair in zip(worst, map(units, cos_sin_turns(turns), exact), strict=True)]
+        assert max(worst) < 1
+
+
+@pytest.mark.interpreted
+def test_quarter_turns_are_exact():
+    found = [tuple(map(float, cos_sin_turns(quarters / 4))) for quarters in range(5)]
+    assert found == [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)]
+
+
+@pytest.mark.interpreted
+def test_powers_are_within_one_unit_in_the_last_place():
+    with mpmath.workprec(120):
+        for x in np.exp(np.random.default_rng(3).uniform(-600, 600, 10**4)).tolist():
+            assert units(third_power(x), mpmath.mpf(x) ** mpmath.mpf(1 / 3)) < 0.51
+            assert units(quarter_power(x), mpmath.root(x, 4)) < 0.51
+    assert [f(x) for f in (third_power, quarter_power) for x in (0.0, np.inf)] == [0, np.inf, 0, np.inf]
+
+
+@njit
+def all_of(numbers, found):
+    """Every function of every number."""
+    for i in range(numbers.shape[0]):
+        found[i, 0], found[i, 1] = cos_sin_turns(numbers[i])
+        found[i, 2], found[i, 3], found[i, 4] = log(numbers[i]), third_power(numbers[i]), quarter_power(numbers[i])
+
+
+def test_compiled_code_gives_the_same_bits():
+    """No operation is fused with another or put in another order."""
+    numbers = np.array(random_numbers(10**4))
+    found, python = np.empty((len(numbers), 5)), np.empty((len(numbers), 5))
+    all_of(numbers, found)
+    getattr(all_of, "py_func", all_of)(numbers, python)
+    assert found.tobytes() == python.tobytes()
