@@ -1,6 +1,6 @@
 """Calibration of p-values: those of the right law are uniform over many seeds of one gas.
 
-    PYTHONPATH=tests python -m helpers.p_values --seeds 400
+    PYTHONPATH=tests python -m helpers.p_values --first 1000
 
 prints the table of `p_values.csv`: for each gas and quantity the mean p-value, which is 0.5 ± 0.29/√runs, the share of
 runs with p < 0.05, and the Kolmogorov-Smirnov p-value of all p-values against a uniform distribution.
@@ -48,11 +48,11 @@ def p_values(scene: str, quantities: Iterable[str], seeds: range, path: Path) ->
     return {name: np.array(values) for name, values in found.items()}
 
 
-def rows_of(gas: str, seeds: int, quantities: Iterable[str] = QUANTITIES) -> list[Row]:
+def rows_of(gas: str, seeds: range, quantities: Iterable[str] = QUANTITIES) -> list[Row]:
     """Rows of the table for one gas."""
     memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
     with tempfile.TemporaryDirectory(dir=memory) as folder:
-        found = p_values(GASES[gas], quantities, range(seeds), Path(folder) / "run.h5")
+        found = p_values(GASES[gas], quantities, seeds, Path(folder) / "run.h5")
     return [
         (gas, *name, len(p), float(p.mean()), float((p < 0.05).mean()), float(stats.kstest(p, "uniform").pvalue))
         for name, p in found.items()
@@ -62,11 +62,14 @@ def rows_of(gas: str, seeds: int, quantities: Iterable[str] = QUANTITIES) -> lis
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=400)
+    parser.add_argument("--seeds", type=int, default=400, help="number of seeds")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("gases", nargs="*", default=list(GASES), help="by default all")
     given = parser.parse_args()
     print("gas,species,quantity,runs,mean_p,below_0.05,ks_p")
-    for gas in GASES:
-        for *names, runs, mean, low, ks in rows_of(gas, given.seeds):
+    seeds = range(given.first, given.first + given.seeds)
+    for gas in given.gases:
+        for *names, runs, mean, low, ks in rows_of(gas, seeds):
             print(*names, runs, f"{mean:.3f}", f"{low:.3f}", f"{ks:.3f}", sep=",", flush=True)
 
 

@@ -39,6 +39,18 @@ def test_p_values_are_uniform(own, shared):
     assert len(samples) >= INSTANTS * DISCS / 16 / spacing - DISCS
 
 
+def test_samples_of_a_velocity_are_of_other_speeds():
+    """A light disc among heavy ones keeps its speed for longer than its direction: without squares KS p is 2e-14."""
+    rng = np.random.default_rng(4)
+    p = []
+    for _ in range(RUNS):
+        speed = np.hypot(gas(rng, 0.95, 0.95), gas(rng, 0.95, 0.95))  # of a Maxwell-Boltzmann distribution
+        angle = rng.uniform(0, 2 * np.pi, speed.shape)
+        samples, _ = independent_samples((speed * np.cos(angle))[:, :1])
+        p.append(stats.kstest(samples, "norm").pvalue)
+    assert stats.kstest(p, "uniform").pvalue > LEAST_P
+
+
 def test_what_is_conserved_sets_no_spacing():
     """Rounding of the mean of all discs, which is 0, is not a fluctuation."""
     rng = np.random.default_rng(2)

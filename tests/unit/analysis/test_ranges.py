@@ -217,16 +217,6 @@ def test_a_law_of_a_piston_takes_a_fluid(made):
     assert law.piston_error == pytest.approx(0.12 / 40 * law.piston)  # side='right': the gas begins at 0
 
 
-def test_tests_of_a_light_disc_take_samples_of_other_speeds(made):
-    """Its speed, which heavy discs hardly change, lasts far longer than the direction in which it flies."""
-    heavy = "{name='heavy', count=40, radius=0.2, temperature=1}"
-    log = made(f"species=[{heavy}, {{name='light', count=8, radius=0.1, mass=0.001, temperature=1}}]")
-    vx, speed = (
-        registry.analyse(log, "histogram", quantity=one, start=0.0).distributions[1] for one in ("vx", "speed")
-    )
-    assert vx.correlation_time >= speed.correlation_time / 2
-
-
 def test_a_heat_capacity_under_gravity_is_that_of_many_discs(made):
     """Few of a fixed energy have another, by 0.47/N at most; between walls of a temperature they have the same."""
     pull, often = "gravity.acceleration=[0, -0.3]", "log.snapshot_every=1"
