@@ -22,7 +22,8 @@ class Chambers:
     def __init__(self, log: Log, until: float) -> None:
         """Find the chambers of a log up to a time."""
         self.cuts = [_cuts(log, axis, until) for axis in range(2)]
-        self.occupied = np.histogram2d(*log.discs.position.T, bins=self.cuts)[0] > 0
+        x, y = log.discs.position.T
+        self.occupied = np.histogram2d(x, y, self.cuts)[0] > 0
 
     @property
     def area(self) -> float:
