@@ -29,6 +29,7 @@ from typing import Any
 from idealgas._version import __version__
 
 _HOMES = {
+    "idealgas.analysis.core.deviations": ("sensitivity",),
     "idealgas.analysis.core.statistics": ("Estimate",),
     "idealgas.analysis.registry": ("analyse",),
     "idealgas.errors": ("OutputError", "UserError"),
@@ -60,6 +61,7 @@ __all__ = [  # and the names of all analyses
     "open_log",
     "parse_scene",
     "resume",
+    "sensitivity",
     "simulate",
 ]
 

@@ -2,6 +2,7 @@
 
 from idealgas._version import __version__ as __version__
 from idealgas.analysis.cooling import CoolingAnalysis
+from idealgas.analysis.core.deviations import sensitivity as sensitivity
 from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.evolution import EvolutionAnalysis

@@ -11,16 +11,14 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.deviations import MOST_NUMBERS, Deviations, must_have_tangent_map
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.tables import SHOWN_ROWS, Number, Table, describe, estimates, format_estimate
-from idealgas.columns import Kind
-from idealgas.errors import NotApplicableError, UserError
-from idealgas.jit import njit
+from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.physics.tangent import collide_smooth, fly, reflect
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,13 +29,8 @@ ALIGNMENT = 20
 FEWEST = 32
 """Least number of intervals of one event per disc in which growth is measured."""
 
-MOST_NUMBERS = 2**26
-"""Largest number of components of all deviations: half a gigabyte."""
-
 PRECISIONS = (7, 16, 32)
 """Digits of the number types whose loss is predicted."""
-
-COLUMNS = ("disc", "end", "kind", "partner", "end_velocity", "end_position")
 
 
 @dataclass(frozen=True)
@@ -114,7 +107,7 @@ class LyapunovAnalysis(Analysis):
             UserError: for other effects and methods, more exponents than 4N, or a window of fewer than 52 events per
                 disc.
         """
-        _must_apply(log)
+        must_have_tangent_map(log)
         number = len(log.discs)
         if exponents > 4 * number:
             raise UserError(f"exponents: {number} discs have {4 * number} (got {exponents})")
@@ -202,15 +195,6 @@ class LyapunovAnalysis(Analysis):
         return figure
 
 
-def _must_apply(log: Log) -> None:
-    """Raise NotApplicableError unless the tangent map of all events of a log is known."""
-    gas = log.scene.properties
-    plain = gas.lossless and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty and not gas.spins
-    if not plain or log.scene.run.method not in ("event_driven", "brute_force"):
-        takes = "takes smooth elastic discs between plain sides, and an exact method"
-        raise NotApplicableError(f"{log.path}: not applicable: lyapunov {takes}")
-
-
 def _scaled(found: Estimate, factor: float) -> Estimate:
     return Estimate(found.value * factor, found.standard_error * factor, found.independent_samples)
 
@@ -227,71 +211,15 @@ def _steps(
     else:
         start = np.linalg.qr(np.random.default_rng(0).normal(size=(4 * number, exponents)))[0]
     weight = np.repeat(np.sqrt(masses), 4)[:, None]
-    deviations = np.ascontiguousarray(start / weight).reshape(number, 4, exponents)
-    since = np.full(number, window.start)
-    begun, collisions, rows = window.start, 0, 0
-    size, sides = np.array(log.box), np.array(log.periodic)
-    for flights in log.flights([window.start, window.end], columns=COLUMNS):
-        columns = tuple(getattr(flights, name) for name in COLUMNS)
-        first = 0
-        while first < len(flights.disc):
-            first, pairs, now = _advance(deviations, since, columns, first, number, masses, size, sides, log.gravity)
-            collisions += pairs
-            if now < 0:  # the batch ended within an interval
-                break
-            if now > begun:
-                _synchronise(deviations, since, now)
-                q, r = np.linalg.qr(deviations.reshape(4 * number, exponents) * weight)
-                shares = (q[:, 0] ** 2).reshape(number, 4).sum(axis=1)
-                shares = shares[shares > 0]
-                localisation = math.exp(-float(shares @ np.log(shares))) / number
-                yield now - begun, np.log(np.abs(np.diag(r))), localisation, collisions
-                deviations = np.ascontiguousarray(q / weight).reshape(number, 4, exponents)
-                begun, collisions = now, 0
-        rows += len(flights.disc)
-        if progress is not None:
-            progress(rows, max(rows, len(log)))
-
-
-@njit
-def _advance(deviations, since, columns, first, most, masses, box, periodic, gravity):
-    """Take deviations through events from row `first` on, until there were `most` in this call or the rows end.
-
-    Returns the next row, the number of collisions of two discs, and the time of the last event; -1 if the rows ended.
-    """
-    disc, end, kind, partner, velocity, position = columns
-    row, pairs = first, 0
-    while row < len(disc):
-        if row - first >= most:
-            return row, pairs, end[row - 1]
-        i = disc[row]
-        if kind[row] == Kind.DISC:
-            j = disc[row + 1]
-            for one in (i, j):
-                fly(deviations, one, end[row] - since[one])
-                since[one] = end[row]
-            x, y = position[row, 0] - position[row + 1, 0], position[row, 1] - position[row + 1, 1]
-            if periodic[0]:
-                x -= box[0] * np.rint(x / box[0])
-            if periodic[1]:
-                y -= box[1] * np.rint(y / box[1])
-            vx, vy = velocity[row, 0] - velocity[row + 1, 0], velocity[row, 1] - velocity[row + 1, 1]
-            collide_smooth(deviations, i, j, masses, x, y, vx, vy)
-            row += 2
-            pairs += 1
-        else:
-            if kind[row] == Kind.WALL:
-                fly(deviations, i, end[row] - since[i])
-                since[i] = end[row]
-                axis = 0 if partner[row] >= -2 else 1
-                reflect(deviations, i, axis, velocity[row, axis], gravity[axis])
-            row += 1
-    return row, pairs, -1.0
-
-
-@njit
-def _synchronise(deviations, since, now):
-    """Move the deviations of all discs to one time."""
-    for i in range(len(since)):
-        fly(deviations, i, now - since[i])
-        since[i] = now
+    followed = Deviations(log, window.start, (start / weight).reshape(number, 4, exponents))
+    begun, collisions = window.start, 0
+    for now, pairs in followed.until(window.end, number, progress):
+        collisions += pairs
+        if now > begun:
+            q, r = np.linalg.qr(followed.now(now).reshape(4 * number, exponents) * weight)
+            shares = (q[:, 0] ** 2).reshape(number, 4).sum(axis=1)
+            shares = shares[shares > 0]
+            localisation = math.exp(-float(shares @ np.log(shares))) / number
+            yield now - begun, np.log(np.abs(np.diag(r))), localisation, collisions
+            followed.values[:] = (q / weight).reshape(number, 4, exponents)
+            begun, collisions = now, 0

@@ -80,7 +80,16 @@ def logs(tmp_path_factory):
 
 def test_dir_shows_every_name():
     assert dir(idealgas) == sorted({*idealgas.__all__, *registry.names()})
-    functions = {"load_scene", "parse_scene", "simulate", "resume", "open_log", "analyse", *registry.names()}
+    functions = {
+        "load_scene",
+        "parse_scene",
+        "simulate",
+        "resume",
+        "open_log",
+        "analyse",
+        "sensitivity",
+        *registry.names(),
+    }
     assert set(dir(idealgas)) == functions | {*TYPES, "UserError", "__version__"}
     assert all(callable(getattr(idealgas, name)) and getattr(idealgas, name).__doc__ for name in functions)
     assert all(isinstance(getattr(idealgas, name), type) for name in TYPES)
