@@ -135,7 +135,7 @@ def _analyse(
 ) -> None:
     """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
-        raise UserError("--csv: not together with --json")
+        raise UserError("--csv and --json cannot be combined")
     if plot:
         check_output(plot, Path(plot).suffix.lower(), force, paths)
     try:

@@ -100,12 +100,12 @@ def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
         for row in rows
     ]
     heads = ("", "ms/time", "µs/coll.", "rate bias %", "Z bias %, pairs", "Z bias %, walls", "KS (chance)")
-    of_motion = ("", "missed %", "overlap", "energy drift", "path error", "lost after", "way back")
+    of_motion = ("", "missed %", "overlap", "energy drift", "path error", "lost after", "reversal")
     print_tables([Table("Time and averages", heads, averages), Table("The motion", of_motion, motion)])
     echo(
         "path error: distance from the double-double motion after 1 collision per disc; lost after: collisions per disc"
     )
-    echo("until this distance is 0.1; way back: distance from the start after reversing all velocities at 1 collision")
+    echo("until this distance is 0.1; reversal: distance from the start after reversing all velocities at 1 collision")
     echo("per disc. All distances are rms, in diameters.")
 
 

@@ -1,4 +1,4 @@
-"""Exact event-driven simulation of a two-dimensional gas of hard discs, with every event on record.
+"""Exact event-driven simulation of a two-dimensional gas of hard discs, that records every event.
 
     import idealgas
 

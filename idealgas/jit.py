@@ -196,7 +196,7 @@ def _watched(compiled: Any) -> Callable:
         try:
             return make(signature)  # at once, if it is compiled
         except (OSError, RuntimeError, ValueError) as error:  # which callers take for errors of a file that they read
-            raise UserError(f"machine code cannot be made: {' '.join(str(error).split())}") from error
+            raise UserError(f"compilation failed: {' '.join(str(error).split())}") from error
 
     return compile_for
 

@@ -99,7 +99,7 @@ def details_figure(found: Accuracy) -> Figure:
         picks = [nearest(found.collisions, count) for count in PATHS]
         paths = {f"path at {found.collisions[k]:.2g} collisions per disc": f"trajectory {k}" for k in picks}
         _errors_against_time(
-            axes[1], found, paths | {"way back (σ)": "way_back_error", "energy drift (relative)": "energy_drift"}
+            axes[1], found, paths | {"reversal (σ)": "way_back_error", "energy drift (relative)": "energy_drift"}
         )
         axes[1].set_ylabel("error of the motion (diameters)")
         _trajectories(axes[2], found)

@@ -102,7 +102,7 @@ def price(found: Accuracy, what: str, law: BiasLaw | None) -> str:
     cost, finer = cost_of(dt, found.steps), cost_of(law.step(TARGET / 10), found.steps)
     times = cost / found.event_driven.timing.median
     return (
-        f"To get {what} right to {TARGET:.0%} by time steps takes dt = {dt:.2g} and {times:.2g} times the time of the "
+        f"To compute {what} to {TARGET:.0%}, time steps need dt = {dt:.2g} and {times:.2g} times the CPU time of the "
         f"event-driven run, which has no such error (bias = ({law.first:+.2g} ± {law.error:.1g}) dt {law.second:+.2g} "
         f"dt²); the next factor of 10 in accuracy costs a factor of {finer / cost:.2g}."
     )
@@ -131,9 +131,9 @@ def _missed(found: Accuracy) -> str:
     law = ""
     if len(steps) > 1:
         slope = float(np.polyfit(np.log(steps), np.log(shares), 1)[0])
-        law = f", in proportion to dt^{slope:.1f} (theory for a pair alone: dt^2)"
+        law = f", proportional to dt^{slope:.1f} (theory for a single pair: dt^2)"
     return (
-        f"At dt = {coarse:.2g} discs fly straight through each other in {most.share.value:.2%} of the collisions, at "
+        f"At dt = {coarse:.2g} discs pass through each other in {most.share.value:.2%} of the collisions, at "
         f"dt = {fine:.2g} in {least.share.value:.2%} ± {least.share.standard_error:.2%}{law}."
     )
 
@@ -150,13 +150,13 @@ def _motion(found: Accuracy) -> list[str]:
 
     single, double, twice = found.precisions
     return [
-        f"Discs are {LOST} diameters (rms) off their true paths after {life(found.event_driven)} collisions per disc "
+        f"The rms path error is {LOST} diameters after {life(found.event_driven)} collisions per disc "
         f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
-        f"with dt = {finest.case.dt:.2g}. The truth is the double-double motion of the whole gas, followed for "
-        f"{last:.2g} collisions per disc: it takes {twice.timing.median / found.event_driven.timing.median:.2g} times "
-        "the event-driven time.",
+        f"with dt = {finest.case.dt:.2g}. The reference is the double-double motion of the whole gas over "
+        f"{last:.2g} collisions per disc, which takes "
+        f"{twice.timing.median / found.event_driven.timing.median:.2g} times the event-driven time.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "
-        "precision by the same method, whose motion is that of the event-driven run.",
+        "precision by the same method.",
     ]
 
 

@@ -133,7 +133,7 @@ class EffusionAnalysis(Analysis):
         there, back = flux / mean_speed / [[inner], [outer]]
         drive, both = np.trapezoid(there - back, time), np.trapezoid(there + back, time)
         if not slit > 0 or not drive > 0:
-            raise UserError(f"{log.path}: no effusion: a slit that lets no disc pass, or chambers in balance")
+            raise UserError(f"{log.path}: no effusion: no disc fits through the slit, or the chambers are in balance")
         expected = mean_speed / math.pi
         density = (number - beyond[0]) / inner
         phi = density * math.pi * radius**2
@@ -167,7 +167,7 @@ class EffusionAnalysis(Analysis):
         for name, runs in groups.items():
             if len(gases := {run.origin.gas: run.origin.words for run in runs if run.origin is not None}) > 1:
                 found = "; ".join(gases.values())
-                raise UserError(f"{name}: different gases under one name ({found}): analyse them apart")
+                raise UserError(f"{name}: different gases under one name ({found}): analyse them separately")
         return Effusions(groups, {name: mean_of_replicates([r.speed for r in runs]) for name, runs in groups.items()})
 
     @staticmethod
@@ -268,7 +268,7 @@ def _slit(log: Log) -> Slit:
     inside = walls_inside(log.scene)
     gates = [wall for wall in inside if 0 < wall.absence[0] < math.inf]
     if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
-        raise UserError(f"{log.path}: no effusion: it takes one gate, one species and the events")
+        raise UserError(f"{log.path}: no effusion: it requires one gate, one species and the events")
     (gate,) = gates
     across = int(gate.start[0] != gate.end[0])
     in_line = _in_line(log, gate, across)

@@ -125,9 +125,9 @@ class SoundAnalysis(Analysis):
                 or if the window is too short to follow a wave.
         """
         if len(composition(log.discs).name) > 1:
-            raise UserError(f"{log.path}: sound takes a gas of one species")
+            raise UserError(f"{log.path}: sound requires a gas of one species")
         if not any(log.periodic):
-            raise UserError(f"{log.path}: sound takes a box with periodic sides, in which waves run freely")
+            raise UserError(f"{log.path}: sound requires a box with periodic sides")
         window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
         alone = [(axis,) for axis in (0, 1) if log.periodic[axis]]
         groups: Sequence[tuple[int, ...]] = [(0, 1)] if len(alone) == 2 and log.box[0] == log.box[1] else alone
@@ -217,7 +217,9 @@ def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
     step = max(min(period, decay_time) / STEPS, window.duration / MOST_FRAMES)
     lags = int(longest / step) + 1
     if lags < STEPS:
-        raise UserError(f"{log.path}: a window of {8 * STEPS * step:.3g} is the least in which waves can be followed")
+        raise UserError(
+            f"{log.path}: a window of {8 * STEPS * step:.3g} is the shortest in which waves can be followed"
+        )
     return step, lags
 
 
@@ -260,7 +262,7 @@ def _wave(
     others = [] if fitted is None else [fit(lag, one, fitted, thermal) for one in rest]
     without = [other.fluid for other in others if other is not None]
     if fitted is None or len(without) < SEGMENTS:
-        raise UserError(f"{log.path}: the waves of density are not those of a fluid, or too few for a fit")
+        raise UserError(f"{log.path}: the density waves are not those of a fluid, or too few for a fit")
     error = np.sqrt((SEGMENTS - 1) * np.var(without, axis=0))  # the jackknife
     quantities = {
         name: Estimate(value, float(error[j]), float(SEGMENTS), *((of, of * errors[j]) if errors else ()))

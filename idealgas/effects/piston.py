@@ -19,19 +19,19 @@ VELOCITY = Column("piston_velocity", "f8", (), "length/time")
 
 
 class Piston(Table):
-    """`[piston]`: a wall across the whole box that moves in the place of one side and keeps the gas to itself.
+    """`[piston]`: a wall across the whole box that replaces one side.
 
-    Either it moves at a given velocity whatever hits it, or it has a mass and gives way: the outer pressure, and
-    gravity if that acts along its way, press it on the gas. At its side of the box it turns back.
+    It moves at a given velocity, or it has a mass and is pressed on the gas by the external pressure, and by gravity
+    along its axis. At its side of the box it is reflected.
     """
 
-    side: Literal["left", "right", "bottom", "top"] = Field(default="right", description="the side it stands for")
+    side: Literal["left", "right", "bottom", "top"] = Field(default="right", description="the side that it replaces")
     position: Number | None = Field(default=None, description="coordinate at the start, length; at its side if absent")
     velocity: Number | None = Field(
-        default=None, description="length/time along the axis: kept up against all hits; at the start with a mass"
+        default=None, description="length/time along the axis: constant, or with a mass that at the start"
     )
     mass: Positive | None = Field(default=None, description="mass > 0, together with pressure")
-    pressure: NotNegative | None = Field(default=None, description="outer pressure, force per length of the piston")
+    pressure: NotNegative | None = Field(default=None, description="external pressure, force per length of the piston")
 
     @property
     def axis(self) -> int:

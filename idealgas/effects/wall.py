@@ -30,11 +30,11 @@ class Wall(Table):
     start: Vector = Field(alias="from", description="[x, y] of one end, length")
     end: Vector = Field(alias="to", description="[x, y] of the other end, length")
     temperature: Positive | None = Field(
-        default=None, description="temperature > 0, energy, at which it emits discs; it reflects if absent"
+        default=None, description="temperature > 0, energy, of a thermal wall; reflecting if absent"
     )
     opens_at: Positive | None = Field(default=None, description="time > 0 at which it is removed")
-    closes_at: Positive | None = Field(default=None, description="time > 0 from which it is there again")
-    name: Word | None = Field(default=None, description="a word of its own; in the log; if absent its number")
+    closes_at: Positive | None = Field(default=None, description="time > 0 at which it is inserted")
+    name: Word | None = Field(default=None, description="unique word for the log; if absent its number")
 
     @property
     def absence(self) -> tuple[float, float]:
@@ -46,7 +46,7 @@ class Wall(Table):
     @property
     def action(self) -> str:
         """Short description for output."""
-        action = "reflecting" if self.temperature is None else f"emits at temperature {self.temperature:g}"
+        action = "reflecting" if self.temperature is None else f"thermal, temperature {self.temperature:g}"
         opens, closes = self.absence
         if math.isinf(opens):
             return action

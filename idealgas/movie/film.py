@@ -134,7 +134,9 @@ def paint_frame(
     check_output(path, FRAME, force)
     check_shown(log, colouring)
     if not log.start_time <= time <= log.end_time:
-        raise UserError(f"{log.path}: no state at t = {time:g}: it covers t = {log.start_time:g} to {log.end_time:g}")
+        raise UserError(
+            f"{log.path}: no state at t = {time:g}: the log covers t = {log.start_time:g} to {log.end_time:g}"
+        )
     _, thermal = speeds(log, log.start_time, log.end_time)
     piston = piston_track(log, log.start_time, log.end_time)
     frame = Painter(log.scene, log.discs, piston, size, thermal, colouring, dark).paint(log.state_at(time))
@@ -150,9 +152,9 @@ def check_shown(log: Log, colouring: Colouring) -> None:
         UserError: in these cases.
     """
     if colouring == "order" and not log.scene.properties.fixed_walls:
-        raise UserError(f"{log.path}: has a piston, and neighbours are told in a box whose sides stay where they are")
+        raise UserError(f"{log.path}: has a piston, and neighbours are only found in a box with fixed sides")
     if not log.has_positions:
-        raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method} does not know where discs are)")
+        raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method})")
     if not log.has_events:
         raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
 

@@ -1,6 +1,6 @@
 """A piston: a wall across the box that moves along one axis, at a given velocity or with a mass under a pressure.
 
-Between hits it moves as X(t) = X₀ + V t + ½ A t²; A comes from the outer pressure and gravity, and is 0 at a given
+Between hits it moves as X(t) = X₀ + V t + ½ A t²; A comes from the external pressure and gravity, and is 0 at a given
 velocity.
 """
 
@@ -103,7 +103,7 @@ def advance_piston(piston, time):
 def piston_energy(mass, position, velocity, acceleration):
     """Kinetic and potential energy of a piston with a mass, m (V²/2 - A X), mass length²/time²; constant between hits.
 
-    position: length. velocity: length/time. acceleration: between hits, from the outer pressure and gravity,
+    position: length. velocity: length/time. acceleration: between hits, from the external pressure and gravity,
     length/time². Numbers or arrays.
     """
     return mass * (0.5 * velocity**2 - acceleration * position)

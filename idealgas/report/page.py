@@ -123,7 +123,7 @@ def _summary(log: Log, found: dict) -> str:
 def _player(log: Log, played: Player | None, heading: str) -> str:
     """HTML of the player, with a note on the time that it shows."""
     if played is None:
-        why = "no events are on record" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
+        why = "no events are recorded" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
         return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {why}.</p></section>'
     if log.has_positions:
         width, height = log.box

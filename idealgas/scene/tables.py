@@ -74,7 +74,7 @@ class Box(Table):
 class Species(Table):
     """`[[species]]`: discs of one kind, with exactly one of temperature, speed and velocities."""
 
-    name: Word = Field(description="a word, its own for each species")
+    name: Word = Field(description="unique word")
     count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1, those of [start] and [[disc]] included")
     radius: Positive = Field(description="radius > 0, length")
     mass: Positive = Field(default=1.0, description="mass")
@@ -90,7 +90,7 @@ class Species(Table):
         default=None, description="energy; with [rotation]: Gaussian spins, rotational energy count * T/2"
     )
     placement: Literal["random", "lattice", "triangular", "compressed"] = Field(
-        default="random", description="how the discs are put into the region"
+        default="random", description="how the discs are placed in the region"
     )
     region: Annotated[tuple[Number, Number, Number, Number], Field(strict=False)] | None = Field(
         default=None,
@@ -107,7 +107,7 @@ class Disc(Table):
     mass: Positive = Field(default=1.0, description="mass")
     angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
     species: Word | None = Field(
-        default=None, description='species that it belongs to, one of [[species]] or another; if absent "disc"'
+        default=None, description='its species, one of [[species]] or another; if absent "disc"'
     )
 
 
@@ -120,8 +120,10 @@ Instant = Annotated[
 class Start(Table):
     """`[start]`: discs with positions and velocities from a log or a file, in place of `[[disc]]` tables."""
 
-    log: str | None = Field(default=None, description="path of a log, from this file's folder")
-    file: str | None = Field(default=None, description="path of a file .npz, .csv, .gsd or .extxyz, in the same way")
+    log: str | None = Field(default=None, description="path of a log, relative to this file")
+    file: str | None = Field(
+        default=None, description="path of a .npz, .csv, .gsd or .extxyz file, relative to this file"
+    )
     time: Instant = Field(default="end", description='time of the state in the log or file, or "end"')
     velocities: Literal["keep", "new", "reversed"] = Field(
         default="keep", description="as in the state, drawn for the tables [[species]], or reversed"
@@ -147,10 +149,10 @@ Threads = Annotated[
 class Header(Table):
     """`[scene]`: title, description, and seed of the random numbers."""
 
-    title: str = Field(default="", description="one line for people")
+    title: str = Field(default="", description="one line")
     description: str = Field(default="", description="what the scene shows, in paragraphs; the report begins with it")
     seed: Whole = Field(
-        default=0, ge=0, lt=2**63, description="whole number from which all random numbers of the scene follow"
+        default=0, ge=0, lt=2**63, description="whole number that determines all random numbers of the scene"
     )
 
 
@@ -168,34 +170,36 @@ class Run(Table):
     trials: Whole | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
     dt: Positive | None = Field(default=None, description="with time_driven, and required there: step, time")
     precision: Literal["float32", "float64", "double-double"] | None = Field(
-        default=None, description="with brute_force: of its numbers, about 7, 16 (as if absent) or 32 digits"
+        default=None, description="with brute_force: precision of numbers, about 7, 16 (default) or 32 digits"
     )
     v_ref: Positive | None = Field(
         default=None,
-        description="with monte_carlo: relative speed at which a pair of the largest discs collides for certain; "
+        description="with monte_carlo: relative speed at which a pair of the largest discs always collides; "
         "if absent 5 times the largest speed at the start",
     )
     impact: Literal["symmetric", "one_sided"] | None = Field(
-        default=None, description="with monte_carlo: whether impact parameters have both signs, as if absent, or one"
+        default=None, description="with monte_carlo: whether impact parameters have both signs (default) or one"
     )
     threads: Threads = Field(
         default=1,
         exclude=True,
-        description='whole number, or "auto"; with event_driven, how many threads share the work: the log is the same',
+        description='whole number, or "auto"; with event_driven, number of threads; does not change the log',
     )
 
 
 class Log(Table):
     """`[log]`: what the run writes."""
 
-    events: bool = Field(default=True, description="every event on record; without, the checkpoints only")
+    events: bool = Field(default=True, description="whether every event is recorded; otherwise only checkpoints")
     compression: Literal["gzip", "none"] = Field(default="gzip", description="of the event columns")
     pressure: bool = Field(
-        default=False, description="momentum that flows and that walls take, in every sample: pressure without events"
+        default=False,
+        description="whether samples contain the momentum flow and the impulses on walls: pressure without events",
     )
     heat_flow: bool | None = Field(
-        default=None, description="with pressure: heat that flows, in every sample, for its conductivity without events"
+        default=None,
+        description="with pressure: whether samples contain the heat flow: thermal conductivity without events",
     )
     checkpoint_every: Whole = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
     snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")
-    fsync: bool = Field(default=False, description="whether what is flushed also survives a loss of power")
+    fsync: bool = Field(default=False, description="whether flushed data survive a power failure")

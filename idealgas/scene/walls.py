@@ -36,7 +36,7 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
     emits = scene.properties.emits
     walls = []
     for name, ends, side, temperature in zip(SIDES, side_ends(scene.box.size), scene.box.sides, emits, strict=False):
-        action = str(side) if temperature is None else f"emits at temperature {temperature:g}"
+        action = str(side) if temperature is None else f"thermal, temperature {temperature:g}"
         if scene.piston and scene.piston.side == name:
             action = scene.piston.action
         walls.append(NumberedWall(name, *ends, action))

@@ -62,7 +62,7 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """
     if found := done_points(folder):
         return found
-    raise UserError(f"{folder}: holds no results of a sweep")
+    raise UserError(f"{folder}: contains no results of a sweep")
 
 
 def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:

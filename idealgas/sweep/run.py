@@ -135,7 +135,7 @@ def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, st
                 raise OutputError(f"{error}{CONTINUE}", exit_code=1)
             yield index[future.key], error and _reason(error)
     except (CancelledError, asyncio.CancelledError):
-        raise UserError(f"the scheduler is gone{CONTINUE}") from None
+        raise UserError(f"lost the connection to the scheduler{CONTINUE}") from None
 
 
 def _reason(error: Any) -> str:

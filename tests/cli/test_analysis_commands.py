@@ -88,7 +88,7 @@ def test_a_file_that_is_not_a_log_is_the_same_line_for_all_commands(name, folder
     lines = {command: error_of(command, f"{name}.h5", folder=folder) for command in ("info", *PLOTTED)}
     if name == "folder":
         sweeps = {lines.pop(command) for command in ("pressure", "heat-capacity")}
-        assert sweeps == {"folder.h5: holds no results of a sweep\n"}
+        assert sweeps == {"folder.h5: contains no results of a sweep\n"}
     (line,) = set(lines.values())
     assert line.startswith(f"{name}.h5: ")
     assert listing(folder) == before

@@ -38,7 +38,7 @@ def test_a_shipped_scene_is_shown_in_full(shipped_scene):
 def test_walls_are_listed_by_their_numbers():
     shown = check(CONFIGS / "effusion.toml", "--set", "box.left={ thermal = 2 }").stdout
     lines = [line for line in shown.splitlines() if line.startswith("│")]
-    assert any(all(word in line for word in ("0", "left", "emits at temperature 2")) for line in lines)
+    assert any(all(word in line for word in ("0", "left", "thermal, temperature 2")) for line in lines)
     assert any(all(word in line for word in ("6", "gate", "(10, 4.9)", "reflecting, open from 5")) for line in lines)
     piston = check(CONFIGS / "piston.toml").stdout
     assert "piston of mass 20 under pressure 2" in piston

@@ -276,7 +276,7 @@ def test_a_scheduler_that_dies_is_one_line(plan, tmp_path):
         started[0].kill()
         stdout, stderr = running.communicate(timeout=120)
     assert (running.returncode, stdout) == (2, "")
-    assert stderr == "the scheduler is gone; run the same command again to continue\n"
+    assert stderr == "lost the connection to the scheduler; run the same command again to continue\n"
     again = idealgas("sweep", plan, "-o", folder)
     assert again.returncode == 0, again.stderr
     assert ", 0 failed" in again.stdout

@@ -282,5 +282,5 @@ def test_compilation_that_fails_is_no_error_of_a_file(tmp_path, monkeypatch, err
         raise error("no memory\nfor code")
 
     monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path / "cache")
-    with pytest.raises(UserError, match=r"^machine code cannot be made: no memory for code$"):
+    with pytest.raises(UserError, match=r"^compilation failed: no memory for code$"):
         jit._watched(SimpleNamespace(compile=fail, signatures=()))(())

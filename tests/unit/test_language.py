@@ -44,6 +44,15 @@ PATTERNS = {
     r"in_words": "format_estimate",
     r"show_names": "disable_mathtext",
     r"kept_momentum": "conserved_momentum",
+    r"is there again": "is inserted",
+    r"every event on record|events? (?:is|are) on record": "recorded",
+    r"kept up against": "constant",
+    r"a word of its own|its own for each": "unique",
+    r"(?:to get|gets?) \w+(?: \w+)* right to": "accurate to",
+    r"neighbours (?:are|can be) told": "found",
+    r"way back": "reversal, return",
+    r"outer pressure": "external pressure",
+    r"the house": "structure",
     r"on another day|an earlier version|at the time of writing|this evening": "present tense, no diary",
 }
 """Regular expressions of words, and what to write instead."""

@@ -50,7 +50,7 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
             in the box.
     """
     if (np.abs(position / box - 0.5) > 0.5 + ROUNDING).any():
-        raise UserError("no neighbours can be told: a disc is outside the box")
+        raise UserError("neighbours cannot be found: a disc is outside the box")
     number, spacing = len(position), math.sqrt(box[0] * box[1] / len(position))
     margin = MARGIN * spacing
     while True:
@@ -103,7 +103,7 @@ def _edges(points: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray, np.
     try:
         diagram = Voronoi(points)
     except (QhullError, ValueError):
-        raise UserError("no neighbours can be told: discs are at one place") from None
+        raise UserError("neighbours cannot be found: two discs have the same position") from None
     own = (diagram.ridge_points < number).any(axis=1)
     pairs, ends = diagram.ridge_points[own], np.array(diagram.ridge_vertices)[own]
     if (ends < 0).any():

@@ -88,8 +88,8 @@ def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
     for origin in (r.origin for r in results if r.origin is not None):
         if (first := runs.setdefault(origin.run, origin)) is not origin:
             if origin.path == first.path:
-                raise UserError(f"{origin.path}: given twice, but a run counts once")
-            raise UserError(f"{origin.path}: the run of {first.path} again, of the same scene and seed; it counts once")
+                raise UserError(f"{origin.path}: given twice")
+            raise UserError(f"{origin.path}: the run of {first.path} again, with the same scene and seed")
         if origin.seed is not None:
             seeds.setdefault(origin.seed, []).append(origin.path)
     return tuple(

@@ -150,7 +150,7 @@ def span(log: Log, start: float | None, end: float | None) -> tuple[float, float
     first = log.start_time if start is None else start
     last = log.end_time if end is None else end
     if not log.start_time <= first < last <= log.end_time:
-        raise UserError(f"{log.path}: no window from t = {exact(first)} to {exact(last)}: {_covered(log)}")
+        raise UserError(f"{log.path}: empty time window t = {exact(first)} to {exact(last)}: {_covered(log)}")
     return first, last
 
 

@@ -1,4 +1,4 @@
-"""Follow temperature, pressure, discs beyond a gate, piston and energies in time, with the temperature's law.
+"""Follow temperature, pressure, discs beyond a gate, piston and energies in time, with the expected temperature.
 
 Laws: Haff's law for a cooling gas, the adiabat of a slow piston, the rest position of a piston under pressure, and
 equilibrium for isolated gases, gases under gravity and heat baths. The pressure is the mechanical one on the walls.

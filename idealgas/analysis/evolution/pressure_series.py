@@ -136,12 +136,12 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
 
 
 def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
-    """Draw pressure against time, and the outer pressure on a piston, or the adiabat of a piston that is moved."""
+    """Draw pressure against time, and the external pressure on a piston, or the adiabat of a piston that is moved."""
     from idealgas.analysis.core.style import BLACK
 
     _draw_walls(ax, series, series.middles, fmt="o")
     if law and law.pressure:
-        ax.axhline(law.pressure, ls="--", color=BLACK, label="theory: outer pressure")
+        ax.axhline(law.pressure, ls="--", color=BLACK, label="theory: external pressure")
     elif law and series.lines and series.lines.adiabat is not None:
         adiabat = np.interp(series.area, series.lines.area, series.lines.adiabat)
         ax.plot(series.middles, adiabat, "--", color=BLACK, label="theory: adiabat")

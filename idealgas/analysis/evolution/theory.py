@@ -45,7 +45,7 @@ class Law:
         temperature: (F,), mean m v²/2 per disc, energy.
         spin: mean I ω² per disc, energy.
         piston, piston_error: coordinate of the piston at rest, and its error, length.
-        pressure: outer pressure on the piston, energy/length².
+        pressure: external pressure on the piston, energy/length².
         caveats: conditions of the law that are not met.
     """
 

@@ -141,7 +141,7 @@ class HeatCapacityAnalysis(Analysis):
         scene, properties, n = log.scene, log.scene.properties, len(log.discs)
         settles = properties.lossless and not properties.driven and len(properties.temperatures) <= 1
         if not settles or not log.has_positions:
-            raise UserError(f"{log.path}: no equilibrium, or none known, and so no heat capacity")
+            raise UserError(f"{log.path}: no known equilibrium, and so no heat capacity")
         has_piston = bool(scene.piston and scene.piston.mass)
         present = {
             BATH: not properties.isolated,
@@ -264,7 +264,7 @@ def _closed_box(log: Log, start: float | None, end: float | None, progress: Prog
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility_factor for route in measured.routes if route.name.startswith(WALLS)), None)
     if walls is None or walls.theory is None or not walls.value > 0:
-        raise UserError(f"{log.path}: walls that give no temperature: none, never hit, or without a theory")
+        raise UserError(f"{log.path}: no temperature from walls: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
     n, expected = measured.number, degrees_of_freedom(log) / (2 * measured.number)

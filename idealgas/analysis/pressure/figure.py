@@ -20,7 +20,7 @@ def pressure_figure(result: Pressure | EquationOfState) -> Figure:
 
 
 def _of_walls(result: Pressure, found: Mechanical) -> Figure:
-    """Picture of the mechanical pressure of every wall, and of the outer pressure on a piston."""
+    """Picture of the mechanical pressure of every wall, and of the external pressure on a piston."""
     figure, (ax,) = panels(1)
     walls = found.walls[::-1]
     values, errors = [w.pressure.value for w in walls], [w.pressure.standard_error for w in walls]
@@ -28,7 +28,7 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
     for k, wall in enumerate(walls):
         if wall.pressure.theory is not None:
             theory = [wall.pressure.theory] * 2
-            ax.plot(theory, [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label="outer pressure")
+            ax.plot(theory, [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label="external pressure")
     ideal = result.number * result.temperature / result.area
     ax.axvline(ideal, color=BLACK, linewidth=1, label=f"{IDEAL}, N T/A: {ideal:.5g}")
     name_rows(ax, [wall.name for wall in walls])

@@ -124,7 +124,7 @@ def pressure_summary(result: Pressure | EquationOfState) -> str:
         walls = result.mechanical.walls
         shown = [wall for wall in walls if wall.pressure.theory is not None] or walls[:1]
         beside = f"N T/A of an ideal gas is {ideal:.4g}; "
-        said = agreement([(wall.name, wall.pressure) for wall in shown], "the outer pressure", result.no_theory)
+        said = agreement([(wall.name, wall.pressure) for wall in shown], "the external pressure", result.no_theory)
         found = ", ".join(f"{format_estimate(wall.pressure)} on the {wall.name}" for wall in shown)
         return f"P = {found or 'unknown without walls'}; {beside}{said}."
     (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)

@@ -1,4 +1,4 @@
-"""Measure the relaxation of the velocities to Maxwell-Boltzmann's distribution.
+"""Measure the relaxation of the velocities to the Maxwell-Boltzmann distribution.
 
 The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error is that
 of the fluctuations of a gas of so many discs. Several logs are drawn in one picture.
