@@ -223,8 +223,11 @@ def correction(excess, work):
 
 
 def changed(value, change, correction):
-    """Value + change (1 + correction), where the correction is small; a float64 is rounded once."""
-    return value + (change + change * correction)
+    """Value + change (1 + correction), where the correction is small; a float is rounded once."""
+    if isinstance(value, Pair):
+        return value + (change + change * correction)
+    total, error = double_double.two_sum(value, change)
+    return total + (error + change * correction)
 
 
 @overload(changed)

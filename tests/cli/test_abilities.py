@@ -15,7 +15,7 @@ ABILITIES = json.loads((ROOT / "tests" / "cases" / "abilities.json").read_text(e
 
 def commands(command, name=""):
     """Options of a command and those below it, by name."""
-    context = click.Context(command)
+    context = click.Context(command, **command.context_settings)
     found = {name: {option for one in command.get_params(context) for option in one.opts + one.secondary_opts}}
     for each in command.list_commands(context) if isinstance(command, click.Group) else ():
         found |= commands(command.get_command(context, each), f"{name} {each}".strip())

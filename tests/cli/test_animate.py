@@ -64,8 +64,8 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
     [
         ("homogeneous", (), "homogeneous.h5: has no positions to show (monte_carlo does not know where discs are)"),
         ("eventless", (), "eventless.h5: has no events to show (made with log.events = false)"),
-        ("run", ("--from", 5, "--to", 5), "run.h5: no window from t = 5 to 5: the log covers t = 0 to 30"),
-        ("run", ("--to", 31), "run.h5: no window from t = 0 to 31: the log covers t = 0 to 30"),
+        ("run", ("--from", 5, "--to", 5), "run.h5: empty time window t = 5 to 5: the log covers t = 0 to 30"),
+        ("run", ("--to", 31), "run.h5: empty time window t = 0 to 31: the log covers t = 0 to 30"),
         ("run", ("--speed", 1e-9, "--to", 30), "frames are too many (allowed <= 1,000,000)"),
         ("run", ("-o", "film.avi"), "film.avi: unknown kind of film (allowed: .mp4, .gif)"),
         ("piston", ("--colour", "order"), "piston.h5: has a piston, and neighbours are told in a box whose sides stay"),

@@ -85,7 +85,7 @@ def test_a_window_beyond_the_end_has_all_digits(log):
     end = json.loads(called("info", log, "--json").stdout)["run"]["end_time"]
     beyond = end * (1 + 1e-15)
     done = called("pressure", log, "--from", repr(beyond))
-    assert done.stderr == f"{log}: no window from t = {beyond!r} to {end!r}: the log covers t = 0 to {end!r}\n"
+    assert done.stderr == f"{log}: empty time window t = {beyond!r} to {end!r}: the log covers t = 0 to {end!r}\n"
 
 
 @pytest.mark.parametrize(

@@ -186,7 +186,7 @@ def test_a_log_without_events_has_no_player(tmp_path):
     ("arguments", "message"),
     [
         (("-o", "page.pdf"), "page.pdf: unknown kind of report (allowed: .html)"),
-        (("-o", "page.html", "--from", "1e9"), "no window from t = 1000000000"),
+        (("-o", "page.html", "--from", "1e9"), "empty time window t = 1000000000"),
         (("-o", "folder.html"), "folder.html: is a folder"),
     ],
 )

@@ -32,6 +32,6 @@ def test_tables_and_sentences_have_the_same_digits():
     found = Estimate(1.898934, 0.00692, 16.0, theory=1.8978612, theory_error=0.00099)
     ((_, *cells),) = estimates("t", [("rate", found)]).shown
     assert cells == ["1.8989", "0.0069", "16", "1.89786", "0.00099", "+0.15"]
-    assert format_estimate(found) == "1.8989 ± 0.0069, theory 1.89786"
+    assert format_estimate(found) == "1.899(7)"
     series = time_series("t", {"t": np.array([1.0]), "P": np.array([1.898934]), "± s.e.": np.array([0.00692])})
     assert series.shown == [["1", "1.8989", "0.0069"]]
