@@ -14,7 +14,7 @@ from idealgas.files import check_output, written
 from idealgas.log import Log
 from idealgas.report.picture import html_pictures
 from idealgas.report.player import MOST_DISCS, Player, player
-from idealgas.report.sections import Section, make_sections
+from idealgas.report.sections import Section, main_sections, make_sections
 
 SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
 """The program of the page, in order."""
@@ -81,10 +81,12 @@ def write_report(
 def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     found = info(log)
     file = found["file"]
-    applicable = [
-        (section.title, _section(section, f"p{k}")) for k, section in enumerate(sections) if section.left_out is None
-    ]
-    parts = [*applicable, ("The run", _run(log, found))]
+    first = main_sections(log.scene)
+    applicable = [section for section in sections if section.left_out is None]
+    main = sorted((s for s in applicable if s.title in first), key=lambda s: first.index(s.title)) or applicable
+    more = [section for section in applicable if all(section is not one for one in main)]
+    parts = [(section.title, _section(section, f"p{k}")) for k, section in enumerate((*main, *more))]
+    parts.insert(len(main), ("The run", _run(log, found)))
     if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
         rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
         parts.append(("What does not apply", f"<ul>{rows}</ul>"))
@@ -92,7 +94,9 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     title = log.scene.scene.title or Path(log.path).name
     names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
-    said = [_summary(log, found), *(section.words for section in sections if section.words)]
+    said = [_summary(log, found), *(section.words for section in main if section.words)]
+    shown = [f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)]
+    folded = len(main) + 1
     return Template(_text("report.html")).substitute(
         title=escape(title),
         style=_text("report.css"),
@@ -101,9 +105,8 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
         player=_player(log, played, names[0]),
         description="".join(f"<p>{escape(' '.join(text.split()))}</p>" for text in about.split("\n\n") if text),
         words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
-        sections="\n".join(
-            f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)
-        ),
+        sections="\n".join(shown[:folded]),
+        more="\n".join(shown[folded:]),
         data="" if played is None else _data(played),
         footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
     )

@@ -9,6 +9,10 @@ from idealgas.analysis import registry
 from idealgas.analysis.core.tables import Table
 from idealgas.errors import UserError
 from idealgas.log import DamageError, Log
+from idealgas.scene import Scene
+
+MAIN = ("Pressure", "Temperature", "Speeds")
+"""Titles of the sections on a gas in equilibrium without effects that call for others."""
 
 
 @dataclass(frozen=True)
@@ -44,3 +48,16 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
             found.append(Section(section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
         on_step(k + 1, len(parts))
     return found
+
+
+def main_sections(scene: Scene) -> tuple[str, ...]:
+    """Titles of the sections that the effects of a scene call for, which a report shows first."""
+    properties = scene.properties
+    called_for = {
+        "Effusion": properties.last_wall_removed_at > 0,
+        "Cooling": properties.dissipative,
+        "Evolution": properties.last_wall_removed_at > 0 or not properties.fixed_walls or properties.dissipative,
+        "Profile": not properties.straight_flight or len(properties.temperatures) > 1,
+        "Transport": all(properties.periodic) and properties.lossless,
+    }
+    return tuple(title for title, called in called_for.items() if called) or MAIN

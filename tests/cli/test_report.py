@@ -125,6 +125,25 @@ def test_the_first_words(pages):
     assert "60 discs with piston, packing fraction 0.113, followed for" in text  # of the 15 by 10 below the piston
 
 
+@pytest.mark.parametrize(
+    ("overrides", "first"),
+    [
+        ((), ["Pressure", "Temperature", "Speeds"]),
+        (("gravity.acceleration=[0, -0.2]",), ["Profile"]),
+        (("piston={side='right', position=15.0, mass=20.0, pressure=1.5}",), ["Evolution"]),
+        (("species.0.region=[0,0,10,10]", "wall=[{from=[10,0], to=[10,10], opens_at=1.0}]"), ["Evolution"]),
+        (("restitution.normal=0.95",), ["Cooling", "Evolution"]),
+        (tuple(f'box.{side}="periodic"' for side in ("left", "right", "bottom", "top")), ["Transport"]),
+    ],
+)
+def test_what_the_scene_is_about_comes_first(tmp_path, overrides, first):
+    simulate(parse_scene(PLAIN, overrides=overrides), tmp_path / "gas.h5")
+    assert called("report", tmp_path / "gas.h5", "-o", tmp_path / "gas.html", "-q").returncode == 0
+    shown, more = (tmp_path / "gas.html").read_text(encoding="utf-8").split('<details class="more">')
+    assert re.findall("<h2>(.*?)</h2>", shown) == ["What it shows", "The discs", *first, "The run"]
+    assert "<h2>Temperature</h2>" in more or "Temperature" in first or "<li>Temperature: " in more
+
+
 def test_a_gas_without_positions_shows_its_speeds(opened, pages):
     browser = opened("without positions")
     assert not browser.find_element(By.ID, "discs").is_displayed()
@@ -139,6 +158,7 @@ def test_a_gas_without_positions_shows_its_speeds(opened, pages):
 
 def test_pictures_are_there_and_every_one_has_words(opened):
     browser = opened("plain")
+    browser.execute_script("document.querySelector('.more').open = true")
     found = browser.execute_script("""
         const pictures = document.querySelectorAll("figure svg");
         return Array.from(pictures, svg => [svg.getBoundingClientRect().width, svg.getAttribute("aria-label")])
