@@ -198,7 +198,7 @@ def test_a_log_without_events_has_no_player(tmp_path):
     simulate(parse_scene(PLAIN + "log.events = false\n"), tmp_path / "run.h5")
     assert called("report", tmp_path / "run.h5", "-o", tmp_path / "run.html").returncode == 0
     text = (tmp_path / "run.html").read_text(encoding="utf-8")
-    assert "No player: no events are on record." in text
+    assert "No player: no events are recorded." in text
     assert 'id="data-head"' not in text
 
 

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.analysis.core.autoregression import unit_of
+
 MOST_PARTS = 64
 """Largest number of parts of a run whose scatter is the error at every lag."""
 
@@ -74,8 +76,9 @@ def growth(flow: np.ndarray, lags: Lags) -> Growth:
             series += square if k == lags.last else -square
     walked = 2 * lags.width * (np.arange(lags.last + 1) - np.arange(lags.last + 1) ** 2 / blocks)
     slopes = np.diff(squares, axis=0) / np.diff(walked)[:, None]
+    unit = unit_of(slopes)
     return Growth(
         series / (walked[lags.last] - walked[lags.first]),
         slopes.mean(axis=1),
-        slopes.std(axis=1, ddof=1) / math.sqrt(parts),
+        (slopes / unit).std(axis=1, ddof=1) * unit / math.sqrt(parts),
     )
