@@ -16,8 +16,17 @@ SCHEMA = "scene.schema.json"
 """Name of the JSON Schema of scenes; the first line of a scene refers to it, in the same folder."""
 
 
+DIGESTS = "digests.json"
+"""Name of the table of the scenes' digests, see `idealgas.run.digest`."""
+
+
 def _folder() -> Path:
     return Path(next(iter(import_module("idealgas_scenes").__path__)))
+
+
+def path_of(name: str) -> Path:
+    """Path of an installed file."""
+    return _folder() / name
 
 
 def paths() -> list[Path]:

@@ -24,7 +24,7 @@ from ._terminal import echo, exit_on_closed_pipe
 
 GROUPS = {
     "Run": ("new", "examples", "schema", "check", "run", "resume", "scene", "recover", "warm-up"),
-    "Look": ("info", "follow", "animate"),
+    "Look": ("info", "digest", "follow", "animate"),
     "Analyse": tuple(sorted(registry.commands(), key=registry.position_of)),
     "Share": ("report", "export", "events"),
     "Study": ("sweep", "accuracy", "bench"),

@@ -1,0 +1,32 @@
+"""Digests of a log, equal for the same events and final state, however, when and by how many threads it was written."""
+
+import hashlib
+
+import numpy as np
+
+from idealgas.log.reader import Log
+
+
+def column_digests(log: Log) -> dict[str, str]:
+    """SHA-256 of each event column by name, taken over the bytes of its values, the lowest byte first."""
+    found = {name: hashlib.sha256() for name in log.columns}
+    for block in log.chunks(log.columns):
+        for name in found:
+            found[name].update(_little_endian(getattr(block, name)))
+    return {name: column.hexdigest() for name, column in found.items()}
+
+
+def digest(log: Log) -> str:
+    """SHA-256 of a list of the digests of all event columns and of all arrays of the final state, in order of name.
+
+    Raises:
+        LogError: if the log has no events, and was not closed.
+    """
+    state = log.state_at(log.end_time)._asdict()
+    arrays = {f"end_{name}": np.asarray(values) for name, values in state.items() if values is not None}
+    parts = column_digests(log) | {name: hashlib.sha256(_little_endian(a)).hexdigest() for name, a in arrays.items()}
+    return hashlib.sha256("".join(f"{name} {parts[name]}\n" for name in sorted(parts)).encode()).hexdigest()
+
+
+def _little_endian(values: np.ndarray) -> bytes:
+    return values.astype(values.dtype.newbyteorder("<")).tobytes()

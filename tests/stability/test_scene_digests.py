@@ -1,0 +1,69 @@
+"""Digests of the shipped scenes, `configs/digests.json`: the same on every machine.
+
+Once the logs of scenes have changed (see test_golden_logs.py), this makes the table:
+
+    python tests/stability/test_scene_digests.py
+"""
+
+import json
+import shutil
+
+import pytest
+from click.testing import CliRunner
+from helpers.support import ROOT
+from idealgas_cli.main import main
+
+from idealgas import load_scene, open_log
+from idealgas.log.digest import digest
+from idealgas.run.digest import EVENTS, scene_digest
+from idealgas.run.simulate import simulate
+
+TABLE = ROOT / "configs" / "digests.json"
+SCENES = sorted(ROOT.glob("configs/*.toml"))
+QUICK = {"quickstart", "novak-bortz", "heat-bath"}
+
+
+def on_record():
+    return json.loads(TABLE.read_text())
+
+
+def test_every_scene_is_on_record():
+    assert [*on_record()] == [path.stem for path in SCENES]
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(p.stem, marks=[] if p.stem in QUICK else pytest.mark.slow) for p in SCENES]
+)
+def test_a_scene_has_its_digest(name):
+    done = CliRunner().invoke(main, ["digest", "--check", name])
+    assert (done.exit_code, done.output) == (0, f"{name}: same {on_record()[name]}\n")
+
+
+def test_a_difference_gives_exit_code_1(tmp_path, monkeypatch):
+    shutil.copy(ROOT / "configs" / "quickstart.toml", tmp_path)
+    (tmp_path / "digests.json").write_text(json.dumps({"quickstart": "0" * 64}))
+    monkeypatch.setattr("idealgas_cli._scenes._folder", lambda: tmp_path)
+    done = CliRunner().invoke(main, ["digest", "--check"])
+    assert (done.exit_code, done.output) == (1, f"quickstart: differs {on_record()['quickstart']}\n")
+    assert CliRunner().invoke(main, ["digest", "--check", "nothing"]).exit_code == 2
+
+
+def test_storage_does_not_matter_and_one_disc_does(tmp_path):
+    found = []
+    quickstart = ROOT / "configs" / "quickstart.toml"
+    for changes in ((), ('log.compression="none"', "run.threads=2"), ("scene.seed=99",)):
+        path = tmp_path / f"{len(found)}.h5"
+        simulate(load_scene(quickstart, [f"run.events={EVENTS}", *changes]), path)
+        with open_log(path) as log:
+            found.append(digest(log))
+        assert CliRunner().invoke(main, ["digest", str(path)]).output == found[-1] + "\n"
+    assert found[0] == found[1] == on_record()["quickstart"] != found[2]
+
+
+def write_table() -> None:
+    """Run every scene and write the table."""
+    TABLE.write_text(json.dumps({path.stem: scene_digest(path) for path in SCENES}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    write_table()
