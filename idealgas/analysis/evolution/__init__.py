@@ -196,7 +196,9 @@ class EvolutionAnalysis(Analysis):
             if result.law is None
             else f"by theory it is {result.law.temperature[-1]:.4g} on the average"
         )
-        found = [f"The temperature goes from {first:.4g} to {last:.4g}; {law}."]
+        same = f"{first:.4g}" == f"{last:.4g}"
+        change = f"stays at {first:.4g}" if same else f"goes from {first:.4g} to {last:.4g}"
+        found = [f"The temperature {change}; {law}."]
         if result.rest:
             said = agreement([("rest", result.rest)])
             found.append(f"The piston rests at {format_estimate(result.rest)}; {said}.")
