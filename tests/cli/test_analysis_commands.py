@@ -71,8 +71,8 @@ def test_pictures(command, path, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--from", 1e6), "no window"),
-        (("--from", 5, "--to", 5), "no window"),
+        (("--from", 1e6), "empty time window"),
+        (("--from", 5, "--to", 5), "empty time window"),
         (("--plot", "picture.xyz"), "unknown figure format"),
     ],
 )

@@ -62,15 +62,15 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("log", "arguments", "message"),
     [
-        ("homogeneous", (), "homogeneous.h5: has no positions to show (monte_carlo does not know where discs are)"),
+        ("homogeneous", (), "homogeneous.h5: has no positions to show (monte_carlo)"),
         ("eventless", (), "eventless.h5: has no events to show (made with log.events = false)"),
         ("run", ("--from", 5, "--to", 5), "run.h5: empty time window t = 5 to 5: the log covers t = 0 to 30"),
         ("run", ("--to", 31), "run.h5: empty time window t = 0 to 31: the log covers t = 0 to 30"),
         ("run", ("--speed", 1e-9, "--to", 30), "frames are too many (allowed <= 1,000,000)"),
         ("run", ("-o", "film.avi"), "film.avi: unknown kind of film (allowed: .mp4, .gif)"),
-        ("piston", ("--colour", "order"), "piston.h5: has a piston, and neighbours are told in a box whose sides stay"),
+        ("piston", ("--colour", "order"), "has a piston, and neighbours are only found in a box with fixed sides"),
         ("run", ("--frame", 4), "film.gif: unknown figure format (allowed .png)"),
-        ("run", ("--frame", 31, "-o", "a.png"), "run.h5: no state at t = 31: it covers t = 0 to 30"),
+        ("run", ("--frame", 31, "-o", "a.png"), "run.h5: no state at t = 31: the log covers t = 0 to 30"),
         ("run", ("-o", "folder.gif"), "folder.gif: is a folder"),
     ],
 )

@@ -75,7 +75,7 @@ def log_of(folder, species=ONE, x="periodic", y="periodic"):
     [
         ({"x": "reflecting", "y": "reflecting"}, "periodic sides"),
         ({"species": ONE + ", " + ONE.replace('"a"', '"b"')}, "one species"),
-        ({}, "the least in which waves can be followed"),
+        ({}, "the shortest in which waves can be followed"),
     ],
     ids=["walls", "mixture", "short"],
 )

@@ -77,7 +77,7 @@ def test_the_table_is_tidy(point, tmp_path):
 
 
 def test_folders_without_results_are_refused(point, tmp_path):
-    with pytest.raises(UserError, match="holds no results of a sweep"):
+    with pytest.raises(UserError, match="contains no results of a sweep"):
         read_points(tmp_path)
     run_point(point, tmp_path, ("temperature",), True)
     with pytest.raises(UserError, match='does not include the analysis "pressure"'):

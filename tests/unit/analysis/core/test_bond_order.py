@@ -106,7 +106,7 @@ def test_100_states_of_a_fluid_have_no_common_direction():
 
 
 def test_discs_at_one_place_are_refused():
-    with pytest.raises(UserError, match="at one place"):
+    with pytest.raises(UserError, match="same position"):
         bond_order(np.full((3, 2), math.nan), (1, 1), (True, True))
 
 

@@ -101,7 +101,7 @@ def test_equilibrium(make, overrides, t):
 
 
 def test_times_that_are_not_there(make):
-    with pytest.raises(UserError, match="no window"):
+    with pytest.raises(UserError, match="empty time window"):
         evolution(make(), 5.0, 30.0)
 
 
