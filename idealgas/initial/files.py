@@ -39,7 +39,7 @@ def read_state(path: Path, time: Instant) -> State:
     except OSError as error:
         raise StartError("file", "cannot be read", error.strerror or str(error), "a file") from None
     except ImportError:
-        allowed = "pip install 'idealgas[export]'"
+        allowed = "pip install 'idealgas-md[export]'"
         raise StartError("file", f"{path.suffix} files need a package", "no such package", allowed) from None
     except StartError:
         raise
