@@ -226,6 +226,10 @@ def changed(value, change, correction):
     """Value + change (1 + correction), where the correction is small; a float is rounded once."""
     if isinstance(value, Pair):
         return value + (change + change * correction)
+    return _changed_float(value, change, correction)
+
+
+def _changed_float(value, change, correction):
     total, error = double_double.two_sum(value, change)
     return total + (error + change * correction)
 
@@ -234,9 +238,4 @@ def changed(value, change, correction):
 def _changed(value, change, correction):
     if value is PAIR:
         return lambda value, change, correction: value + (change + change * correction)
-
-    def operate(value, change, correction):
-        total, error = double_double.two_sum(value, change)
-        return total + (error + change * correction)
-
-    return operate
+    return _changed_float
