@@ -3,6 +3,7 @@
 Hypothesis sets no deadlines: the first example of a test may have to compile.
 """
 
+import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,6 +12,7 @@ from hypothesis import settings
 
 settings.register_profile("no-deadline", deadline=None)
 settings.load_profile("no-deadline")
+os.environ.pop("COLUMNS", None)  # readline, which pytest imports, leaves it to the workers: tables are of full width
 
 ROOT = Path(__file__).parent.parent
 CASES = ROOT / "tests" / "cases"

@@ -83,7 +83,7 @@ def test_reading_a_dead_writers_log_says_so(dead):
         result = called(command[0], dead, *command[1:])
         assert result.returncode == 0, result.stderr
         if command[0] == "follow":
-            assert "was not closed" in result.stdout
+            assert "not closed (crash?)" in result.stdout
         else:
             assert result.stderr.startswith(f"{dead}: was not closed (crash?); ")
             assert result.stderr.count("\n") == 1

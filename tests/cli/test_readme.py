@@ -124,9 +124,7 @@ def test_the_first_commands_as_a_user_runs_them(folder):
     done = subprocess.run(f"set -e\n{text}", shell=True, cwd=folder, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert "Z = PA/NT" in done.stdout
-    assert done.stdout.endswith(
-        "Measurement and theory agree within 4 standard errors in walls, virial; pairs, virial.\n"
-    )
+    assert "Measurement and theory agree." in done.stdout.splitlines()[-1]
 
 
 @pytest.mark.slow

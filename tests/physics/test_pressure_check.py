@@ -12,7 +12,7 @@ from helpers.support import ROOT
 
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.pressure.measure import PAIRS, WALLS, pressure
-from idealgas.errors import NotApplicableError
+from idealgas.errors import UserError
 from idealgas.scene import parse_scene
 
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
@@ -149,7 +149,6 @@ NO_THEORY = {
     "crystal",
     "effusion",
     "melting",
-    "mixing",
     "novak-bortz",
     "piston",
     "rough-cooling",
@@ -169,7 +168,7 @@ def test_shipped_scenes_pass_or_have_no_theory(path, run):
         pytest.skip("has no events")
     try:
         agrees = pressure(log).check().agrees
-    except NotApplicableError:
+    except UserError:  # not applicable, or too few events for an error bar
         agrees = None
     assert agrees is (None if path.stem in NO_THEORY else True)
 

@@ -11,7 +11,12 @@ NAME = "run.h5"
 Form = tuple[str, ...]
 """A command, as the words after `idealgas`."""
 
-NEEDED = {"animate": "-o film.gif --to 1 --fps 2 --size 320x240", "report": "-o page.html", "follow": "--once"}
+NEEDED = {
+    "animate": "-o film.gif --to 1 --fps 2 --size 320x240",
+    "report": "-o page.html",
+    "follow": "--once",
+    "scene": "--at 1 -o next.toml",
+}
 """Options without which a command is incomplete, or does not end."""
 FURTHER = {"recover": ("-o whole.h5",), "pressure": ("--plot picture.png", "--csv")}
 """Further forms of a command, in addition to those of its own choices."""

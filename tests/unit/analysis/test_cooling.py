@@ -36,7 +36,8 @@ def test_a_uniform_gas_cools_as_theory_says(make):
 
 @pytest.mark.slow
 def test_spins_come_to_a_ratio_of_their_own(make):
-    log = make("rotation={ inertia = 0.5, roughness = 0.5 }", "species.0.spin_temperature=0.2")
+    longer = "run.collisions_per_disc=140"
+    log = make("rotation={ inertia = 0.5, roughness = 0.5 }", "species.0.spin_temperature=0.2", longer)
     found = cooling(log)
     assert abs(found.temperature_ratio.deviation) < 4
     assert found.temperature_ratio.standard_error < 0.04

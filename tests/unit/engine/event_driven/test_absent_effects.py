@@ -13,7 +13,7 @@ from idealgas.effects.bundle import Effects
 pytestmark = pytest.mark.slow
 
 MARKERS = {
-    "gravity": {"crossings.accelerated_crossing", "ballistic.time_to_plane", "wall.accelerated_body_delay"},
+    "gravity": {"crossings.accelerated_crossing", "motion.time_to_plane", "wall.accelerated_body_delay"},
     "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
@@ -24,21 +24,23 @@ MARKERS = {
 """Functions that only make sense with an effect. Restitution has none: its numbers would be read in those of others."""
 
 PROGRAM = """
-import json, sys
+import functools, json, sys
 from numba import extending
 
 called = set()
+overload = extending.overload
 
-def register(**options):
-    def decorate(function):
-        def choose(*arguments, **named):
+def watched(name, **options):
+    def decorate(choose):
+        @functools.wraps(choose)
+        def chosen(*types):
+            function = choose(*types)
             called.add((function.__module__, function.__name__))
             return function
-        extending.overload(function, jit_options=options, strict=False)(choose)
-        return function
+        return overload(name, **options)(chosen)
     return decorate
 
-extending.register_jitable = register  # before idealgas.jit takes it
+extending.overload = watched  # before the first entry point is compiled
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.bench.effects import effect_scene
 from idealgas.run.simulate import simulate
@@ -48,7 +50,7 @@ if sys.argv[2] == "all":
 simulate(effect_scene("all" if sys.argv[2] == "all" else None, 300), sys.argv[1])
 sys.setprofile(None)
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
-signatures = getattr(advance_events, "signatures", [])
+signatures = advance_events.compiled.signatures if hasattr(advance_events, "compiled") else []
 types = [str(kind) for kind in signatures[0][3].types] if signatures else []
 print(json.dumps([sorted(names), types]))
 """
