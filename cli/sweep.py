@@ -97,6 +97,7 @@ def _run(
     as_json: bool,
 ) -> bool:
     """Run a sweep and write its tables; return whether any point failed."""
+    from idealgas.sweep.published import published_tables
     from idealgas.sweep.results import result_rows, write_tables
     from idealgas.sweep.run import run_sweep
 
@@ -112,6 +113,7 @@ def _run(
     for index, reason in outcome.failures.items():
         echo(f"point {index} failed: {reason}", err=True)
     tables = write_tables(output) if outcome.ran or outcome.before else []
+    published = list(published_tables(plan, output)) if tables else []
     if as_json:
         rows = result_rows(output) if tables else []
         print_json({**asdict(outcome), "files": list(map(str, tables)), "results": rows})
@@ -121,6 +123,7 @@ def _run(
         echo(f"{done}: {' and '.join(map(str, tables))}")
         if outcome.ran:
             echo(f"time: {outcome.seconds:.3g} s{estimate}")
+        print_tables(published)
     return bool(outcome.failures)
 
 

@@ -1,16 +1,14 @@
 """Figure of one quantity of a sweep against one of its axes."""
 
-import math
 import os
 from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from idealgas.analysis.core.style import curve_style, panels
 from idealgas.errors import UserError, unknown
-from idealgas.sweep.results import RESULT, result_rows
+from idealgas.sweep.results import RESULT, average, name_of, result_rows
 
 Row = dict[str, Any]
 
@@ -26,18 +24,18 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     """
     rows = result_rows(folder)
     axis = _choice("axis", axis, [key for key in _axes(rows) if _all_numbers(row[key] for row in rows)])
-    estimates = [_name(row) for row in rows if row.get("standard_error") is not None]
-    names = list(dict.fromkeys([*estimates, *map(_name, rows)]))
+    estimates = [name_of(row) for row in rows if row.get("standard_error") is not None]
+    names = list(dict.fromkeys([*estimates, *map(name_of, rows)]))
     quantity = _choice("quantity", quantity, names)
     curves: dict[str, dict[float, list[Row]]] = {}
     for row in rows:
-        if _name(row) == quantity:
+        if name_of(row) == quantity:
             others = ", ".join(f"{key} = {row[key]}" for key in _axes(rows) if key != axis)
             curves.setdefault(others, {}).setdefault(float(row[axis]), []).append(row)
     figure, (ax,) = panels(1)
     for k, (label, points) in enumerate(curves.items()):
         places = sorted(points)
-        values, errors = zip(*(_average(points[place]) for place in places), strict=True)
+        values, errors = zip(*(average(points[place]) for place in places), strict=True)
         colour, line, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         theory = [(x, found) for x in places if (found := points[x][0].get("theory")) is not None]
@@ -47,10 +45,6 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     ax.set_ylabel(quantity)
     ax.legend()
     return figure
-
-
-def _name(row: Row) -> str:
-    return f"{row['analysis']}/{row['quantity']}"
 
 
 def _axes(rows: list[Row]) -> list[str]:
@@ -67,12 +61,3 @@ def _choice(what: str, asked: str | None, allowed: list[str]) -> str:
     if asked is not None and asked not in allowed:
         raise unknown(what, asked, allowed)
     return asked or allowed[0]
-
-
-def _average(rows: list[Row]) -> tuple[float, float]:
-    """Average over replicates, and its standard error: from theirs, or without them from their scatter."""
-    values = np.array([row["value"] for row in rows], float)
-    errors = [row.get("standard_error") for row in rows]
-    if None not in errors:
-        return float(values.mean()), math.hypot(*errors) / len(rows)  # type: ignore[arg-type]
-    return float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(rows))) if len(rows) > 1 else 0.0

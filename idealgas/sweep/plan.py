@@ -19,7 +19,7 @@ from idealgas.scene.scene import make_scene
 from idealgas.toml.dump import toml_value
 from idealgas.toml.issues import Issue, Key, as_issues
 from idealgas.toml.overrides import OverrideError, apply
-from idealgas.toml.table import Number, Positive, Table
+from idealgas.toml.table import NotNegative, Number, Positive, Table
 from idealgas.toml.text import Origin, parse_document, read_text
 
 PHI, BASE = "phi", "base"
@@ -78,6 +78,17 @@ class Axis(Table):
         return [round(step) if math.isclose(step, round(step), rel_tol=1e-12) else step for step in steps]
 
 
+class Published(Table):
+    """Table `[[published]]`: values of a quantity in a paper, one for each combination of the axes, in their order."""
+
+    source: str = Field(description="the paper")
+    quantity: str = Field(description='"analysis/quantity" with the names of results.csv')
+    values: Annotated[tuple[Number, ...], Field(strict=False)] = Field(description="one for each point")
+    errors: Annotated[tuple[NotNegative, ...], Field(strict=False)] = Field(
+        default=(), description="their standard errors; none: exact"
+    )
+
+
 class Tables(Table):
     """Tables of the file of a sweep."""
 
@@ -85,6 +96,9 @@ class Tables(Table):
         default_factory=Settings, description="[sweep]: scene, seed, replicates, analyses, keep_logs"
     )
     axis: Annotated[tuple[Axis, ...], Field(strict=False)] = Field(default=(), description="[[axis]] tables")
+    published: Annotated[tuple[Published, ...], Field(strict=False)] = Field(
+        default=(), description="[[published]] tables"
+    )
     base: dict[str, Any] | None = Field(default=None, description="[base.box] and so on: a scene's tables")
 
 
@@ -108,7 +122,7 @@ class Sweep:
     """A whole sweep.
 
     analyses: names of the analyses of each point. keep_logs: whether logs are kept. points: all runs. seed: from which
-    their seeds follow. text: the file of the sweep, for its folder.
+    their seeds follow. text: the file of the sweep, for its folder. published: values of papers.
     """
 
     analyses: tuple[str, ...]
@@ -116,6 +130,7 @@ class Sweep:
     points: tuple[Point, ...]
     seed: int
     text: str
+    published: tuple[Published, ...] = ()
 
 
 def load_sweep(path: str | PathLike[str]) -> Sweep:
@@ -135,7 +150,10 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
         raise SceneError(origin.report(found))
     points = tuple(_points(tables, _bases(tables, Path(path), origin), origin))
     settings, text = tables.sweep, f"# sweep of {len(points)} points by idealgas\n{text}"
-    return Sweep(settings.analyses, settings.keep_logs, points, settings.seed, text)
+    combinations = points[-1].combination + 1
+    if found := list(_wrong_numbers(tables.published, combinations)):
+        raise SceneError(origin.report(found))
+    return Sweep(settings.analyses, settings.keep_logs, points, settings.seed, text, tables.published)
 
 
 Base = tuple[dict[str, Any], Origin]
@@ -182,6 +200,15 @@ def _errors(tables: Tables) -> Iterator[Issue]:
         if axis.zip is not None and lengths.setdefault(axis.zip, len(axis.steps)) != len(axis.steps):
             got, allowed = f"{len(axis.steps)} values", f"{lengths[axis.zip]}, as the others of zip = {axis.zip}"
             yield Issue((("axis", i, "zip"),), "not as long as the axes it goes along with", got, allowed)
+
+
+def _wrong_numbers(published: Sequence[Published], combinations: int) -> Iterator[Issue]:
+    """Errors of lists of published values that are not as long as the sweep has points without replicates."""
+    for i, one in enumerate(published):
+        for name, numbers in (("values", one.values), ("errors", one.errors)):
+            if len(numbers) != combinations and (numbers or name == "values"):
+                got = f"{len(numbers)} numbers"
+                yield Issue((("published", i, name),), "not one for each point", got, f"{combinations}")
 
 
 # ── points ──

@@ -2,12 +2,14 @@
 
 import csv
 import json
+import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from idealgas.analysis.core.caveats import origin_of
@@ -131,7 +133,7 @@ def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     Raises:
         UserError: if there are no results, or if one cannot be read.
     """
-    return [row for point in read_points(folder) for row in _rows(point)]
+    return [row for point in read_points(folder) for row in rows_of(point)]
 
 
 def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:
@@ -162,7 +164,22 @@ def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
     return tables
 
 
-def _rows(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def name_of(row: dict[str, Any]) -> str:
+    """Analysis and quantity of a row."""
+    return f"{row['analysis']}/{row['quantity']}"
+
+
+def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:
+    """Average over replicates, and its standard error: from theirs, or without them from their scatter."""
+    values = np.array([row["value"] for row in rows], float)
+    errors = [row.get("standard_error") for row in rows]
+    if None not in errors:
+        return float(values.mean()), math.hypot(*errors) / len(rows)  # type: ignore[arg-type]
+    return float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(rows))) if len(rows) > 1 else 0.0
+
+
+def rows_of(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The rows of a point of `read_points`."""
     labels = {name: point[name] for name in ("point", "replicate", "seed")}
     labels |= {key: json.dumps(v) if isinstance(v, list) else v for key, v in point["values"].items()}
     for name, value in point["summary"].items():

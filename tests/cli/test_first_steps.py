@@ -67,7 +67,7 @@ def test_the_schema_beside_the_scenes_is_this_one(kind):
 def test_every_shipped_file_names_a_schema_that_is_there():
     for path in CONFIGS.rglob("*.toml"):
         first = path.read_text(encoding="utf-8").splitlines()[0]
-        kind = "sweep" if path.parent.name == "sweeps" else "scene"
+        kind = "sweep" if path.parent.name in ("sweeps", "classics") else "scene"
         named = path.parent / first.removeprefix("#:schema ")
         assert named.resolve() == (CONFIGS / f"{kind}.schema.json").resolve(), path
 

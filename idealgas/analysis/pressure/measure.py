@@ -37,7 +37,16 @@ from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_sample
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import Composition, composition
-from idealgas.analysis.theory.values import SOLID, BoxTheory, NoTheoryError, Theory, crystal, fluid, mixture_error
+from idealgas.analysis.theory.values import (
+    FREEZING,
+    SOLID,
+    BoxTheory,
+    NoTheoryError,
+    Theory,
+    crystal,
+    fluid,
+    mixture_error,
+)
 from idealgas.columns import OUTWARD, SIDES, axis_of
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
@@ -178,10 +187,12 @@ def pressure(
 
 
 def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[str, ...]:
-    """Sentence on a dense gas, which changes slowly, if the means of parts of the window do not agree."""
+    """Sentences on a dense gas, which changes slowly or is ordered."""
     if gas.packing_fraction <= hard_discs.HIGHEST:
         return ()
-    return unsteady("The virial of the pairs", window.of(impacts.pair_virial), window.edges[window.first : -1])
+    ordered = "Discs this dense order, and a run may keep one arrangement of them: the errors are those of that one."
+    drifting = unsteady("The virial of the pairs", window.of(impacts.pair_virial), window.edges[window.first : -1])
+    return (ordered,) * (gas.packing_fraction >= FREEZING) + drifting
 
 
 def _without_theory(

@@ -52,6 +52,14 @@ def test_sentences_of_many_logs_have_their_paths_and_are_bounded(made):
     assert caveats.of_several(results[:1]) == ("a.", "b.")
 
 
+def test_discs_that_order_may_keep_an_arrangement(made):
+    """At φ = 0.72 72 discs keep one orientation for 30 000 collisions each: Z is 0.15 % off, four standard errors."""
+    for radius, said in ((0.44, 0), (0.45, 1)):
+        discs = f"species=[{{name='gas', count=72, radius={radius}, temperature=1, placement='lattice'}}]"
+        found = registry.analyse(made(PERIODIC, discs), "pressure")
+        assert sum("one arrangement" in sentence for sentence in found.caveats) == said
+
+
 # ── motion of the gas as a whole ──
 
 

@@ -1,0 +1,96 @@
+"""Values of papers in the file of a sweep: checked with its points, and set beside what the sweep finds."""
+
+import json
+
+import pytest
+from helpers.support import ROOT, output_of
+
+from idealgas.errors import UserError
+from idealgas.scene import SceneError
+from idealgas.sweep.plan import load_sweep
+from idealgas.sweep.published import published_tables
+
+CLASSICS = sorted((ROOT / "configs" / "classics").glob("*.toml"))
+TOO_LOW = {("metropolis-1953", "phi = 0.60829"), ("metropolis-1953", "phi = 0.68722")}
+"""Published values that later papers do not confirm: see the file of the sweep."""
+
+SWEEP = """
+[sweep]
+replicates = 2
+analyses = ["pressure"]
+keep_logs = false
+[[axis]]
+key = "phi"
+values = [0.1, 0.2]
+[base]
+box = { size = [10, 10], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic" }
+species = [{ name = "gas", count = 20, radius = 0.5, temperature = 1 }]
+run.events = 2000
+[[published]]
+source = "A paper"
+quantity = "pressure/routes/pairs, virial/compressibility_factor"
+values = [1.2, 1.5]
+errors = [0.1, 0.0]
+"""
+
+
+@pytest.fixture
+def plan(tmp_path):
+    path = tmp_path / "sweep.toml"
+    path.write_text(SWEEP)
+    return path
+
+
+def test_averages_beside_the_paper(plan, tmp_path):
+    output_of("sweep", plan, "-o", tmp_path / "out", "--workers", 1)
+    rows = json.loads(output_of("sweep", plan, "-o", tmp_path / "out", "--json"))["results"]
+    (table,) = published_tables(load_sweep(plan), tmp_path / "out")
+    assert table.title == "A paper"
+    for row, phi, paper, error in zip(table.rows, (0.1, 0.2), (1.2, 1.5), (0.1, 0.0), strict=True):
+        of = [r for r in rows if r["phi"] == phi and f"{r['analysis']}/{r['quantity']}" == table.notes[0]]
+        own = sum(r["value"] for r in of) / 2
+        own_error = sum(r["standard_error"] ** 2 for r in of) ** 0.5 / 2
+        numbers = [cell.value for cell in row[1:]]
+        assert row[0] == f"phi = {phi}"
+        assert numbers[:4] == pytest.approx([own, own_error, paper, error])
+        assert numbers[4] == pytest.approx((own - paper) / (own_error**2 + error**2) ** 0.5)
+
+
+def test_one_value_for_each_point(plan):
+    plan.write_text(SWEEP.replace("[1.2, 1.5]", "[1.2]"))
+    with pytest.raises(SceneError) as caught:
+        load_sweep(plan)
+    (line,) = caught.value.errors
+    assert line == f"{plan}:16: published.0.values: not one for each point (got 1 numbers; allowed 2)"
+
+
+def test_an_unknown_quantity_is_said(plan, tmp_path):
+    plan.write_text(SWEEP.replace("pairs, virial/comp", "pairs/comp"))
+    output_of("sweep", ROOT / "configs" / "classics" / "galperin-2003.toml", "-o", tmp_path / "out", "--workers", 1)
+    with pytest.raises(UserError, match=r"unknown quantity .*run/events"):
+        list(published_tables(load_sweep(plan), tmp_path / "out"))
+
+
+def test_digits_of_pi(tmp_path):
+    """Galperin, Regul. Chaotic Dyn. 8, 375 (2003): exact."""
+    plan = ROOT / "configs" / "classics" / "galperin-2003.toml"
+    shown = output_of("sweep", plan, "-o", tmp_path / "out", "--workers", 1)
+    assert [line.split("│")[2].strip() for line in shown.splitlines() if "disc.1.mass =" in line] == [
+        "3", "31", "314", "3141"
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("path", CLASSICS, ids=lambda path: path.stem)
+def test_classics_are_valid(path):
+    assert load_sweep(path).published
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("path", CLASSICS, ids=lambda path: path.stem)
+def test_classics(path, tmp_path):
+    """Each within 3 standard errors of the paper's value and of its own together."""
+    plan = load_sweep(path)
+    output_of("sweep", path, "-o", tmp_path / "out")
+    for table in published_tables(plan, tmp_path / "out"):
+        for name, *_, off in table.rows:
+            assert off.value is None or abs(off.value) < 3 or (path.stem, name) in TOO_LOW, name
