@@ -47,7 +47,7 @@ def follow(path: str, once: bool) -> None:
             if console.is_terminal:
                 screen.update(_view(log, seen, rate, console.width), refresh=True)
     with open_log(path) as log:  # opened again, as it may have been closed
-        if log.complete:
+        if log.complete and log.summary["seconds"] > 0:
             rate = log.summary["events"] / log.summary["seconds"]
         shown = _view(log, status(log), rate, console.width)
     console.print(shown)

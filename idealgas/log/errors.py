@@ -23,5 +23,7 @@ def reason(error: Exception) -> str:
         return "not UTF-8 text"
     system = isinstance(error, OSError) and error.strerror
     text = str(system or (error.args[0] if error.args else error)).splitlines()[0]
+    if "incorrect metadata checksum" in text:
+        return "checksum of an HDF5 block does not match (half written in a power failure, or changed)"
     inner = re.search(r"\((.*)\)$", text)
     return inner[1] if inner and isinstance(error, OSError | RuntimeError | KeyError) else text

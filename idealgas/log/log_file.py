@@ -4,6 +4,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -79,7 +80,8 @@ class LogFile:
         """Close the file."""
         for file in (self._file, self._source):
             if file is not None:
-                file.close()
+                with suppress(OSError, RuntimeError):  # HDF5 reads damaged bytes even as it closes
+                    file.close()
         self._file = self._source = None
 
     def rows(self, table: str) -> int:
@@ -112,10 +114,11 @@ class LogFile:
         small = math.prod(column.chunk) * column.dtype.itemsize <= _SMALL
         return self._others(path, start) if small else self._chunk(path, start)
 
-    def column(self, path: str) -> np.ndarray:
-        """All committed rows of a column of a short table."""
+    def column(self, path: str, step: int = 1) -> np.ndarray:
+        """All committed rows of a column of a short table, or each `step`-th of them from the first on."""
         column = self._columns[path]
-        parts = [self.chunk(path, start) for start in range(0, self.rows(table_of(path)), column.chunk[0])]
+        starts = range(0, self.rows(table_of(path)), column.chunk[0])
+        parts = [np.ascontiguousarray(self.chunk(path, start)[-start % step :: step]) for start in starts]
         return np.concatenate(parts) if parts else np.empty((0, *column.chunk[1:]), column.dtype)
 
     def fixed(self, name: str) -> np.ndarray:

@@ -1,8 +1,8 @@
 """A log of a run, open for reading, also during its run and after it was interrupted or killed."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from pathlib import Path
 from time import sleep
 from typing import TYPE_CHECKING, Literal
@@ -34,16 +34,20 @@ if TYPE_CHECKING:
 class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
     """Times and values of the samples by name, each read from the file when it is first asked for."""
 
-    def __init__(self, file: LogFile, names: Sequence[str], times: str) -> None:
-        """Samples of a file. names: of the observables. times: path of the times, which all share."""
-        self._file, self._names, self._times = file, tuple(names), times
+    def __init__(self, file: LogFile, names: Sequence[str], times: Callable[[int], np.ndarray], step: int = 1) -> None:
+        """Each `step`-th sample of a file. names: of the observables. times: reads their common times, by step."""
+        self._file, self._names, self._read_times, self._step = file, tuple(names), times, step
         self._read: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+
+    def thinned(self, most: int) -> "Samples":
+        """The same samples if they are at most `most`, else that many of them or less, evenly chosen from the first."""
+        return Samples(self._file, self._names, self._read_times, max(1, -(-self._file.rows("observables") // most)))
 
     def __getitem__(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         if name not in self._read:
             if name not in self._names:
                 raise DamageError(self._file.path, f"observables: has no {name}")
-            self._read[name] = self._shared, self._file.column(f"observables/{name}/value")
+            self._read[name] = self.times, self._file.column(f"observables/{name}/value", self._step)
         return self._read[name]
 
     def __contains__(self, name: object) -> bool:
@@ -56,8 +60,9 @@ class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
         return len(self._names)
 
     @cached_property
-    def _shared(self) -> np.ndarray:
-        return self._file.column(f"observables/{self._times}")
+    def times(self) -> np.ndarray:
+        """(P,) times of the samples."""
+        return self._read_times(self._step)
 
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
@@ -137,14 +142,20 @@ class Log(LogHistory):
         `log.heat_flow` also kinetic_heat_flow and collision_heat_flow.
         """
         names = [name.partition("/")[0] for name in self._file.names("observables") if name.endswith("/value")]
-        times = next((name for name in self._file.names("observables") if name.endswith("/time")), "")
-        return Samples(self._file, names, times)
+        return Samples(self._file, names, partial(self._sample_times, "observables"))
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
         """(S,) times of the snapshots, which `log.snapshot_every` adds to the file as in H5MD."""
-        times = next((name for name in self._file.names("particles") if name.endswith("/time")), None)
-        return self._file.column(f"particles/{times}") if times else np.empty(0)
+        return self._sample_times("particles", 1)
+
+    def _sample_times(self, table: str, step: int) -> np.ndarray:
+        """Times of each `step`-th row of a table of samples; none for a missing table."""
+        path = next((f"{table}/{name}" for name in self._file.names(table) if name.endswith("/time")), None)
+        times = self._file.column(path, step) if path else np.empty(0)
+        if self.complete and len(times) and times[-1] > self.end_time:
+            raise DamageError(self.path, f"{path}: {times[-1]:g} (allowed up to {self.end_time:g}, the end)")
+        return times
 
     def flights(
         self,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import h5py
 
+from idealgas.errors import UserError
 from idealgas.files import LOG, error_number, storage_error, written
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5.commit import Commit
@@ -71,9 +72,8 @@ def reopen(
             time, row = log.checkpoints.times[index], log.checkpoints.rows[index]
             rows |= {"events": int(row), "checkpoints": index + 1}
             rows["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
-            for times, _ in log.observables.values():  # of two samples at one time the second is that of an end
-                first, after = (int(times.searchsorted(time, side)) for side in ("left", "right"))  # type: ignore[call-overload]
-                rows["observables"] = min(first + 1, after)
+            times = log.observables.times  # of two samples at one time the second is that of an end
+            rows["observables"] = int(min(times.searchsorted(time) + 1, times.searchsorted(time, "right")))
         keep = {table: rows.get(table, 0) for table in log.commit.rows}
         _check_appendable(log, keep)
     return open_after(path, keep, commit or log.commit)
@@ -116,10 +116,8 @@ def open_after(
         opened = WritableFile(path, commit)
     except ChangedError:
         raise LogError(f"{path}: was changed by another run while it was read") from None
-    except (RuntimeError, KeyError) as error:
-        raise DamageError(path, reason(error)) from error
-    except (OSError, ValueError) as error:
-        raise storage_error(path, error) from error
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise _failure(path, error) from error
     try:
         found = Commit.read(opened.file)
         tables = open_tables(opened.file, found, keep)
@@ -131,7 +129,10 @@ def open_after(
         opened.file.flush()
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         opened.abandon()
-        if error_number(error) is None:
-            raise DamageError(path, reason(error)) from error
-        raise storage_error(path, error) from error
+        raise _failure(path, error) from error
     return opened, tables, found.sequence + 2
+
+
+def _failure(path: Path, error: Exception) -> UserError:
+    """Error of a log that could not be opened for appending: of the system if it has a number, else of the file."""
+    return DamageError(path, reason(error)) if error_number(error) is None else storage_error(path, error)

@@ -55,8 +55,8 @@ MOST_PACKED = 1100
 """Largest number of bytes that one byte of a file may become; deflate yields at most 1032."""
 
 LARGEST = sys.float_info.max
-LEAST, MOST, LONGEST = 1e-100, 1e50, 1e150
-"""Least mass and radius; largest mass, radius and speed; largest time, spin and observable.
+LEAST, MOST, LONGEST, SLOWEST = 1e-100, 1e50, 1e150, 1e-61
+"""Least mass and radius; largest mass, radius and speed; largest time, spin and observable; least of the top speed.
 
 Products of them, and sums of their squares, are finite."""
 
@@ -190,8 +190,8 @@ class Rules:
             self._check_order(path, data, start, in_order)
         if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:
             raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0, or from {LEAST:g} on)")
-        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < LEAST:  # whose squares underflow
-            raise ValueError(f"largest component {largest:g} (allowed from {LEAST:g} on, or 0)")
+        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < SLOWEST:  # whose fourth powers underflow
+            raise ValueError(f"largest component {largest:g} (allowed from {SLOWEST:g} on, or 0)")
 
     def _range_of_others(self, path: str) -> Range:
         """Range of a column without a rule of its own."""

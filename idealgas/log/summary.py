@@ -1,10 +1,14 @@
 """The summary of a run, which its log has once the run has reached its end."""
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Self
+
+from idealgas.log.rules import LONGEST
+
+KINDS = ("disc_collisions", "wall_hits", "thermostat_collisions")
+"""Fields whose sum is the number of events."""
 
 
 @dataclass(frozen=True)
@@ -76,17 +80,23 @@ def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, 
         found[key] = json.loads(value)
         if not _fits(found[key], types.get(key, float | None)):
             raise ValueError(f"{key}: {value.decode()}")
+    if found.get("threads") == 0:
+        raise ValueError("threads: 0")
+    if {"rows", "events", *KINDS} <= found.keys():
+        events, rows = sum(found[kind] for kind in KINDS), found["rows"]
+        if found["events"] != events or rows not in (0, events + found["disc_collisions"]):
+            raise ValueError(f"{found['events']:,} events in {rows:,} rows ({' + '.join(KINDS)}: {events:,})")
     return found
 
 
 def _fits(value: Any, kind: Any) -> bool:
-    """Whether a value has the type of a field: str, bool, int (at least 0), float (finite), or one that may be None."""
+    """Whether a value has the type of a field: str, bool, int (0 to 2^63), float (to LONGEST), or one or None."""
     if kind is str or isinstance(value, str):
         return kind is str and isinstance(value, str)
     if kind is bool or isinstance(value, bool):
         return kind is bool and isinstance(value, bool)
     if kind is int:
-        return isinstance(value, int) and value >= 0
+        return isinstance(value, int) and 0 <= value < 2**63
     if value is None:
         return kind is not float
-    return isinstance(value, int | float) and math.isfinite(value)
+    return isinstance(value, int | float) and abs(value) <= LONGEST

@@ -58,8 +58,9 @@ class LogWriter:
     """A log that is being written; a context manager that closes it as interrupted unless `close` is called first.
 
     Data are stored in the order of the calls, and committed every 2¹⁸ rows or every second. Committed data survive a
-    kill of the process, and with `fsync` a power failure. A failure to store data (a full disk, a removed file) raises
-    OutputError with exit code 1 in the next call; what was committed before remains readable.
+    kill of the process, and with `fsync` a power failure that leaves no block of the disk half written. A failure to
+    store data (a full disk, a removed file) raises OutputError with exit code 1 in the next call; what was committed
+    before remains readable.
 
     Attributes:
         path: path of the log.

@@ -202,4 +202,4 @@ class Log(Table):
     )
     checkpoint_every: Whole = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
     snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")
-    fsync: bool = Field(default=False, description="whether flushed data survive a power failure")
+    fsync: bool = Field(default=False, description="whether commits wait until they are on the disk")

@@ -12,6 +12,7 @@ from helpers.log_fuzz import headers, texts, values
 from helpers.log_fuzz.commands import NAME, SLOW, Form, forms, reading_commands
 from helpers.log_fuzz.editor import SOUND, Editor, Effect, broken, edited
 from helpers.log_fuzz.judge import fault
+from helpers.log_fuzz.texts import rewrite, texts_in
 
 CASES, CASES_IN_CI = 1000, 200
 FAMILIES, SHARES = (values, headers, texts), (0.6, 0.2, 0.2)
@@ -122,6 +123,17 @@ def no_rows(table: str) -> Edit:
     return lambda editor: editor.rows.update({table: 0})
 
 
+def said(field: str, value: bytes) -> Edit:
+    """Another value in the summary."""
+
+    def edit(editor: Editor) -> None:
+        values = texts_in(editor, "summary/value")
+        values[texts_in(editor, "summary/name").index(field.encode())] = value
+        rewrite(editor, "summary/value", values)
+
+    return edit
+
+
 def no_attribute(name: str) -> Edit:
     return lambda editor: editor.file.attrs.__delitem__(name)
 
@@ -140,6 +152,21 @@ FOUND = {
     "no samples": ("killed", "resume", no_rows("observables")),
     "a huge energy from a wall": ("thermal", "evolution", one("observables/wall_energy/value", -1.7e308)),
     "a huge sum": ("thermal", "resume", one("checkpoints/wall_energy_sum", 2**62)),
+    "a run that took no time": ("plain", "follow", said("seconds", b"0.0")),
+    "a sum of 2^63": ("thermal", "resume", one("checkpoints/wall_hits", 2**63 - 1)),
+    "a sum of -2^63": ("thermal", "resume", one("checkpoints/disc_collisions", -(2**63))),
+    **{
+        f"{what}, {command}": (log, command, edit)
+        for what, log, edit in (
+            ("a late end", "plain", said("end_time", b"1e149")),
+            ("an end of 200 digits", "plain", said("end_time", b"9" * 200)),
+            ("no room", "effects", filled("observables/piston_position/value", 0.0)),
+            ("late samples", "effects", one("observables/kinetic_energy/time", 1e150)),
+            ("slow discs", "plain", filled("discs/velocity", 1e-100)),
+            ("slow discs as soon as they meet", "plain", times("events/velocity", 2.0**-300)),
+        )
+        for command in ("evolution", "pressure", "transport", "profile", "report", "follow")
+    },
     "no time passes": ("thermal", "histogram", filled("observables/kinetic_energy/time", -0.0)),
 }
 

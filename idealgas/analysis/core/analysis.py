@@ -9,7 +9,8 @@ condition that a number needs and that is not met is a sentence in `caveats` of 
 JSON show.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
 from functools import wraps
 from inspect import signature
@@ -180,7 +181,8 @@ class Analysis:
             differ = f"discs of one species that differ in radius or mass ({', '.join(unlike)})"
             raise NotApplicableError(f"{log.path}: not applicable to {differ}; `disc.species` gives them several")
         values = {name: option.default for name, option in known.items()} | options
-        found = cls.measure(log, start=start, end=end, progress=progress, **values)
+        with _arithmetic(f"{log.path}: {cls.key}"):
+            found = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow = caveats.of_window(found.window) if hasattr(found, "window") else ()
         origin = caveats.origin_of(log.scene, str(log.path))
         return replace(found, caveats=(*caveats.of_log(log), *slow, *found.caveats), origin=origin, title=origin.title)
@@ -249,3 +251,17 @@ class Analysis:
         from idealgas.analysis.core.style import add_title
 
         return add_title(cls.figure(combined), f"{combined.title}: {cls.key}")
+
+
+@contextmanager
+def _arithmetic(what: str) -> Iterator[None]:
+    """Raise UserError where arithmetic fails: a log may have numbers that no run makes, and no result then."""
+    import numpy as np
+
+    from idealgas.jit import INTERPRETED
+
+    try:
+        with np.errstate() if INTERPRETED else np.errstate(divide="raise", over="raise", invalid="raise"):
+            yield
+    except (ArithmeticError, ValueError) as error:
+        raise UserError(f"{what}: cannot be computed from these numbers: {error}") from error

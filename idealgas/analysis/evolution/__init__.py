@@ -5,6 +5,7 @@ equilibrium for isolated gases, gases under gravity and heat baths. The pressure
 With a piston the picture has the pressure against the area, with the isotherm and the adiabat through the start.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 INSTANTS = 257
 """Number of instants of the series."""
 
+MOST_SAMPLES = 2**14
+"""Largest number of samples of the energy."""
+
 PISTON, HEAT_BATH = "piston", "the heat bath"
 """Names of the side with the piston and of a heat bath among the sources of energy."""
 
@@ -44,7 +48,7 @@ Series = dict[str, np.ndarray]
 
 @dataclass(frozen=True)
 class Evolution(Result):
-    """Evolution of a gas, at F evenly spaced times and at the P times of the samples stored during the run.
+    """Evolution of a gas, at F evenly spaced times and at the P times of samples stored during the run.
 
     Attributes:
         time: (F,), times.
@@ -54,7 +58,7 @@ class Evolution(Result):
         spread: fractions in equilibrium without walls inside, by species; their error is the standard deviation of a
             binomial distribution.
         law: theory of the temperature at these times; None without one.
-        samples: (P,), times of the samples.
+        samples: (P,), times of the samples; of more than MOST_SAMPLES, evenly chosen ones.
         parts: parts of the energy, (P,), by name.
         given: energy from each wall, the piston (its work) and a heat bath since the start, (P,), by name.
         piston: (P,), its coordinate, length; None without one.
@@ -130,12 +134,13 @@ class EvolutionAnalysis(Analysis):
             UserError: if the log does not cover the times or has no samples of the energy.
         """
         first, last = span(log, start, end)
-        samples = log.observables["kinetic_energy"][0]
+        observables = log.observables.thinned(MOST_SAMPLES)
+        samples = observables["kinetic_energy"][0]
         if not len(samples):
             raise UserError(f"{log.path}: no samples of the energy")
         inside = (samples >= first) & (samples <= last)
-        frames = _frames(log, first, last, progress) if log.has_events else _samples(log, inside)
-        observed = {name: values for name, (_, values) in log.observables.items()}
+        frames = _frames(log, first, last, progress) if log.has_events else _samples(log, observables, inside)
+        observed = {name: values for name, (_, values) in observables.items()}
         *energies, balance = _account(log, observed)
         parts, given, lost = ({name: values[inside] for name, values in part.items()} for part in energies)
         law = expected_law(log, frames[0])
@@ -275,12 +280,12 @@ def _source_label(name: str) -> str:
 Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series]  # the first four series of an Evolution
 
 
-def _samples(log: Log, inside: np.ndarray) -> Frames:
+def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]], inside: np.ndarray) -> Frames:
     """Evolution from the samples stored during the run, for a log without events."""
-    time, kinetic = log.observables["kinetic_energy"]
+    time, kinetic = observables["kinetic_energy"]
     n, spin = len(log.discs), None
-    if "rotational_energy" in log.observables:
-        spin = 2 * log.observables["rotational_energy"][1][inside] / n
+    if "rotational_energy" in observables:
+        spin = 2 * observables["rotational_energy"][1][inside] / n
     return time[inside], (kinetic - centre_of_mass_energy(log))[inside] / n, spin, {}
 
 

@@ -60,7 +60,10 @@ class Commit(NamedTuple):
     def read(cls, file: h5py.File) -> Self:
         """Newest complete record. Raises ValueError if neither slot is complete."""
         stored = StoredColumn(file, DATASET)
-        paths = [path.decode() for path in file[DATASET].attrs["datasets"].tolist()]
+        names = np.asarray(file[DATASET].attrs["datasets"])
+        if names.ndim != 1 or names.dtype.kind != "S":
+            raise ValueError(f"{DATASET}: attribute datasets: not a list of texts")
+        paths = [path.decode() for path in names.tolist()]
         tables = list(dict.fromkeys(map(table_of, paths)))
         width = 2 + len(tables) + len(paths) + 1
         if (stored.dtype, stored.shape, stored.chunk) != (np.dtype("u8"), (2, width), (1, width)):

@@ -9,13 +9,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from helpers.crafted import craft, link, put, read_path, refused, seal, swap
+from helpers.crafted import craft, link, opened, put, read_path, refused, seal, swap
 from helpers.log_samples import write_log
 from isal import isal_zlib
 
-from idealgas.log import LogError, LogWriter, open_log, recover
+from idealgas.log import DamageError, LogError, LogWriter, open_log, recover
 from idealgas.log.hdf5.commit import Commit
 from idealgas.log.hdf5.superblock import lookup3
+from idealgas.log.recovery import open_after
 
 STOP = 300
 
@@ -110,6 +111,55 @@ def test_structure(path, case):
     message = refused(path)
     assert message.startswith(("damaged: ", "has format"))
     assert re.search(expected, message), message
+
+
+@pytest.mark.parametrize(
+    "names", [5, np.bytes_(b"events/time"), np.arange(3), np.array([[b"a"]]), h5py.Empty("S8"), "text"], ids=repr
+)
+def test_a_record_without_a_list_of_datasets(path, names):
+    with opened(path) as file:
+        file["commit"].attrs.create("datasets", names)
+    assert "commit: attribute datasets: not a list of texts" in refused(path)
+
+
+def test_damage_that_hdf5_finds_as_it_closes(path):
+    """In the header of the heap of a group's links, whose checksum is made right."""
+    data = bytearray(path.read_bytes())
+    first = data.index(b"FRHP")
+    end = next(
+        k for k in range(first + 60, len(data)) if lookup3(data[first:k]) == int.from_bytes(data[k : k + 4], "little")
+    )
+    data[first + 24] ^= 255
+    data[end : end + 4] = lookup3(data[first:end]).to_bytes(4, "little")
+    path.write_bytes(data)
+    assert refused(path)
+
+
+def test_damage_is_no_failure_to_write(path):
+    """Damage that is found only once the log is opened for appending, as it was sound when it was read."""
+    with open_log(path) as log:
+        rows, data, found = log.commit.rows, path.read_bytes(), 0
+    for place in range(0, 20_000, 97):
+        path.write_bytes(data[:place] + bytes([data[place] ^ 255]) + data[place + 1 :])
+        try:
+            open_after(path, rows)[0].close()
+        except DamageError:
+            found += 1
+    assert found >= 20
+
+
+def test_a_block_half_written(path):
+    """The second half of a block of an index is that of before, as after a power failure."""
+    data = path.read_bytes()
+    blocks = [found.start() for found in re.finditer(b"EA[HI][DB]|FA[HD][DB]|OHDR", data)]
+    lines = []
+    for place in blocks:
+        path.write_bytes(data[: place + 16] + bytes(8) + data[place + 24 :])
+        try:
+            read_path(path)
+        except LogError as error:
+            lines.append(str(error))
+    assert sum("checksum of an HDF5 block does not match (half written in" in line for line in lines) > 10
 
 
 def test_a_chunk_beyond_the_end_of_the_file(path):

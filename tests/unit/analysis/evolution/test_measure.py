@@ -2,12 +2,17 @@
 
 import json
 import math
+import shutil
+import tracemalloc
 
 import numpy as np
 import pytest
+from helpers.crafted import craft
 
-from idealgas import evolution
+from idealgas import evolution, open_log
+from idealgas.analysis.evolution import MOST_SAMPLES
 from idealgas.errors import UserError
+from idealgas.log.hdf5.commit import Commit
 
 GAS = """
 scene.seed = 3
@@ -37,6 +42,31 @@ def test_without_events_it_has_the_samples(make):
     assert found.temperature == pytest.approx(found.parts["motion"] / 40)
     assert np.abs(found.balance).max() < 1e-12
     assert found.spin == pytest.approx(found.parts["spin"] * 2 / 40)
+
+
+def test_of_very_many_samples_some_are_read(make, tmp_path):
+    """A small log may have millions of equal samples, as they are compressed; all at once would need much memory."""
+    path, number = shutil.copyfile(make("box.left={thermal=1.5}").path, tmp_path / "many.h5"), 16 * MOST_SAMPLES + 1
+
+    def multiply(file):
+        for name in (name for name in Commit.read(file).tails if name.startswith("observables/")):
+            column = file[name]
+            last = {"time": np.linspace(0, 20, number), "step": np.arange(number)}.get(name.split("/")[-1], column[0])
+            column.resize(number, axis=0)
+            column[:] = last
+
+    craft(path, multiply, {"observables": number})
+    with open_log(path) as log:
+        tracemalloc.start()
+        try:
+            found = evolution(log)
+            _, most = tracemalloc.get_traced_memory()
+        finally:
+            tracemalloc.stop()
+        assert len(log.observables["energy"][1]) == number
+    assert found.samples.tolist() == np.linspace(0, 20, number)[::17].tolist()
+    assert (found.parts["motion"] == found.parts["motion"][0]).all()
+    assert most < 60e6  # all of them are 100 MB
 
 
 def test_a_gate_counts_who_is_beyond(make):

@@ -1,0 +1,141 @@
+"""Pages of the site that are made from other files: READMEs, the gallery, and the reference of the analyses.
+
+As a script it makes the pictures of the gallery that are missing, by running the example scenes, in some minutes.
+"""
+
+import os
+import posixpath
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Iterator
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+PICTURES = Path(os.environ.get("GALLERY", ROOT / "build" / "gallery"))
+"""Folder of the pictures of the gallery."""
+
+PAGES = {
+    "README.md": "index.md",
+    "configs/README.md": "scenes.md",
+    "idealgas/log/README.md": "log.md",
+    "idealgas/engine/README.md": "engine.md",
+    "idealgas/accuracy/README.md": "accuracy.md",
+    "idealgas/sweep/README.md": "sweep.md",
+    "tests/README.md": "tests.md",
+    ".github/CONTRIBUTING.md": "contributing.md",
+    ".github/CHANGELOG.md": "changes.md",
+    **{
+        path.relative_to(ROOT).as_posix(): f"analyses/{path.name.replace('README', 'index')}"
+        for path in (ROOT / "idealgas" / "analysis").glob("*.md")
+    },
+}
+"""Pages of the site, by files of the repository."""
+
+LINK = re.compile(r"(\[[^]]*\])\(([^):#]+)(#[^)]*)?\)")
+SCENES = [path for path in sorted((ROOT / "configs").glob("*.toml")) if path.stem != "template"]
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Add the pages and their pictures to the site."""
+    from mkdocs.structure.files import File
+
+    made = {page: _linked(source, config.repo_url) for source, page in PAGES.items()}
+    for page, text in (made | {"gallery.md": _gallery()}).items():
+        files.append(File.generated(config, page, content=text))
+    for folder, name in ((ROOT / ".readme", "pictures"), (PICTURES, "gallery")):
+        for path in sorted(folder.glob("*")):
+            files.append(File.generated(config, f"{name}/{path.name}", abs_src_path=str(path)))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
+    """Insert the analyses into the reference."""
+    return markdown.replace("<!-- analyses -->", "\n".join(_analyses()))
+
+
+def _linked(source: str, repository: str) -> str:
+    """Text of a page with its links: to pages of the site, to pictures, or to other files in the repository."""
+
+    def link(found: re.Match[str]) -> str:
+        target = posixpath.normpath(posixpath.join(posixpath.dirname(source), found[2]))
+        place = PAGES.get(target, target.replace(".readme/", "pictures/"))
+        if place != target:
+            path = posixpath.relpath(place, posixpath.dirname(PAGES[source]) or ".")
+        elif (ROOT / target).exists():
+            path = f"{repository}/{'tree' if (ROOT / target).is_dir() else 'blob'}/main/{target}"
+        else:
+            return found[0]
+        return f"{found[1]}({path}{found[3] or ''})"
+
+    return LINK.sub(link, (ROOT / source).read_text(encoding="utf-8"))
+
+
+def _gallery() -> str:
+    """Page with every example scene: its picture, its description and its commands."""
+    parts = ["# Gallery", "The example scenes, with the discs at the end of the run, coloured by speed."]
+    for path in SCENES:
+        name, about = path.stem, tomllib.loads(path.read_text(encoding="utf-8"))["scene"]
+        commands = (
+            f"idealgas examples {name}",
+            f"idealgas run {name}.toml -o {name}.h5",
+            f"idealgas report {name}.h5 -o {name}.html",
+        )
+        parts += [f"## {about['title']}", f"![{about['title']}](gallery/{name}.png)", about["description"].strip()]
+        parts.append("\n".join(("```bash", *commands, "```")))
+    return "\n\n".join(parts) + "\n"
+
+
+def _analyses() -> Iterator[str]:
+    """Lines of the reference for each analysis: its function, and its results with the keys of their JSON."""
+    from idealgas.analysis import registry
+
+    for analysis in registry.analyses():
+        yield f"\n### {analysis.key}\n"
+        yield f"::: {analysis.measure.__module__}.{analysis.measure.__qualname__}\n    options: {{heading_level: 4}}\n"
+        for result in analysis.results:
+            yield f"::: {result.__module__}.{result.__qualname__}\n    options: {{heading_level: 4, members: false}}\n"
+            yield f"Keys of its JSON: {', '.join(f'`{key}`' for key in _keys(result))}.\n"
+
+
+def _keys(result: type) -> Iterator[str]:
+    """Keys of the plain values of a result, except those that a field adds by its own values."""
+    from idealgas.analysis.core.fields import INLINE, OMITTED, Key
+
+    for field in fields(result):
+        marks = getattr(field.type, "__metadata__", ())
+        if not {INLINE, OMITTED} & {mark for mark in marks if not isinstance(mark, Key)}:
+            yield next((mark.name for mark in marks if isinstance(mark, Key)), field.name)
+
+
+def make_pictures() -> None:
+    """Run the example scenes and draw each at its end; without positions the distribution of its speeds."""
+    from idealgas.log import open_log
+
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for path in SCENES:
+        picture = PICTURES / f"{path.stem}.png"
+        if picture.exists():
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            log_path = str(Path(folder, "run.h5"))
+            _idealgas("run", str(path), "-o", log_path, "-q")
+            with open_log(log_path) as log:
+                end, has_positions = log.end_time, log.has_positions and log.has_events
+            if has_positions:
+                _idealgas("animate", log_path, "--frame", repr(end), "--size", "800x450", "-o", str(picture), "-q")
+            else:
+                _idealgas("histogram", log_path, "--plot", str(picture), "-q")
+        print(picture)
+
+
+def _idealgas(*arguments: str) -> None:
+    subprocess.run([sys.executable, "-m", "idealgas", *arguments], check=True)
+
+
+if __name__ == "__main__":
+    make_pictures()
