@@ -91,7 +91,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
             for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
         ],
         "walls": [
-            {"name": w.name, "from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
+            {"name": w.name, "from": w.start, "to": w.end, "absent": np.minimum(w.absences, 2 * last + 1).tolist()}
             for w in walls_inside(log.scene)
         ],
         "piston": _piston(log, first, last),
@@ -111,7 +111,7 @@ def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
     return {
         "axis": track.axis,
         "outward": track.outward,
-        "pull": track.pull,
+        "pull": float(track.pull[0]),
         "limits": track.limits,
         "ends": [track.at(first), track.at(last)],
     }

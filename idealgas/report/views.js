@@ -81,8 +81,7 @@ class DiscView {
     pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
     pen.lineWidth = 2;
     for (const wall of head.walls) {
-      const [opens, closes] = wall.absent;
-      const open = opens !== null && gas.time >= opens && (closes === null || gas.time < closes);
+      const open = wall.absent.some(([opens, closes]) => gas.time >= opens && gas.time < closes);
       pen.strokeStyle = open ? theme.soft : theme.ink;
       pen.lineWidth = open ? 1 : 2;
       pen.setLineDash(open ? [1, 5] : []);

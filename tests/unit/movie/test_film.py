@@ -71,8 +71,8 @@ def test_box_and_speeds_are_in_the_frame_and_apart(size, box):
 
 def test_the_room_beyond_a_piston_is_shown_in_part():
     place = np.array([4.0, 5.0])
-    right = PistonTrack(0, place, place, 0.0, (0.0, 40.0), 1.0)
-    left = PistonTrack(0, place, 40 - place, 0.0, (0.0, 40.0), -1.0)
+    right = PistonTrack(0, place, place, 0 * place, (0.0, 40.0), 1.0)
+    left = PistonTrack(0, place, 40 - place, 0 * place, (0.0, 40.0), -1.0)
     assert view((40.0, 10.0), right) == ((0.0, 6.25), (0.0, 10.0))
     assert view((40.0, 10.0), left) == ((33.75, 40.0), (0.0, 10.0))
     assert view((40.0, 10.0), None) == ((0.0, 40.0), (0.0, 10.0))
@@ -112,7 +112,7 @@ def test_a_gate_is_there_until_it_opens():
 
 
 def test_the_piston_is_drawn():
-    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), 0.0, (0.0, 10.0), 1.0)
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), np.zeros(2), (0.0, 10.0), 1.0)
     red, green, blue = paint(piston=track)[1](6.5, 5)
     assert red > 150 > green > blue
     assert paint(piston=track)[1](6.2, 5).min() > WHITE
