@@ -36,6 +36,8 @@ class DiscView {
     this.chosen = null; // number of the disc whose flight is shown
   }
 
+  show(gas) { this.gas = gas; }
+
   // The disc below a pointer.
   discAt(event) {
     const box = this.canvas.getBoundingClientRect();
@@ -175,9 +177,14 @@ class DiscView {
 class SpeedView {
   constructor(canvas, gas) {
     this.canvas = canvas;
-    this.gas = gas;
     this.counts = new Float64Array(40);
-    this.top = 1.8 * Math.max(...this.law(this.temperature())) || 1;
+    this.show(gas);
+  }
+
+  show(gas) {
+    const rescaled = gas.head.fastest !== this.gas?.head.fastest;
+    this.gas = gas;
+    if (rescaled) this.top = 1.8 * Math.max(...this.law(this.temperature())) || 1;
   }
 
   temperature() {
