@@ -11,7 +11,7 @@ from idealgas.analysis import registry
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
-from ._options import force_option, json_option, plot_option, quiet_option
+from ._options import FILE, force_option, json_option, plot_option, quiet_option
 from ._progress import progress_bar
 from ._tables import print_tables
 from ._terminal import data, echo, written
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def log_argument(command: Callable) -> Callable:
     """Add the argument `RUN.h5`, the path of a log, as `path`."""
-    return click.argument("path", metavar="RUN.h5")(command)
+    return click.argument("path", type=FILE, metavar="RUN.h5")(command)
 
 
 def open_log(path: str) -> "Log":
@@ -83,9 +83,9 @@ def _parameters(analysis: "type[Analysis]") -> list[click.Parameter]:
 
 def _logs(analysis: "type[Analysis]") -> Callable:
     if analysis.combine is None:
-        return click.argument("paths", metavar="RUN.h5", callback=lambda _, __, path: (path,))
+        return click.argument("paths", type=FILE, metavar="RUN.h5", callback=lambda _, __, path: (path,))
     metavar = "RUN.h5|DIR..." if analysis.restore else "RUN.h5..."
-    return click.argument("paths", metavar=metavar, nargs=-1, required=True)
+    return click.argument("paths", type=FILE, metavar=metavar, nargs=-1, required=True)
 
 
 def _option(option: "Option") -> Callable:

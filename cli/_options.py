@@ -4,13 +4,28 @@ from collections.abc import Callable
 from contextlib import suppress
 
 import click
+from click.shell_completion import CompletionItem
 
 from idealgas.errors import UserError
 from idealgas.system import STDIN
 
+from ._scenes import keys
 from ._terminal import be_quiet
 
 FIGURE_ENDINGS = (".png", ".pdf", ".svg")
+
+
+class _File(click.ParamType):
+    """A path, which shells complete, and which commands check themselves."""
+
+    name = "file"
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """Let the shell complete the path."""
+        return [CompletionItem(incomplete, type="file")]
+
+
+FILE = _File()
 
 
 def integer(text: str) -> int:
@@ -27,10 +42,18 @@ def scene_argument(command: Callable) -> Callable:
     """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, for `load_scene`; - is stdin."""
     overrides = click.option(
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
+        shell_complete=_complete_key,
         help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
     )  # fmt: skip
-    path = click.argument("path", metavar="SCENE.toml", callback=lambda _, __, path: STDIN if path == "-" else path)
+    path = click.argument(
+        "path", type=FILE, metavar="SCENE.toml", callback=lambda _, __, path: STDIN if path == "-" else path
+    )
     return path(overrides(command))
+
+
+def _complete_key(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Keys of scenes that begin with a text."""
+    return [CompletionItem(f"{key}=", help=text) for key, text in keys().items() if key.startswith(incomplete)]
 
 
 force_option = click.option("--force", is_flag=True, help="Overwrite existing output of the same command.")
@@ -50,5 +73,5 @@ def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> s
 
 
 plot_option = click.option(
-    "--plot", metavar="FILE.png", callback=_check_ending, help="Write a figure (.png, .pdf or .svg)."
+    "--plot", type=FILE, metavar="FILE.png", callback=_check_ending, help="Write a figure (.png, .pdf or .svg)."
 )

@@ -18,7 +18,13 @@ if TYPE_CHECKING:
     from idealgas.run.simulate import Progress
 
 
-def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bool, from_start: bool = True) -> None:
+def run_with_progress(
+    simulate: "Callable[..., Summary]",
+    path: str,
+    as_json: bool,
+    from_start: bool = True,
+    on_start: Callable[[], None] = lambda: None,
+) -> None:
     """Call `simulate` with a progress bar, stop it at Ctrl-C, and print the summary of its log.
 
     Args:
@@ -26,6 +32,7 @@ def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bo
         path: path of the log.
         as_json: whether to print JSON.
         from_start: whether this run wrote all events of the log.
+        on_start: called when the first events are in the log.
     """
     from ._interrupt import EXIT_CODE, ctrl_c
 
@@ -38,6 +45,7 @@ def run_with_progress(simulate: "Callable[..., Summary]", path: str, as_json: bo
             def on_progress(progress: "Progress") -> None:
                 if not first:
                     first.append(progress.events)
+                    on_start()
                 rate = (progress.events - first[0]) / (time.perf_counter() - started)
                 doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}"
                 show(progress.share, description=doing, notice=progress.notice)

@@ -1,5 +1,7 @@
 """The example scenes that are installed with the program."""
 
+import json
+import re
 import tomllib
 from importlib import import_module
 from pathlib import Path
@@ -39,9 +41,21 @@ def names() -> list[str]:
     return [path.stem for path in paths()]
 
 
-def title(name: str) -> str:
-    """Title of a scene."""
-    return tomllib.loads((_folder() / f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]["title"]
+def keys() -> dict[str, str]:
+    """Description of every key of a scene, by its name for `--set`."""
+    schema = json.loads(path_of(SCHEMA).read_text(encoding="utf-8"))
+    found: dict[str, str] = {}
+    for table, entry in schema["properties"].items():
+        (kind,) = re.findall(r"#/\$defs/(\w+)", json.dumps(entry))
+        found |= {f"{table}.{key}": one["description"] for key, one in schema["$defs"][kind]["properties"].items()}
+    return found
+
+
+def shown_by(name: str) -> str:
+    """What a scene shows, the first sentence of its description; its title if it has none."""
+    scene = tomllib.loads((_folder() / f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]
+    text = " ".join(scene.get("description", scene["title"]).split())
+    return re.split(r"(?<=\.) ", text, maxsplit=1)[0]
 
 
 def copy_scene(name: str, path: Path, force: bool) -> None:

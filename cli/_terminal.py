@@ -22,19 +22,20 @@ UNBOUNDED = 100_000
 _QUIET = "idealgas_cli.quiet"
 
 
-def be_quiet(ctx: click.Context, _: click.Parameter, quiet: bool) -> None:
+def be_quiet(ctx: click.Context, _: click.Parameter, value: bool) -> None:
     """Make a command print only errors, warnings and data that an option requests."""
-    ctx.meta[_QUIET] = quiet
+    ctx.meta[_QUIET] = value
 
 
-def _quiet() -> bool:
+def quiet() -> bool:
+    """Whether the command prints only errors, warnings and data."""
     ctx = click.get_current_context(silent=True)
     return ctx is not None and ctx.meta.get(_QUIET, False)
 
 
 def echo(text: object, err: bool = False) -> None:
     """Print a line, unless the command is quiet; err: to stderr, always."""
-    if err or not _quiet():
+    if err or not quiet():
         click.echo(plain(str(text)), err=err)
 
 
@@ -45,7 +46,7 @@ def data(text: str, nl: bool = True) -> None:
 
 def written(path: object, err: bool = False) -> None:
     """Print that a file was written; err: to stderr, because stdout holds data."""
-    if not _quiet():
+    if not quiet():
         echo(f"{path}: written", err=err)
 
 
@@ -61,7 +62,7 @@ def terminal(err: bool = False) -> "Console":
         def on_broken_pipe(self) -> NoReturn:
             raise BrokenPipeError
 
-    console = Plain(stderr=err, markup=False, emoji=False, quiet=_quiet())
+    console = Plain(stderr=err, markup=False, emoji=False, quiet=quiet())
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = UNBOUNDED
     return console

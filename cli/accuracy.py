@@ -5,11 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from idealgas.errors import UserError
+
 from ._analysis import print_json
-from ._options import force_option, json_option, quiet_option, scene_argument
+from ._options import FILE, force_option, json_option, quiet_option, scene_argument
 from ._progress import progress_bar
 from ._tables import print_tables, shown
-from ._terminal import echo, written
+from ._terminal import echo, quiet, written
 
 if TYPE_CHECKING:
     from idealgas.accuracy.orbit import OrbitStudy, Survival
@@ -18,7 +20,9 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Example: idealgas accuracy gas.toml -o accuracy")
 @scene_argument
-@click.option("-o", "--output", metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and figures (PNG).")
+@click.option(
+    "-o", "--output", type=FILE, metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and figures (PNG)."
+)
 @click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
 @force_option
 @json_option
@@ -38,6 +42,8 @@ def accuracy(
     from idealgas.initial.build import make_gas
     from idealgas.scene import load_scene
 
+    if quiet() and output is None and not as_json:
+        raise UserError("-q: neither -o nor --json, so that nothing would be left of the result")
     scene = load_scene(path, overrides)
     gas = make_gas(scene)
     on_orbit = not scene.effects and is_on_orbit(gas)

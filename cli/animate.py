@@ -1,18 +1,19 @@
 """Command `idealgas animate`: film of a log."""
 
 import re
-from pathlib import Path
 from typing import Any
 
 import click
 
 from ._analysis import log_argument, open_log
-from ._options import force_option, quiet_option
+from ._options import FILE, force_option, quiet_option
 from ._progress import progress_bar
 from ._terminal import echo
 
 
-def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
+def _pixels(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
     match = re.fullmatch(r"(\d+)x(\d+)", text)
     if not match or not all(240 <= int(side) <= 8192 for side in match.groups()):
         raise click.BadParameter(f"not WIDTHxHEIGHT in pixels, 240 to 8192 each (got {text!r})")
@@ -22,7 +23,12 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
 @click.command(epilog="Example: idealgas animate gas.h5 -o gas.mp4 --to 10")
 @log_argument
 @click.option(
-    "-o", "--output", required=True, metavar="FILM.mp4", help="The film to write, .mp4 or .gif; .png with --frame."
+    "-o",
+    "--output",
+    type=FILE,
+    required=True,
+    metavar="FILM.mp4",
+    help="The film to write, .mp4 or .gif; .png with --frame.",
 )
 @click.option(
     "--from", "start", type=float, metavar="T", help="Start of the film, in simulated time.  [default: the log's start]"
@@ -38,12 +44,22 @@ def _pixels(_context: click.Context, _parameter: click.Parameter, text: str) -> 
     help="Simulated time per second of film.  [default: a disc crosses the box in 5 s]",
 )  # fmt: skip
 @click.option(
-    "--size", default="960x540", show_default=True, callback=_pixels, help="Width and height of a frame, pixels."
+    "--size",
+    callback=_pixels,
+    metavar="WIDTHxHEIGHT",
+    help="Size of a frame, pixels.  [default: 960x540, 720x720 or 540x960, by the shape of the box]",
 )
 @click.option(
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species", "order"]),
     help="What the colour of a disc shows; order: the angle of ψ₆ of its neighbours.",
 )  # fmt: skip
+@click.option(
+    "--panel", default="speeds", show_default=True, type=click.Choice(["speeds", "density", "left-right", "none"]),
+    help="What is shown beside the discs; left-right: the fraction of discs right of the first gate or the middle.",
+)  # fmt: skip
+@click.option(
+    "--trail", "trails", type=click.IntRange(0), multiple=True, metavar="DISC", help="Draw the path of a disc (its id)."
+)
 @click.option(
     "--background", default="light", show_default=True, type=click.Choice(["light", "dark"]), help="Background."
 )
@@ -57,20 +73,23 @@ def animate(
     end: float | None,
     fps: float,
     speed: float | None,
-    size: tuple[int, int],
+    size: tuple[int, int] | None,
     colour: str,
+    panel: str,
+    trails: tuple[int, ...],
     background: str,
     frame: float | None,
     force: bool,
 ) -> None:
     """Make a film of a log: the discs at their exact positions, next to the distribution of their speeds.
 
-    MP4 requires ffmpeg; without it, a GIF is written.
+    MP4 needs ffmpeg, of the system or by pip install 'idealgas-md[film]'; GIF needs nothing.
     """
     from idealgas.movie.film import animate as make
     from idealgas.movie.film import paint_frame
 
-    look: dict[str, Any] = {"size": size, "colouring": colour, "dark": background == "dark", "force": force}
+    look: dict[str, Any] = {"size": size, "colouring": colour, "panel": panel, "trails": trails, "force": force}
+    look["dark"] = background == "dark"
     if frame is not None:
         with open_log(path) as log:
             echo(f"{paint_frame(log, output, frame, **look)}: t = {frame:.6g}")
@@ -86,6 +105,5 @@ def animate(
             **look,
             on_frame=progress,
         )
-    instead = "" if film.path == Path(output) else f" instead of {output}, because ffmpeg was not found"
     window = f"t = {film.start:.6g} to {film.end:.6g}"
-    echo(f"{film.path}{instead}: {film.frames} frames, {window}, {film.fps:g} frames per second")
+    echo(f"{film.path}: {film.frames} frames, {window}, {film.fps:g} frames per second")

@@ -6,12 +6,13 @@ import click
 
 from idealgas.errors import UserError, unknown
 
+from ._options import FILE
 from ._scenes import DIGESTS, names, path_of
 from ._terminal import data
 
 
 @click.command(epilog="Example: idealgas digest gas.h5")
-@click.argument("arguments", nargs=-1, metavar="RUN.h5 | --check [SCENE...]")
+@click.argument("arguments", type=FILE, nargs=-1, metavar="RUN.h5 | --check [SCENE...]")
 @click.option("--check", is_flag=True, help="Run example scenes (all by default) and compare with digests.json.")
 @click.pass_context
 def digest(context: click.Context, arguments: tuple[str, ...], check: bool) -> None:

@@ -5,16 +5,18 @@ from pathlib import Path
 
 import click
 
+from idealgas.errors import UserError
+
 from ._analysis import log_argument, open_log
-from ._options import force_option, quiet_option
+from ._options import FILE, force_option, quiet_option
 from ._terminal import echo
 
 KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
 
-@click.command(epilog="Example: idealgas export gas.h5 --format extxyz --frames 100 -o gas.extxyz")
+@click.command(epilog="Example: idealgas export gas.h5 --frames 100 -o gas.extxyz")
 @log_argument
-@click.option("--format", "kind", type=click.Choice(KINDS), required=True, help="Format of the file.")
+@click.option("--format", "kind", type=click.Choice(KINDS), help="Format of the file.  [default: by the ending of OUT]")
 @click.option("--events", is_flag=True, help="Write all events (csv, parquet).")
 @click.option(
     "--frames",
@@ -24,12 +26,13 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 @click.option(
     "-o",
     "--output",
+    type=FILE,
     metavar="OUT",
     help="The file to write; - for standard output (csv, extxyz).  [default: RUN with the format's ending]",
 )
 @force_option
 @quiet_option
-def export(path: str, kind: str, events: bool, frames: str | None, output: str | None, force: bool) -> None:
+def export(path: str, kind: str | None, events: bool, frames: str | None, output: str | None, force: bool) -> None:
     """Write the events of a log, or frames of all discs, to a file for other programs.
 
     gsd (HOOMD, OVITO) keeps positions as float32; extxyz (OVITO, ASE) and csv keep every digit; h5md3d (MDAnalysis) is
@@ -40,8 +43,20 @@ def export(path: str, kind: str, events: bool, frames: str | None, output: str |
     from idealgas.log.export.export import FORMATS, frame_times
     from idealgas.log.export.export import export as write
 
+    kind = kind or _kind_of(output)
     with open_log(path) as log:
         times = None if frames is None else frame_times(log, frames).tolist()
         target = output or str(Path(path).with_suffix(FORMATS[kind].ending))
         number = write(log, kind, sys.stdout.buffer if target == "-" else target, times, force)
     echo(f"{target}: {number:,} {'event rows' if events else 'frames'}", err=target == "-")
+
+
+def _kind_of(output: str | None) -> str:
+    """Format of a file by its ending."""
+    from idealgas.log.export.export import FORMATS
+
+    ending = Path(output or "").suffix.lower()
+    kind = next((kind for kind, made in FORMATS.items() if made.ending == ending), None)
+    if kind is None:
+        raise UserError(f"--format: missing (allowed {', '.join(KINDS)}), or an OUT with the ending of one")
+    return kind

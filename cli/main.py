@@ -9,6 +9,8 @@ import io
 import logging
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
@@ -24,7 +26,7 @@ from ._terminal import echo, exit_on_closed_pipe
 
 GROUPS = {
     "Run": ("new", "examples", "schema", "check", "run", "resume", "scene", "recover", "warm-up"),
-    "Look": ("info", "digest", "follow", "animate"),
+    "Look": ("info", "digest", "follow", "watch", "animate"),
     "Analyse": tuple(sorted(registry.commands(), key=registry.position_of)),
     "Share": ("report", "export", "events"),
     "Study": ("sweep", "accuracy", "bench"),
@@ -86,14 +88,14 @@ class Commands(click.Group):
 
     def make_context(self, *args: Any, **options: Any) -> click.Context:
         """Parse the command line, and print help if requested."""
-        with exit_on_closed_pipe():
+        with _usage_errors(), exit_on_closed_pipe():
             return super().make_context(*args, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; print a UserError as one line, with options instead of arguments, and exit with its code."""
         try:
             _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
-            with exit_on_closed_pipe():
+            with _usage_errors(), exit_on_closed_pipe():
                 return super().invoke(ctx)
         except UserError as error:
             echo(str(error).replace("force=True", "--force"), err=True)
@@ -104,6 +106,20 @@ class Commands(click.Group):
         except MemoryError:
             echo("out of memory: the scene is too large for this machine", err=True)
             ctx.exit(1)
+
+
+@contextmanager
+def _usage_errors() -> Iterator[None]:
+    """Print an error in a command line as one line, as all other errors, and exit."""
+    try:
+        yield
+    except click.exceptions.NoArgsIsHelpError:
+        raise
+    except click.UsageError as error:
+        name = error.ctx.command_path if error.ctx else "idealgas"
+        message = " ".join(error.format_message().split())
+        echo(f"{name}: {message[:1].lower()}{message[1:].rstrip('.')} (`{name} --help` lists the options)", err=True)
+        raise SystemExit(error.exit_code) from None
 
 
 def first_sentence(command: click.Command) -> str:

@@ -5,15 +5,19 @@ from pathlib import Path
 import click
 
 from ._options import force_option
-from ._scenes import SCENE, TEMPLATE, copy_scene
+from ._scenes import SCENE, TEMPLATE, copy_scene, path_of
+from ._terminal import data
 
 
 @click.command(epilog="Example: idealgas new gas")
 @click.argument("name")
 @force_option
 def new(name: str, force: bool) -> None:
-    """Write a commented scene to start from, NAME.toml.
+    """Write a commented scene to start from, NAME.toml, or to standard output for -.
 
     A JSON Schema is written to the same folder; editors use it to complete and check keys.
     """
+    if name == "-":
+        data(path_of(TEMPLATE + SCENE).read_text(encoding="utf-8"), nl=False)
+        return
     copy_scene(TEMPLATE, Path(f"{name.removesuffix(SCENE)}{SCENE}"), force)

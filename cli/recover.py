@@ -3,13 +3,15 @@
 import click
 
 from ._analysis import log_argument
-from ._options import force_option, quiet_option
+from ._options import FILE, force_option, quiet_option
 from ._terminal import echo
 
 
 @click.command(epilog="Example: idealgas recover gas.h5 -o closed.h5")
 @log_argument
-@click.option("-o", "--output", metavar="OUT.h5", help="Write the closed log to OUT.h5 and leave RUN.h5 unchanged.")
+@click.option(
+    "-o", "--output", type=FILE, metavar="OUT.h5", help="Write the closed log to OUT.h5 and leave RUN.h5 unchanged."
+)
 @force_option
 @quiet_option
 def recover(path: str, output: str | None, force: bool) -> None:

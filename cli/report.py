@@ -3,14 +3,14 @@
 import click
 
 from ._analysis import log_argument, open_log
-from ._options import force_option, quiet_option
+from ._options import FILE, force_option, quiet_option
 from ._progress import progress_bar
 from ._terminal import written
 
 
 @click.command(epilog="Example: idealgas report gas.h5 -o gas.html")
 @log_argument
-@click.option("-o", "--output", required=True, metavar="REPORT.html", help="The page to write.")
+@click.option("-o", "--output", type=FILE, required=True, metavar="REPORT.html", help="The page to write.")
 @click.option(
     "--from",
     "start",

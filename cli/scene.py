@@ -8,7 +8,7 @@ import click
 
 from idealgas.files import check_output, replacing
 
-from ._options import force_option
+from ._options import FILE, force_option
 from ._terminal import written
 
 
@@ -22,11 +22,11 @@ def _instant(_: click.Context, __: click.Parameter, value: str) -> float | Liter
 
 
 @click.command(epilog="Example: idealgas scene gas.h5 -o next.toml")
-@click.argument("path", metavar="RUN.h5")
+@click.argument("path", type=FILE, metavar="RUN.h5")
 @click.option(
     "--at", "time", metavar="T", default="end", show_default=True, callback=_instant, help="Time of the state."
 )
-@click.option("-o", "--output", required=True, metavar="SCENE.toml", help="The scene to write.")
+@click.option("-o", "--output", type=FILE, required=True, metavar="SCENE.toml", help="The scene to write.")
 @force_option
 def scene(path: str, time: float | Literal["end"], output: str, force: bool) -> None:
     """Write a scene that starts from a state of a log: same box, effects and run, with the clock at 0."""

@@ -12,7 +12,7 @@ from idealgas.errors import UserError
 from idealgas.files import check_output
 
 from ._analysis import print_json
-from ._options import force_option, json_option, plot_option, quiet_option
+from ._options import FILE, force_option, json_option, plot_option, quiet_option
 from ._progress import progress_bar
 from ._tables import print_tables, shown
 from ._terminal import echo, written
@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 
 
 @click.command(epilog="Example: idealgas sweep phi.toml -o phi --workers 2")
-@click.argument("path", metavar="SWEEP.toml")
-@click.option("-o", "--output", metavar="DIR", help="Folder for logs and results; an existing one is continued.")
+@click.argument("path", type=FILE, metavar="SWEEP.toml")
+@click.option(
+    "-o", "--output", type=FILE, metavar="DIR", help="Folder for logs and results; an existing one is continued."
+)
 @click.option(
     "--workers", type=click.IntRange(1), metavar="N", help="Number of processes on this machine.  [default: its cores]"
 )

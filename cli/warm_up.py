@@ -4,14 +4,14 @@ import json
 
 import click
 
-from ._options import json_option
+from ._options import FILE, json_option
 from ._scenes import paths as shipped
 from ._tables import facts, print_tables
 from ._terminal import data, terminal
 
 
 @click.command(epilog="Example: idealgas warm-up gas.toml")
-@click.argument("paths", metavar="[SCENE.toml]...", nargs=-1)
+@click.argument("paths", type=FILE, metavar="[SCENE.toml]...", nargs=-1)
 @json_option
 def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
     """Compile the machine code of scenes in advance, so that their first run starts at once.

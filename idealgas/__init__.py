@@ -13,10 +13,11 @@
 
 `load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a run; both
 return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
-it. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which gives a
-figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard error.
-An error that a user can mend is a `UserError`, in one plain line; `SceneError`, `LogError` and `OutputError` are kinds
-of it.
+it, or in a log at a path; `write_report`, `animate` and `export` take both as well. `run_sweep` runs what `load_sweep`
+has read. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which
+gives a figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard
+error. An error that a user can mend is a `UserError`, in one plain line; `SceneError`, `LogError` and `OutputError` are
+kinds of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
 used, so that `import idealgas` itself is quick.
@@ -29,16 +30,22 @@ from typing import Any
 from idealgas._version import __version__
 
 _HOMES = {
+    "idealgas.accuracy.study": ("study_accuracy",),
     "idealgas.analysis.core.deviations": ("sensitivity",),
     "idealgas.analysis.core.statistics": ("Estimate",),
     "idealgas.analysis.registry": ("analyse",),
     "idealgas.errors": ("OutputError", "UserError"),
     "idealgas.columns": ("EventBatch", "Kind"),
     "idealgas.log": ("Log", "LogError", "LogState", "open_log"),
+    "idealgas.log.export.export": ("export",),
+    "idealgas.movie.film": ("animate",),
+    "idealgas.report.page": ("write_report",),
     "idealgas.run.resume": ("resume",),
     "idealgas.log.summary": ("Summary",),
     "idealgas.run.simulate": ("Progress", "simulate"),
     "idealgas.scene": ("Scene", "SceneError", "load_scene", "parse_scene"),
+    "idealgas.sweep.plan": ("load_sweep",),
+    "idealgas.sweep.run": ("run_sweep",),
 }
 """Where the names lie that are no analysis; the analyses are those of the registry."""
 
@@ -57,12 +64,18 @@ __all__ = [  # and the names of all analyses
     "UserError",
     "__version__",
     "analyse",
+    "animate",
+    "export",
     "load_scene",
+    "load_sweep",
     "open_log",
     "parse_scene",
     "resume",
+    "run_sweep",
     "sensitivity",
     "simulate",
+    "study_accuracy",
+    "write_report",
 ]
 
 

@@ -1,6 +1,7 @@
 """Names of the package; written by tests/helpers/write_stub.py."""
 
 from idealgas._version import __version__ as __version__
+from idealgas.accuracy.study import study_accuracy as study_accuracy
 from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.deviations import sensitivity as sensitivity
 from idealgas.analysis.core.statistics import Estimate as Estimate
@@ -25,7 +26,10 @@ from idealgas.log import Log as Log
 from idealgas.log import LogError as LogError
 from idealgas.log import LogState as LogState
 from idealgas.log import open_log as open_log
+from idealgas.log.export.export import export as export
 from idealgas.log.summary import Summary as Summary
+from idealgas.movie.film import animate as animate
+from idealgas.report.page import write_report as write_report
 from idealgas.run.resume import resume as resume
 from idealgas.run.simulate import Progress as Progress
 from idealgas.run.simulate import simulate as simulate
@@ -33,6 +37,8 @@ from idealgas.scene import Scene as Scene
 from idealgas.scene import SceneError as SceneError
 from idealgas.scene import load_scene as load_scene
 from idealgas.scene import parse_scene as parse_scene
+from idealgas.sweep.plan import load_sweep as load_sweep
+from idealgas.sweep.run import run_sweep as run_sweep
 
 cooling = CoolingAnalysis.measure
 effusion = EffusionAnalysis.measure

@@ -266,7 +266,7 @@ class Slit(NamedTuple):
 def _slit(log: Log) -> Slit:
     """The slit of a log; UserError without one gate along an axis, in a wall from side to side, and one species."""
     inside = walls_inside(log.scene)
-    gates = [wall for wall in inside if 0 < wall.absence[0] < math.inf]
+    gates = [wall for wall in inside if wall.absences and wall.absences[0][0] > 0]
     if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
         raise UserError(f"{log.path}: no effusion: it requires one gate, one species and the events")
     (gate,) = gates
@@ -276,7 +276,7 @@ def _slit(log: Log) -> Slit:
         raise UserError(f"{log.path}: no effusion: {why}")
     low, high = _reach(gate, across)
     others = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
-    opens, closes = gate.absence
+    opens, closes = gate.absences[0]
     return Slit(max(opens, log.start_time), closes, across, gate.start[across], high - low, others)
 
 
@@ -306,13 +306,13 @@ def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], acro
 
 def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
     """Walls in the line of a gate while it is open; none is off by half a radius, so that no disc passes between."""
-    opens, closes = gate.absence[0], min(gate.absence[1], log.end_time)
+    opens, closes = gate.absences[0][0], min(gate.absences[0][1], log.end_time)
     place, near = gate.start[across], log.discs.radius[0] / 2
     return [
         wall
         for wall in walls_inside(log.scene)
         if wall != gate
-        and (wall.absence[0] >= closes or wall.absence[1] <= opens)
+        and all(start >= closes or end <= opens for start, end in wall.absences)
         and max(abs(wall.start[across] - place), abs(wall.end[across] - place)) <= near
     ]
 

@@ -6,6 +6,7 @@ Names and first lines of help are read without importing any analysis.
 import ast
 import re
 from importlib import import_module
+from os import PathLike
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any
@@ -68,7 +69,7 @@ def find(name: str) -> "type[Analysis]":
 
 
 def analyse(
-    log: "Log",
+    log: "Log | str | PathLike[str]",
     name: str,
     start: float | None = None,
     end: float | None = None,
@@ -78,7 +79,7 @@ def analyse(
     """Analyse a log and return the result, a dataclass with `as_dict()`.
 
     Args:
-        log: the log to analyse.
+        log: the log to analyse, or its path.
         name: name of the analysis, such as "pressure".
         start: start of the window, time; None for the default of the analysis.
         end: end of the window, time; None for the default of the analysis.

@@ -4,6 +4,7 @@ A field is only ever passed on as an argument: numba removes `if gravity is not 
 None, so that no machine code is made for an absent effect.
 """
 
+import math
 from collections import namedtuple
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -17,11 +18,11 @@ from idealgas.physics import stress
 from idealgas.physics.exact_sum import add_sums, clear
 from idealgas.state import Gas
 
-ENERGIES = ("wall_energy", "dissipated", "bath_energy")
+ENERGIES = ("wall_energy", "dissipated", "bath_energy", "step_energy")
 """Fields that are sums of energies."""
 
-FIELDS = (*(effect.field for effect in EFFECTS), *ENERGIES, "flow")
-"""Fields of the bundle: all effects, and the sums over a run."""
+FIELDS = (*(effect.field for effect in EFFECTS), *ENERGIES, "flow", "schedule")
+"""Fields of the bundle: all effects, the sums over a run, and the changes in time."""
 
 if TYPE_CHECKING:
 
@@ -49,7 +50,10 @@ else:
         dissipated: (1 + walls,) SUM, energy lost in collisions of two discs, then in hits of each wall that is not
             thermal, mass length²/time²; None if nothing is lost. What a wall at rest gave is less by this.
         bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without one.
+        step_energy: (1,) SUM, energy given where a potential changes in time, mass length²/time²; None if none does.
         flow: momentum that the gas carries and passes on; None if it is not recorded.
+        schedule: changes in time, each as (time, index of the effect, item, value), in order; None without any. The
+            kernels do without it.
     """
 
 
@@ -73,8 +77,23 @@ def end_epoch(effects: Effects, length: float) -> None:
 
 
 def next_change(effects: Effects, time: float) -> float:
-    """Earliest time, after the given one, at which an effect changes by itself; infinite if none does."""
-    return min((effect.next_change(state, time) for effect, state in present(effects)), default=float("inf"))
+    """Earliest time, after the given one, at which a value changes; infinite if none does."""
+    return next((later for later, *_ in effects.schedule or () if later > time), math.inf)
+
+
+def changed(effects: Effects, after: float, until: float) -> Effects:
+    """The effects with all changes after a time and until another; step_energy is not added to."""
+    for time, effect, item, value in effects.schedule or ():
+        if after < time <= until:
+            field = EFFECTS[effect].field
+            effects = effects._replace(**{field: EFFECTS[effect].change(getattr(effects, field), item, value)})
+    return effects
+
+
+def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[str, float]:
+    """Energies that the effects add, by field of `idealgas.run.energy.Energy`, mass length²/time²."""
+    parts = ((effect.energy, state) for effect, state in present(effects))
+    return {part.part: part.of(state, gas, local_time) for part, state in parts if part is not None}
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:

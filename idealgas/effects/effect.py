@@ -1,6 +1,5 @@
 """What an effect is: its table in a scene, its state in a run, and what the log keeps of it."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -9,6 +8,7 @@ import numpy as np
 
 from idealgas.columns import SIDES, Arrays, Column, Values
 from idealgas.effects.properties import ActiveEffect, Properties
+from idealgas.effects.schedule import Change
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Table
@@ -112,7 +112,8 @@ class EffectSpec(Generic[State]):
         counted: total number of its own events.
         begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run.
         end_epoch: count local times from the end of an epoch of some length (time).
-        next_change: next time after a given one at which the effect changes by itself, so that an epoch must end.
+        schedule: changes in time of values of the state, after time 0.
+        change: the state with another value of an item.
         samples: scenes of the benchmark.
         sample_together: its part in the scene of all effects together; the first of the samples if None.
     """
@@ -141,7 +142,8 @@ class EffectSpec(Generic[State]):
     counted: Column | None = None
     begin_epoch: Callable[[State, float], None] = lambda state, time: None
     end_epoch: Callable[[State, float], None] = lambda state, length: None
-    next_change: Callable[[State, float], float] = lambda state, time: math.inf
+    schedule: Callable[[Tables, Start], Iterable[Change]] = lambda tables, start: ()
+    change: Callable[[State, int, float], State] = lambda state, item, value: state
 
     def find(self, tables: Tables) -> ActiveEffect | None:
         """The keys that turn the effect on and what it changes; None if the scene does not have it."""

@@ -1,6 +1,6 @@
 """A piston: a wall across the whole box that moves."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -9,29 +9,43 @@ from pydantic import Field
 from idealgas.columns import OUTWARD, SIDES, Column, Values, axis_of
 from idealgas.effects.effect import SAMPLE_DISCS, EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import Properties
+from idealgas.effects.schedule import (
+    Change,
+    NotNegativeInSteps,
+    NumberInSteps,
+    SteppedTable,
+    description,
+    steps_of,
+    value_at,
+)
 from idealgas.jit import aligned
 from idealgas.physics import piston as law
 from idealgas.state import Gas
-from idealgas.toml.table import NotNegative, Number, Positive, Rectangle, Table
+from idealgas.toml.table import Number, Positive, Rectangle
 
 POSITION = Column("piston_position", "f8", (), "length")
 VELOCITY = Column("piston_velocity", "f8", (), "length/time")
 
 
-class Piston(Table):
+class Piston(SteppedTable):
     """`[piston]`: a wall across the whole box that replaces one side.
 
     It moves at a given velocity, or it has a mass and is pressed on the gas by the external pressure, and by gravity
     along its axis. At its side of the box it is reflected.
     """
 
+    in_steps = ("velocity", "pressure")
+
     side: Literal["left", "right", "bottom", "top"] = Field(default="right", description="the side that it replaces")
     position: Number | None = Field(default=None, description="coordinate at the start, length; at its side if absent")
-    velocity: Number | None = Field(
-        default=None, description="length/time along the axis: constant, or with a mass that at the start"
+    velocity: NumberInSteps | None = Field(
+        default=None,
+        description="length/time along the axis, or steps [[0, v], [t, v], …]; with a mass that at the start",
     )
     mass: Positive | None = Field(default=None, description="mass > 0, together with pressure")
-    pressure: NotNegative | None = Field(default=None, description="external pressure, force per length of the piston")
+    pressure: NotNegativeInSteps | None = Field(
+        default=None, description="external pressure, force per length of the piston, or steps [[0, P], [t, P], …]"
+    )
 
     @property
     def axis(self) -> int:
@@ -51,6 +65,11 @@ class Piston(Table):
         """Coordinate at time 0."""
         return self.stop(size) if self.position is None else self.position
 
+    @property
+    def start_velocity(self) -> float:
+        """Velocity at time 0, length/time."""
+        return value_at(self.velocity, 0.0) or 0.0
+
     def room(self, size: tuple[float, float]) -> Rectangle:
         """What the gas has at the start: the box, up to the piston if that is in it."""
         low, high = [0.0, 0.0], list(size)
@@ -62,14 +81,23 @@ class Piston(Table):
     def action(self) -> str:
         """Short description for output."""
         if self.mass is None:
-            return f"piston of velocity {self.velocity:g}"
-        return f"piston of mass {self.mass:g} under pressure {self.pressure:g}"
+            return f"piston of velocity {description(self.velocity)}"
+        return f"piston of mass {self.mass:g} under pressure {description(self.pressure)}"
 
-    def acceleration(self, size: tuple[float, float], gravity: tuple[float, float]) -> float:
-        """Along the axis, between hits, length/time². gravity: constant acceleration of all discs, length/time²."""
+    def acceleration(self, size: tuple[float, float], gravity: tuple[float, float], time: Any = 0.0) -> Any:
+        """Along the axis, between hits, length/time², at a time or an array of times.
+
+        gravity: constant acceleration of all discs, length/time².
+        """
+        pressure = value_at(self.pressure or 0.0, time)
         if self.mass is None:
-            return 0.0
-        return gravity[self.axis] - self.outward * (self.pressure or 0.0) * size[1 - self.axis] / self.mass
+            return 0.0 * pressure
+        return gravity[self.axis] - self.outward * pressure * size[1 - self.axis] / self.mass
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """Times after 0 at which its pressure or velocity changes."""
+        return tuple(time for time, _ in (*steps_of(self.pressure)[1:], *steps_of(self.velocity)[1:]))
 
 
 def _properties(tables: Tables) -> Properties:
@@ -81,8 +109,10 @@ def _properties(tables: Tables) -> Properties:
         allows_time_steps=False,
         local=False,
         is_scalable=False,
-        driven=piston.mass is None and bool(piston.velocity),
+        driven=piston.mass is None and any(velocity for _, velocity in steps_of(piston.velocity)),
         drives_discs=True,
+        changes=piston.times,
+        varies=bool(piston.times),
     )
 
 
@@ -90,9 +120,22 @@ def _make(tables: Tables, start: Start) -> np.ndarray:
     table, size = tables.own, tables.size
     piston = aligned(1, law.PISTON)
     record = piston[0]
-    record.x, record.v = table.start(size), table.velocity or 0.0
+    record.x, record.v = table.start(size), table.start_velocity
     record.a = table.acceleration(size, start.acceleration)
     record.m, record.stop, record.side = table.mass or 0.0, table.stop(size), SIDES.index(table.side)
+    return piston
+
+
+def _schedule(tables: Tables, start: Start) -> Iterator[Change]:
+    """Changes of the acceleration, item 0, and of a given velocity, item 1."""
+    for time, _ in steps_of(tables.own.pressure)[1:]:
+        yield Change(time, 0, tables.own.acceleration(tables.size, start.acceleration, time))
+    for time, velocity in steps_of(tables.own.velocity)[1:]:
+        yield Change(time, 1, velocity)
+
+
+def _change(piston: np.ndarray, item: int, value: float) -> np.ndarray:
+    piston[0]["v" if item else "a"] = value
     return piston
 
 
@@ -129,6 +172,8 @@ EFFECT = EffectSpec(
     description="[piston]: side, position, velocity or mass and pressure",
     properties=_properties,
     make=_make,
+    schedule=_schedule,
+    change=_change,
     values=_values,
     restore=_restore,
     energy=EnergyPart("piston", _energy),

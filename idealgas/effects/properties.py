@@ -47,13 +47,14 @@ class Properties:
 
     driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
     with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
-    motion.
+    motion. varies: a temperature, a pressure or a velocity changes in time.
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
-    are. acceleration: of all discs between events, length/time². emits: temperature of each thermal wall, by
-    number; None for those that reflect. bath: temperature of a heat bath that gives discs new velocities wherever they
-    are; None without one. thermostat_rate: per disc, 1/time. last_wall_removed_at: time from which on no
-    wall is inside the box; infinite if one always is.
+    are. acceleration: of all discs between events, length/time². emits: temperature of each thermal wall at the start,
+    by number; None for those that reflect. bath: temperature at the start of a heat bath that gives discs new
+    velocities wherever they are; None without one. later_temperatures: of walls and heat bath. thermostat_rate: per
+    disc, 1/time. last_wall_removed_at: time from which on no wall is inside the box; infinite if one always is.
+    changes: times at which a value changes in a step, or a gate opens or closes.
     """
 
     uniform: bool = _plain(True, operator.and_)
@@ -68,13 +69,16 @@ class Properties:
     dissipative: bool = _plain(False, operator.or_)
     has_rough_walls: bool = _plain(False, operator.or_)
     drives_discs: bool = _plain(False, operator.or_)
+    varies: bool = _plain(False, operator.or_)
     inertia: float | None = _plain(None, _first_not_none)
     periodic: tuple[bool, bool] = _plain((False, False), _merge)
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
     emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _merge)
     bath: float | None = _plain(None, _first_not_none)
     thermostat_rate: float = _plain(0.0, max)
+    later_temperatures: tuple[float, ...] = _plain((), operator.add)
     last_wall_removed_at: float = _plain(0.0, max)
+    changes: tuple[float, ...] = _plain((), operator.add)
 
     @property
     def lossless(self) -> bool:
@@ -88,8 +92,9 @@ class Properties:
 
     @property
     def temperatures(self) -> frozenset[float]:
-        """Temperatures of the thermal walls and the heat bath."""
-        return frozenset(temperature for temperature in (*self.emits, self.bath) if temperature is not None)
+        """Temperatures of the thermal walls and the heat bath, at any time."""
+        found = (*self.emits, self.bath, *self.later_temperatures)
+        return frozenset(temperature for temperature in found if temperature is not None)
 
     @property
     def isolated(self) -> bool:

@@ -1,39 +1,77 @@
 """Thermal walls: sides and segments that re-emit the discs that hit them, at a temperature."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 from pydantic import Field
 
 from idealgas.columns import SIDES, Column
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import Properties
+from idealgas.effects.schedule import Change, SteppedTable, WallTemperature, changes_of, description, steps_of, value_at
 from idealgas.physics import thermal as law
-from idealgas.toml.table import Positive, Table
 
 EMISSIONS = Column("emissions", "u8")
 
 
-class ThermalSide(Table):
+class ThermalSide(SteppedTable):
     """`{ thermal = T }`: a side that emits the discs it takes at a temperature."""
 
-    thermal: Positive = Field(description="temperature > 0, energy")
+    in_steps = ("thermal",)
+
+    thermal: WallTemperature = Field(
+        description='temperature > 0, energy, or steps [[0, T], [t, T], …], where "reflecting" is a T too'
+    )
+
+    @property
+    def action(self) -> str:
+        """Short description for output."""
+        return f"thermal, temperature {description(self.thermal)}"
 
 
-def _temperatures(tables: Tables) -> tuple[float | None, ...]:
+def _temperatures(tables: Tables) -> tuple[Any, ...]:
     """Temperature of each wall by its number, sides of the box first; None for those that reflect."""
     of_sides = (side.thermal if isinstance(side, ThermalSide) else None for side in tables.sides)
     return *of_sides, *(None if wall is None else wall.temperature for wall in tables.walls)
+
+
+def _number(temperature: Any) -> float:
+    """Temperature for the law; negative for a wall that reflects."""
+    return temperature if isinstance(temperature, float) else -1.0
 
 
 def _properties(tables: Tables) -> Properties | None:
     temperatures = _temperatures(tables)
     if not any(temperatures):
         return None
-    return Properties(allows_monte_carlo=False, has_rough_walls=True, emits=temperatures)
+    first = (value_at(temperature, 0.0) for temperature in temperatures)
+    later = [step for temperature in temperatures for step in steps_of(temperature)[1:]]
+    return Properties(
+        allows_monte_carlo=False,
+        allows_time_steps=not later,
+        has_rough_walls=True,
+        emits=tuple(t if isinstance(t, float) else None for t in first),
+        later_temperatures=tuple(t for _, t in later if isinstance(t, float)),
+        changes=tuple(time for time, _ in later),
+        varies=bool(later),
+    )
 
 
 def _make(tables: Tables, start: Start) -> law.Thermal:
-    temperature = np.array([-1.0 if t is None else t for t in _temperatures(tables)])
+    temperature = np.array([_number(value_at(t, 0.0)) for t in _temperatures(tables)])
     return law.Thermal(temperature, np.uint64(start.seed), np.zeros(len(start.gas), np.uint64))
+
+
+def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
+    for wall, temperature in enumerate(_temperatures(tables)):
+        for change in changes_of(temperature, wall):
+            yield change._replace(value=_number(change.value))
+
+
+def _change(thermal: law.Thermal, wall: int, temperature: float) -> law.Thermal:
+    thermal.temperature[wall] = temperature
+    return thermal
 
 
 def _hot(*names: str) -> str:
@@ -47,6 +85,8 @@ EFFECT = EffectSpec(
     side_text="{ thermal = T }",
     properties=_properties,
     make=_make,
+    schedule=_schedule,
+    change=_change,
     disc_state=lambda thermal: {EMISSIONS: thermal.emissions},
     gives_energy=lambda thermal: True,
     samples=(Sample(box=lambda side: _hot(*SIDES)),),

@@ -2,80 +2,101 @@
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import pairwise, zip_longest
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from idealgas.columns import SIDES
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import Properties
+from idealgas.effects.schedule import Change, SteppedTable, WallTemperature, description
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
 from idealgas.toml.issues import Issue, Key
-from idealgas.toml.table import Positive, Table, Vector, Word
+from idealgas.toml.table import NotNegative, Positive, Vector, Word
 
 SHORTEST = 1e-9
 """Length of a wall in units of the box's longer side: below, a double cannot tell its ends apart."""
 
 
-class Wall(Table):
+Times = Annotated[
+    Annotated[Positive, Tag("(number)")]
+    | Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=1), Tag("(times)")],
+    Discriminator(lambda value: "(times)" if isinstance(value, (list, tuple)) else "(number)"),
+]
+
+
+class Wall(SteppedTable):
     """`[[wall]]`: a segment whose body and ends are solid, at rest. One that opens or closes is a gate.
 
-    It is there until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then. A disc
-    in the way of a closing gate stays on the side of its centre: it may leave, and bounces where it comes nearer. One
-    that cannot rise out against gravity bounces as deep in the gate as it is.
+    It is there until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then. Lists
+    of times open and close it several times; if `opens_at` begins with 0, it is absent at the start. A disc in the way
+    of a closing gate stays on the side of its centre: it may leave, and bounces where it comes nearer. One that cannot
+    rise out against gravity bounces as deep in the gate as it is.
     """
+
+    in_steps = ("temperature",)
 
     start: Vector = Field(alias="from", description="[x, y] of one end, length")
     end: Vector = Field(alias="to", description="[x, y] of the other end, length")
-    temperature: Positive | None = Field(
-        default=None, description="temperature > 0, energy, of a thermal wall; reflecting if absent"
+    temperature: WallTemperature | None = Field(
+        default=None, description="of a thermal wall, as that of a thermal side; reflecting if absent"
     )
-    opens_at: Positive | None = Field(default=None, description="time > 0 at which it is removed")
-    closes_at: Positive | None = Field(default=None, description="time > 0 at which it is inserted")
+    opens_at: Times | None = Field(default=None, description="time > 0, or times, at which it is removed")
+    closes_at: Times | None = Field(default=None, description="time > 0, or times, at which it is inserted")
     name: Word | None = Field(default=None, description="unique word for the log; if absent its number")
 
     @property
-    def absence(self) -> tuple[float, float]:
-        """Times from and until which it is absent; both infinite for a wall that is always present."""
-        if self.opens_at is None and self.closes_at is not None:
-            return 0.0, self.closes_at
-        return self.opens_at or math.inf, self.closes_at or math.inf
+    def absences(self) -> tuple[tuple[float, float], ...]:
+        """Times from and until which it is absent, in order; the last may be infinite."""
+        opens, closes = (_as_tuple(times) for times in (self.opens_at or 0.0, self.closes_at))
+        if self.opens_at is None and self.closes_at is None:
+            return ()
+        return tuple(zip_longest(opens, closes, fillvalue=math.inf))
 
     @property
     def action(self) -> str:
         """Short description for output."""
-        action = "reflecting" if self.temperature is None else f"thermal, temperature {self.temperature:g}"
-        opens, closes = self.absence
-        if math.isinf(opens):
-            return action
-        return f"{action}, open from {opens:g}" + ("" if math.isinf(closes) else f" to {closes:g}")
+        action = "reflecting" if self.temperature is None else f"thermal, temperature {description(self.temperature)}"
+        spans = (f"from {o:g}" + ("" if math.isinf(c) else f" to {c:g}") for o, c in self.absences)
+        return ", open ".join((action, ", ".join(spans))) if self.absences else action
 
-    def after(self, time: float) -> "Wall | None":
+    def later(self, time: float) -> "Wall | None":
         """The wall in a scene whose clock starts at a later time; None if it has been removed for good."""
-        opens, closes = self.absence
-        if opens <= time and math.isinf(closes):
+        absences = [(max(o - time, 0.0), c - time) for o, c in self.absences if c > time]
+        if absences and absences[0] == (0.0, math.inf):
             return None
-        later = {"opens_at": opens - time if time < opens < math.inf else None}
-        later["closes_at"] = closes - time if time < closes < math.inf else None
-        return self.model_copy(update=later)
+        opens, closes = ([t[k] for t in absences if t[k] < math.inf] for k in range(2))
+        update = {"opens_at": _times([] if opens == [0.0] else opens), "closes_at": _times(closes)}
+        return self.after(time).model_copy(update=update)
 
-    @property
-    def there_at_start(self) -> bool:
-        """Whether it is there at time 0."""
-        return self.absence[0] > 0
+    def is_there(self, time: float) -> bool:
+        """Whether it is present at a time."""
+        return not any(opens <= time < closes for opens, closes in self.absences)
+
+
+def _as_tuple(times: Any) -> tuple[float, ...]:
+    return () if times is None else times if isinstance(times, tuple) else (times,)
+
+
+def _times(times: list[float]) -> Any:
+    """Value of a key, from a list of times."""
+    return tuple(times) if len(times) > 1 else next(iter(times), None)
 
 
 def _properties(tables: Tables) -> Properties:
-    absences = (wall.absence for wall in tables.own if wall is not None)
-    removed = (opens if math.isinf(closes) else math.inf for opens, closes in absences)
+    walls = [wall for wall in tables.own if wall is not None]
+    removed = (wall.absences[-1] if wall.absences else (math.inf, math.inf) for wall in walls)
+    times = {t for wall in walls for absence in wall.absences for t in absence}
     return Properties(
         uniform=False,
         allows_monte_carlo=False,
         allows_time_steps=False,
         is_scalable=False,
-        last_wall_removed_at=max(removed),
+        last_wall_removed_at=max(opens if math.isinf(closes) else math.inf for opens, closes in removed),
+        changes=tuple(sorted(times - {0.0, math.inf})),
     )
 
 
@@ -104,29 +125,40 @@ def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue
         yield Issue(keys, "a wall of no length", ends, f"a length >= {SHORTEST * max(size)}")
     elif any(wall.start[a] == wall.end[a] in (0, size[a]) for a in range(2)):
         yield Issue(keys, "a wall along a side of the box", ends, "walls inside the box; a side is a wall already")
-    if wall.opens_at is not None and wall.closes_at is not None and wall.closes_at <= wall.opens_at:
+    times = [time for absence in wall.absences for time in absence]
+    if any(later <= earlier for earlier, later in pairwise(times)):
         keys = (("wall", i, "closes_at"), ("wall", i, "opens_at"))
-        yield Issue(keys, "closes before it opens", f"{wall.closes_at}", f"> {wall.opens_at}")
+        opens, closes = _as_tuple(wall.opens_at), _as_tuple(wall.closes_at)
+        single = len(opens) == len(closes) == 1
+        allowed = f"> {wall.opens_at}" if single else "times in order, each opening before its closing"
+        wrong = "closes before it opens" if single else "opens and closes not in turn"
+        yield Issue(keys, wrong, str(closes[0]) if single else f"{list(closes)} after {list(opens)}", allowed)
 
 
-def make_segments(
-    start: np.ndarray, end: np.ndarray, opens: np.ndarray | float = math.inf, closes: np.ndarray | float = math.inf
-) -> np.recarray:
-    """(S,) SEGMENT at time 0. start, end: (S, 2). opens, closes: times from and until which each is absent."""
+def make_segments(start: np.ndarray, end: np.ndarray, active: np.ndarray | bool = True) -> np.recarray:
+    """(S,) SEGMENT. start, end: (S, 2). active: whether each is present."""
     segments = aligned(len(start), law.SEGMENT)
     segments.x, segments.y = start.T
     segments.length = np.hypot(*(end - start).T)
     segments.tx, segments.ty = ((end - start) / segments.length[:, None]).T
-    segments.opens, segments.closes = opens, closes
-    segments.active = segments.opens > 0
+    segments.active = active
     return segments
 
 
 def _make(tables: Tables, _: Start) -> np.recarray:
-    start, end, absence = (
-        np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end", "absence")
-    )
-    return make_segments(start, end, *absence.T)
+    start, end = (np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end"))
+    return make_segments(start, end, np.array([wall.is_there(0.0) for wall in tables.own]))
+
+
+def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
+    for k, wall in enumerate(tables.own):
+        for times, active in zip(zip(*wall.absences, strict=True), (0.0, 1.0), strict=False):
+            yield from (Change(time, k, active) for time in times if 0 < time < math.inf)
+
+
+def _change(segments: np.recarray, segment: int, active: float) -> np.recarray:
+    segments.active[segment] = bool(active)
+    return segments
 
 
 def _polygon(side: float, corners: int, height: float, radius: float = 4.0) -> str:
@@ -146,8 +178,8 @@ EFFECT = EffectSpec(
     properties=_properties,
     check=_check,
     make=_make,
-    begin_epoch=law.begin_epoch,
-    next_change=law.next_change,
+    schedule=_schedule,
+    change=_change,
     samples=(
         Sample("6", tables=lambda side: _polygon(side, 6, side / 2)),
         Sample("1000", tables=lambda side: _polygon(side, 1000, side / 2)),

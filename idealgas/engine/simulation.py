@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from idealgas.columns import EventBatch
-from idealgas.effects.bundle import Effects, begin_epoch, end_epoch, next_change
+from idealgas.effects.bundle import Effects, begin_epoch, changed, end_epoch, energy_parts, next_change
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
 from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, InelasticCollapseError, synchronise
 from idealgas.errors import UserError
 from idealgas.physics import stress
-from idealgas.physics.exact_sum import SumRangeError
+from idealgas.physics.exact_sum import SumRangeError, add_term
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
@@ -84,6 +84,7 @@ class Simulation:
     def __post_init__(self) -> None:
         """Begin the first epoch."""
         self._encounters = encounters_per_length(self.gas, periodic_axes(self.effects.periodic))
+        self.effects = changed(self.effects, 0.0, self.time)
         self._begin()
 
     def _begin(self) -> None:
@@ -97,7 +98,7 @@ class Simulation:
             periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
             length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions)
             self.length = min(length, until_change)
-        self.method.start(self.gas, self.effects)
+        self.method.start(self.gas, self.effects._replace(schedule=None))
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self._counters["trials"] = self.totals.trials
         self.epoch_over = self.paused = False
@@ -212,9 +213,19 @@ class Simulation:
         self.gas = self._synchronised(self.method.discs.record, self.length, self.effects.periodic, self.effects.flow)
         self.totals = self.counters
         end_epoch(self.effects, self.length)
+        self._change(self.time + self.length)
         self.time += self.length
         self.epoch += 1
         self._begin()
+
+    def _change(self, time: float) -> None:
+        """Make the changes up to a time, and record the energy that they give."""
+        if next_change(self.effects, self.time) > time:
+            return
+        before = sum(energy_parts(self.effects, self.gas).values())
+        self.effects = changed(self.effects, self.time, time)
+        if self.effects.step_energy is not None:
+            add_term(self.effects.step_energy, sum(energy_parts(self.effects, self.gas).values()) - before)
 
     def check_invariants(self) -> Diagnostics:
         """Conserved quantities and overlaps at the start of the epoch; to be called before `advance`."""
@@ -223,5 +234,5 @@ class Simulation:
     def check_invariants_of(self, gas: Gas) -> Diagnostics:
         """Conserved quantities and overlaps of a gas that `state` returned."""
         method = copy.copy(self.method)
-        method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic)))
+        method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic), schedule=None))
         return check_invariants(gas, method.deepest_overlap())

@@ -49,7 +49,7 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
         gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
         relative = piston.acceleration(gas.box, scene.properties.acceleration) - acceleration[piston.axis]
         pressed = piston.outward * relative < 0
-        in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == (piston.velocity or 0.0))
+        in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == piston.start_velocity)
         yield "the piston", in_contact & pressed
 
 

@@ -3,7 +3,7 @@
 from idealgas.columns import Column
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.flights import Flights
-from idealgas.log.reader import Log, open_log
+from idealgas.log.reader import Log, open_log, takes_path
 from idealgas.log.recovery import recover
 from idealgas.log.replay import Checkpoint, LogState
 from idealgas.log.schema import LogLayout, Wall, box_walls
@@ -23,4 +23,5 @@ __all__ = [
     "box_walls",
     "open_log",
     "recover",
+    "takes_path",
 ]

@@ -68,24 +68,20 @@ def flat_flights(batches: Iterable[Flights]) -> Iterator[Columns]:
         yield columns | {"kind": np.where(batch.kind == NO_EVENT, -1, batch.kind.astype(np.int8))}
 
 
-def flat_states(gas: Gas, states: Iterable[LogState]) -> Iterator[Columns]:
-    """A row for each disc, state by state. gas: the same discs; `species` is an index into its names of species."""
+def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
+    """A row for each disc, or for the disc with an id, state by state.
+
+    gas: the same discs; `species` is an index into its names of species.
+    """
     ids = np.arange(len(gas), dtype=np.uint32)
+    chosen = ids if disc is None else ids[ids == disc]
     for state in states:
         values = state._asdict()
         time = np.full(len(ids), values.pop("time"))
         if np.isnan(state.position).all():  # a gas without positions
             del values["position"]
-        yield {"time": time, "disc": ids, "species": gas.species, **flat(values)}
-
-
-def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
-    """A row for each disc, or for the disc with an id, state by state, with radius and mass."""
-    chosen = np.arange(len(gas)) if disc is None else np.flatnonzero(np.arange(len(gas)) == disc)
-    for columns in flat_states(gas, states):
-        names = ("time", "disc", "species")
-        first = {name: columns.pop(name) for name in names} | {"radius": gas.radius, "mass": gas.mass}
-        yield {name: column[chosen] for name, column in (first | columns).items()}
+        fixed = {"time": time, "disc": ids, "species": gas.species, "radius": gas.radius, "mass": gas.mass}
+        yield {name: column[chosen] for name, column in (fixed | flat(values)).items()}
 
 
 def flat_samples(

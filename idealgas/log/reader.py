@@ -2,10 +2,10 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
+from functools import cached_property, partial, wraps
 from pathlib import Path
 from time import sleep
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Concatenate, Literal, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -225,3 +225,22 @@ class Log(LogHistory):
             states = [LogState(self.start_time, **self._start_arrays())] if times is None else self.frames(times)
             return data_frame(flat_discs(self.discs, states, disc), {"species": self.discs.species_names})
         return data_frame([flat_samples(self.observables, self.walls, t0, t1)], {})
+
+
+Parameters = ParamSpec("Parameters")
+Found = TypeVar("Found")
+
+
+def takes_path(
+    function: Callable[Concatenate[Log, Parameters], Found],
+) -> Callable[Concatenate[Log | str | os.PathLike[str], Parameters], Found]:
+    """Let a function whose first argument is a log take the path of one as well."""
+
+    @wraps(function)
+    def opening(log: Log | str | os.PathLike[str], *args: Parameters.args, **named: Parameters.kwargs) -> Found:
+        if isinstance(log, Log):
+            return function(log, *args, **named)
+        with open_log(log) as opened:
+            return function(opened, *args, **named)
+
+    return opening

@@ -45,12 +45,12 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         "angular_velocity": spin,
         "species": [discs.species_names[k] for k in discs.species.tolist()],
     }
-    walls = [wall for wall in scene.wall if not wall.absence[0] <= time < wall.absence[1]]
+    walls = [wall for wall in scene.wall if wall.is_there(time)]
     return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
 
 
 def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
-    """TOML text of a scene that starts from the state of a log, with gates and piston as they are then.
+    """TOML text of a scene that starts from the state of a log, with piston and values in time as they are then.
 
     time: of the state. source: path of the log in the scene.
 
@@ -63,9 +63,12 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
     update: dict[str, Any] = {
         "start": Start(log=source, time=time),
         "disc": (),
+        "box": scene.box.after(time),
         "species": tuple(s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species),
-        "wall": tuple(later for wall in scene.wall if (later := wall.after(time)) is not None),
+        "wall": tuple(later for wall in scene.wall if (later := wall.later(time)) is not None),
     }
+    if scene.thermostat is not None:
+        update["thermostat"] = scene.thermostat.after(time)
     if scene.piston is not None:
         update["piston"] = _piston_at(log, scene, time)
     return dump_document(scene.model_copy(update=update))
@@ -80,4 +83,4 @@ def _piston_at(log: Log, scene: Scene, time: float) -> Any:
         raise UserError(f"{log.path}: the piston is known at samples only, not at t = {time:g}{nearest}")
     velocity = float(log.observables["piston_velocity"][1][k])
     own = {"velocity": velocity} if scene.piston.mass is not None else {}
-    return scene.piston.model_copy(update={"position": float(position[k]), **own})
+    return scene.piston.after(time).model_copy(update={"position": float(position[k]), **own})

@@ -3,11 +3,12 @@
 import os
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import IO
+from typing import IO, Unpack
 
 import numpy as np
 from PIL import Image
@@ -16,9 +17,9 @@ from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.errors import OutputError, UserError
 from idealgas.files import check_output, written
-from idealgas.log import Log
+from idealgas.log import Log, LogState, takes_path
 from idealgas.movie.gif import GifWriter
-from idealgas.movie.painter import CROSSING, Colouring, Painter
+from idealgas.movie.painter import CROSSING, Colouring, Look, Painter
 from idealgas.movie.piston_track import piston_track
 
 ENDINGS, FRAME = (".mp4", ".gif"), ".png"
@@ -38,20 +39,22 @@ class Film:
     end: float
 
 
-def film_path(output: str | os.PathLike[str]) -> Path:
-    """Path of the film to write: `output`, or a .gif instead of an .mp4 if ffmpeg is not installed.
+def ffmpeg() -> str:
+    """Path of the program ffmpeg: that of the system, or of the package imageio-ffmpeg.
 
     Raises:
-        UserError: for another ending than .mp4 or .gif.
+        UserError: without either.
     """
-    path = Path(output)
-    if path.suffix.lower() not in ENDINGS:
-        raise UserError(f"{output}: unknown kind of film (allowed: {', '.join(ENDINGS)})")
-    if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
-        return path.with_suffix(".gif")
-    return path
+    if found := shutil.which("ffmpeg"):
+        return found
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+    except ImportError:
+        raise UserError("MP4 needs ffmpeg: pip install 'idealgas-md[film]' (GIF needs nothing)") from None
+    return get_ffmpeg_exe()
 
 
+@takes_path
 def animate(
     log: Log,
     output: str | os.PathLike[str],
@@ -60,40 +63,41 @@ def animate(
     end: float | None = None,
     fps: float = 25.0,
     speed: float | None = None,
-    size: tuple[int, int] = (960, 540),
-    colouring: Colouring = "speed",
-    dark: bool = False,
     force: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
+    **look: Unpack[Look],
 ) -> Film:
     """Make a film of a log between two times, with exact positions in every frame.
 
     Args:
-        log: the log to show.
-        output: path of the film, see `film_path`.
+        log: the log to show, or its path.
+        output: path of the film, an .mp4 or .gif.
         start: start in simulated time; None for the start of the log.
         end: end in simulated time; None for LONGEST seconds of film.
         fps: frames per second of film.
         speed: simulated time per second of film; None for a disc of typical speed to cross the box in CROSSING seconds.
-        size: width and height of a frame in pixels, made even.
-        colouring: what the colours of discs show.
-        dark: whether the background is dark.
         force: whether to replace an existing film.
         on_frame: called with the number of painted frames and the number of all frames.
+        look: see `Look`.
 
     Raises:
-        UserError: if the log has no positions or no events, or the window is empty, or for order beside a piston.
+        UserError: for another ending, an MP4 without ffmpeg, a log without positions or events, an empty window, order
+            beside a piston, or the trail of a disc that does not exist.
         OutputError: if the film cannot be written.
     """
-    path = film_path(output)
+    path = Path(output)
     kind = path.suffix.lower()
+    if kind not in ENDINGS:
+        raise UserError(f"{output}: unknown kind of film (allowed: {', '.join(ENDINGS)})")
     check_output(path, kind, force)
-    check_shown(log, colouring)
+    gif = kind == ".gif"
+    writer = gif_writer if gif else partial(mp4_writer, ffmpeg())
+    check_shown(log, look.get("colouring"))
     first, latest = span(log, start, end)
-    typical, thermal = speeds(log, first, latest)
+    some = _some_states(log, first, latest)
+    typical, thermal = speeds(log, some)
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
-    gif = kind == ".gif"
     if gif:
         fps = 100 / max(round(100 / fps), 2)  # delays are in hundredths of a second; viewers ignore a delay of 1
     number = round((last - first) * fps / speed) + 1
@@ -101,11 +105,11 @@ def animate(
         raise UserError(
             f"{number:,} frames are too many (allowed <= {MOST_FRAMES:,}): a shorter window or more --speed"
         )
-    width, height = (pixels // 2 * 2 for pixels in size)
-    piston = piston_track(log, first, last)
-    painter = Painter(log.scene, log.discs, piston, (width, height), thermal, colouring, dark)
+    if (size := look.get("size")) is not None:
+        look["size"] = size[0] // 2 * 2, size[1] // 2 * 2
+    painter = Painter(log.scene, log.discs, piston_track(log, first, last), thermal, (first, last), some, **look)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
-    with written(path, kind, force) as part, (gif_writer if gif else mp4_writer)(part, width, height, fps) as write:
+    with written(path, kind, force) as part, writer(part, *painter.size, fps) as write:
         for k, state in enumerate(log.frames(times)):
             write(painter.paint(state))
             on_frame(k + 1, number)
@@ -117,10 +121,8 @@ def paint_frame(
     output: str | os.PathLike[str],
     time: float,
     *,
-    size: tuple[int, int] = (960, 540),
-    colouring: Colouring = "speed",
-    dark: bool = False,
     force: bool = False,
+    **look: Unpack[Look],
 ) -> Path:
     """Paint the state of a log at one time as a picture, a .png, and return its path; arguments as for `animate`.
 
@@ -132,20 +134,22 @@ def paint_frame(
     if path.suffix.lower() != FRAME:
         raise UserError(f"{output}: unknown figure format (allowed {FRAME})")
     check_output(path, FRAME, force)
-    check_shown(log, colouring)
+    check_shown(log, look.get("colouring"))
     if not log.start_time <= time <= log.end_time:
         raise UserError(
             f"{log.path}: no state at t = {time:g}: the log covers t = {log.start_time:g} to {log.end_time:g}"
         )
-    _, thermal = speeds(log, log.start_time, log.end_time)
-    piston = piston_track(log, log.start_time, log.end_time)
-    frame = Painter(log.scene, log.discs, piston, size, thermal, colouring, dark).paint(log.state_at(time))
+    times = log.start_time, log.end_time
+    some = _some_states(log, *times)
+    _, thermal = speeds(log, some)
+    painter = Painter(log.scene, log.discs, piston_track(log, *times), thermal, times, some, **look)
+    frame = painter.paint(log.state_at(time))
     with written(path, FRAME, force) as part:
         Image.fromarray(frame[..., :3]).save(part, format="png")
     return path
 
 
-def check_shown(log: Log, colouring: Colouring) -> None:
+def check_shown(log: Log, colouring: Colouring | None) -> None:
     """Refuse a log without positions or without events, as nothing moves in its pictures, and order beside a piston.
 
     Raises:
@@ -159,11 +163,15 @@ def check_shown(log: Log, colouring: Colouring) -> None:
         raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
 
 
-def speeds(log: Log, first: float, last: float) -> tuple[float, float]:
-    """Largest root-mean-square speed at some times, and the same relative to a conserved motion of the whole gas."""
-    some = [state.velocity for state in log.frames(np.linspace(first, last, 5))]
+def _some_states(log: Log, first: float, last: float) -> list[LogState]:
+    return list(log.frames(np.linspace(first, last, 5)))
+
+
+def speeds(log: Log, some: Sequence[LogState]) -> tuple[float, float]:
+    """Largest root-mean-square speed of states, and the same relative to a conserved motion of the whole gas."""
     typical, thermal = (
-        max(np.sqrt(((v - u) ** 2).sum(axis=1).mean()) for v in some) for u in (0.0, centre_of_mass_velocity(log))
+        max(np.sqrt(((state.velocity - u) ** 2).sum(axis=1).mean()) for state in some)
+        for u in (0.0, centre_of_mass_velocity(log))
     )
     return float(typical), float(thermal)
 
@@ -181,23 +189,23 @@ def gif_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Writ
 
 
 @contextmanager
-def mp4_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
-    """Yield the function write(frame) of an H.264 video, which ffmpeg makes from the frames."""
+def mp4_writer(program: str, path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
+    """Yield the function write(frame) of an H.264 video, which the program ffmpeg makes from the frames."""
     raw = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(fps), "-i", "-")
-    command = ["ffmpeg", "-y", "-loglevel", "error", *raw, "-an", *CODEC, "-f", "mp4", str(path)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as ffmpeg:
-        pipe, messages = _streams(ffmpeg)
+    command = [program, "-y", "-loglevel", "error", *raw, "-an", *CODEC, "-f", "mp4", str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
+        pipe, messages = _streams(encoder)
         try:
             yield lambda frame: pipe.write(frame.data)
         except BrokenPipeError:
             pass  # its error message says why
         except BaseException:
-            ffmpeg.kill()
+            encoder.kill()
             raise
         finally:
             _close(pipe)
         said = messages.read().decode(errors="replace").strip().splitlines()
-        if ffmpeg.wait() != 0:
+        if encoder.wait() != 0:
             raise OutputError(f"ffmpeg: {said[-1] if said else 'failed'}", exit_code=1)
 
 

@@ -1,10 +1,11 @@
-"""Frames of a film: the discs in their box, and beside them their speed distribution with Maxwell-Boltzmann's curve.
+"""Frames of a film: the discs in their box, and beside them a panel, such as the distribution of their speeds.
 
-What never changes is drawn once; a frame restores it and draws only discs, walls, bars, curve and title over it.
+What never changes is drawn once; a frame restores it and draws only discs, walls, panel and title over it.
 """
 
+from collections.abc import Sequence
 from itertools import compress
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypedDict
 
 import numpy as np
 from matplotlib import colormaps, rc_context
@@ -15,7 +16,6 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import StepPatch
 from matplotlib.patheffects import Normal, Stroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
@@ -23,10 +23,11 @@ from matplotlib.ticker import MaxNLocator
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
 from idealgas.analysis.theory.conserved import centre_of_mass_velocity
-from idealgas.analysis.theory.distributions import SpeedLaw
 from idealgas.analysis.theory.ensemble import composition
+from idealgas.errors import UserError
 from idealgas.log import LogState
 from idealgas.movie.order_colours import order_colours
+from idealgas.movie.panels import BRIGHTEST, FASTEST, DensityPanel, Panel, SidesPanel, SpeedPanel
 from idealgas.movie.piston_track import PistonTrack
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
@@ -55,53 +56,56 @@ DARK: dict[Any, Any] = {
 }
 """Settings of matplotlib for pictures on a dark background."""
 
-BINS = 36
 SMALLEST = 3.0
 """Smallest diameter in pixels with which a disc is drawn."""
-
-STRIP = 9  # pixels, height of the strip with the colours
 
 CROSSING = 5.0
 """Default seconds of film in which a disc of typical speed crosses the box."""
 
-FASTEST, BRIGHTEST = 3.2, 2.0
-"""End of the speed axis and of the colour scale, in units of the root-mean-square speed."""
-
-
 BEYOND = 1.25
 """Length of the shown room along the way of a piston, relative to the largest one of the gas."""
 
-LEFT, RIGHT, BOTTOM, TOP = 64, 22, 58, 42  # margins, pixels of the usual size
-SPEEDS = 0.3
-"""Smallest share of a frame for the speed distribution beside or below the box."""
+LEFT, RIGHT, BOTTOM, TOP = 64, 22, 58, 48  # margins, pixels of the usual size
+PANEL = 0.3
+"""Smallest share of a frame for the panel beside or below the box."""
+
+SIZES = ((960, 540), (720, 720), (540, 960))
+"""Sizes of a frame, pixels."""
 
 Rectangle = tuple[float, float, float, float]
 
 Colouring = Literal["speed", "species", "order"]
 """What the colour of a disc shows: its speed, its species, or the order ψ₆ of its neighbours."""
 
+Shown = Literal["speeds", "density", "left-right", "none"]
+"""What the panel beside the discs shows."""
+
 
 class Layout(NamedTuple):
-    """Rectangles (left, bottom, width, height) of box and speeds in pixels, and scale in pixels per unit of length."""
+    """Rectangles (left, bottom, width, height) of box and panel in pixels, and scale in pixels per unit of length."""
 
     box: Rectangle
-    speeds: Rectangle
+    panel: Rectangle | None
     scale: float
 
 
-def layout(size: tuple[float, float], box: tuple[float, float]) -> Layout:
-    """Layout with the speeds beside the box, or below it if the box is larger then."""
+def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = True) -> Layout:
+    """Layout with a panel beside the box, or below it if the box is larger then."""
     width, height = size[0] - LEFT - RIGHT, size[1] - TOP - BOTTOM
-    aside, below = SPEEDS * size[0], SPEEDS * size[1]
+    if not panel:
+        scale = min(width / box[0], height / box[1])
+        w, h = scale * box[0], scale * box[1]
+        return Layout((LEFT + (width - w) / 2, BOTTOM + (height - h) / 2, w, h), None, scale)
+    aside, below = PANEL * size[0], PANEL * size[1]
     beside = min((width - LEFT - aside) / box[0], height / box[1])
     above = min(width / box[0], (height - BOTTOM - below) / box[1])
     scale = max(beside, above)
     w, h = scale * box[0], scale * box[1]
     if beside >= above:
-        speeds = (2 * LEFT + w, BOTTOM, width - LEFT - w, height)
-        return Layout((LEFT, BOTTOM + (height - h) / 2, w, h), speeds, scale)
-    speeds = (LEFT, BOTTOM, width, height - BOTTOM - h)
-    return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), speeds, scale)
+        other = (2 * LEFT + w, BOTTOM, width - LEFT - w, height)
+        return Layout((LEFT, BOTTOM + (height - h) / 2, w, h), other, scale)
+    other = (LEFT, BOTTOM, width, height - BOTTOM - h)
+    return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), other, scale)
 
 
 def view(box: tuple[float, float], piston: PistonTrack | None) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -117,6 +121,35 @@ def view(box: tuple[float, float], piston: PistonTrack | None) -> tuple[tuple[fl
     return shown[0], shown[1]
 
 
+def _lengths(shown: tuple[tuple[float, float], tuple[float, float]]) -> tuple[float, float]:
+    """Lengths of the shown part of a box along x and y."""
+    (left, right), (low, high) = shown
+    return right - left, high - low
+
+
+def _size(shown: tuple[tuple[float, float], tuple[float, float]], panel: bool) -> tuple[int, int]:
+    """Size of a frame, of SIZES: the first one, unless the shown part of a box is much larger in another."""
+    return max(SIZES, key=lambda size: layout(size, _lengths(shown), panel).scale * (1.2 if size == SIZES[0] else 1.0))
+
+
+class Look(TypedDict, total=False):
+    """How a film looks.
+
+    Attributes:
+        size: width and height of a frame in pixels, made even; by default one of SIZES, by the shape of the box.
+        colouring: what the colours of discs show.
+        panel: what the panel beside the discs shows.
+        trails: ids of discs whose paths are drawn.
+        dark: whether the background is dark.
+    """
+
+    size: tuple[int, int] | None
+    colouring: Colouring
+    panel: Shown
+    trails: Sequence[int]
+    dark: bool
+
+
 class Painter:
     """Painter of the states of one gas."""
 
@@ -125,40 +158,56 @@ class Painter:
         scene: Scene,
         gas: Gas,
         piston: PistonTrack | None,
-        size: tuple[int, int],
         rms_speed: float,
+        times: tuple[float, float] = (0.0, 1.0),
+        some: Sequence[LogState] = (),
+        *,
+        size: tuple[int, int] | None = None,
         colouring: Colouring = "speed",
+        panel: Shown = "speeds",
+        trails: Sequence[int] = (),
         dark: bool = False,
     ) -> None:
         """Prepare what is the same in all frames.
 
-        size: width and height of a frame, pixels. rms_speed: approximate largest root-mean-square speed of the film,
-        length/time. colouring: what the colour of a disc shows. dark: whether the background is dark. Speeds are those
-        relative to a conserved motion of the whole gas.
+        rms_speed: approximate largest root-mean-square speed of the film, length/time; speeds are those relative to a
+        conserved motion of the whole gas. times: start and end of the film. some: some of its states. The others are
+        described in `Look`.
+
+        Raises:
+            UserError: if there is no disc for a trail.
         """
+        if unknown := [disc for disc in trails if not 0 <= disc < len(gas)]:
+            raise UserError(f"trail: no disc {unknown[0]} (allowed 0 to {len(gas) - 1})")
         self._ink, self._line, self._edge = (INK, INK, 1.0) if dark else ("black", COLOURS[0], EDGE)
         self._flow = centre_of_mass_velocity(scene, gas)
-        self._inside, self._gas, self._piston, self._colouring = walls_inside(scene), gas, piston, colouring
+        self._scene, self._inside, self._gas, self._piston = scene, walls_inside(scene), gas, piston
+        self._colouring, self._shows = colouring, panel
+        self._panel: Panel | None = None
+        self._view = view(gas.box, piston)
+        self.size = size or _size(self._view, panel != "none")
+        self._paths: dict[int, list[np.ndarray]] = {disc: [] for disc in trails}
         self._periodic = np.array(scene.properties.periodic)
         self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
-        self._edges = np.linspace(0, FASTEST * rms_speed or 1.0, BINS + 1)
         self._shades = colormaps[COLOUR_MAP](np.linspace(DARKEST if dark else 0, 1 if dark else PALEST, SHADES))
-        self._brightest = self._edges[-1] * BRIGHTEST / FASTEST
+        self._brightest = BRIGHTEST * rms_speed or BRIGHTEST / FASTEST
         with rc_context(DARK if dark else {"grid.color": GRID}):
-            self._draw_still(size)
+            self._draw_still(rms_speed, times, some)
 
-    def _draw_still(self, size: tuple[int, int]) -> None:
+    def _draw_still(self, rms_speed: float, times: tuple[float, float], some: Sequence[LogState]) -> None:
         """Draw what is the same in all frames, and prepare the parts that are drawn over it."""
+        size = self.size
         zoom = max(min(size[0] / USUAL[0], size[1] / USUAL[1]), LEAST_ZOOM)
         page = size[0] / zoom, size[1] / zoom
         self._figure = Figure(figsize=(page[0] / DPI, page[1] / DPI), dpi=DPI * zoom)
         self._canvas = FigureCanvasAgg(self._figure)
-        self._view = view(self._gas.box, self._piston)
-        place = layout(page, (self._view[0][1] - self._view[0][0], self._view[1][1] - self._view[1][0]))
+        place = layout(page, _lengths(self._view), self._shows != "none")
         self._diameter = np.maximum(2 * self._gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
-        self._title = self._figure.text(LEFT / page[0], 1 - 0.65 * TOP / page[1], "", animated=True)
+        self._figure.text(LEFT / page[0], 1 - 0.4 * TOP / page[1], self._scene.scene.title, weight="bold")
+        self._title = self._figure.text(LEFT / page[0], 1 - 0.85 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
-        self._draw_speeds(self._add_axes(place.speeds, page))
+        if place.panel is not None:
+            self._draw_panel(self._add_axes(place.panel, page), rms_speed, times, some)
         disable_mathtext(self._figure)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
@@ -168,12 +217,16 @@ class Painter:
         speed = np.hypot(*(state.velocity - self._flow).T)
         energy = float(self._gas.mass @ (state.velocity**2).sum(axis=1)) / 2
         self._place(state.position, speed)
-        density = np.histogram(speed, self._edges)[0] / (len(speed) * self._edges[1])
-        self._bars.set_data(density)
-        self._curve.set_ydata(self._law(float(self._gas.mass @ speed**2) / 2 / len(speed)))
+        beside = () if self._panel is None else self._panel.update(state, speed)
         self._title.set_text(f"t = {state.time:<10.4g}  kinetic energy {energy:.6g}")
         self._canvas.restore_region(self._still)
-        for artist in (self._discs, *self._walls_at(state.time), self._bars, self._curve, self._title):
+        for artist in (
+            self._discs,
+            *self._trails_to(state.position),
+            *self._walls_at(state.time),
+            *beside,
+            self._title,
+        ):
             self._figure.draw_artist(artist)
         return np.asarray(self._canvas.buffer_rgba())
 
@@ -189,6 +242,7 @@ class Painter:
             [], [], [], units="xy", offset_transform=axes.transData, linewidths=0.4, animated=True
         )
         axes.add_collection(self._discs)
+        self._trails = [axes.plot([], [], lw=1.5, color=self._ink, animated=True)[0] for _ in self._paths]
         self._walls: list[Artist] = []
         self._names: list[Artist] = []
         for wall in self._inside:
@@ -210,28 +264,21 @@ class Painter:
             va="top", fontsize="small", path_effects=around, animated=True, annotation_clip=False,
         )  # fmt: skip
 
-    def _draw_speeds(self, axes: Axes) -> None:
-        """Draw the axes of the speed distribution, with the colours of the discs along the x axis."""
-        top = self._edges[-1]
-        self._speeds = np.linspace(0, top, 200)
-        highest = 1.8 * self._law((top / FASTEST) ** 2 * float(self._gas.mass.mean()) / 2).max()
-        axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)")
-        axes.set_xlabel("speed (length/time)" if not self._flow.any() else "speed relative to the gas (length/time)")
+    def _draw_panel(self, axes: Axes, rms_speed: float, times: tuple[float, float], some: Sequence[LogState]) -> None:
+        """Draw what stays the same of the panel beside the discs."""
+        gas, line = self._gas, self._line
+        if self._shows == "density":
+            self._panel = DensityPanel(axes, self._scene, gas, line, some)
+        elif self._shows == "left-right":
+            self._panel = SidesPanel(axes, self._scene, gas, line, times)
+        else:
+            self._panel = SpeedPanel(axes, gas, rms_speed, line, self._shades if self._colouring == "speed" else None)
+            if self._flow.any():
+                axes.set_xlabel("speed relative to the gas (length/time)")
         axes.grid(linewidth=0.6)
         axes.set_axisbelow(True)
-        self._bars = StepPatch(np.zeros(BINS), self._edges, color=COLOURS[5], alpha=0.6, fill=True, animated=True)
-        axes.add_patch(self._bars)
-        (self._curve,) = axes.plot(self._speeds, self._law(1.0), color=self._line, animated=True)
-        handles = [Line2D([], [], color=self._line, label="Maxwell-Boltzmann")]
-        if self._colouring == "speed":
-            high = STRIP / (axes.bbox.height * DPI / self._figure.dpi)
-            strip = axes.inset_axes((0, -high, 1, high))
-            shown = np.minimum(np.linspace(0, FASTEST / BRIGHTEST, 200), 1) * (SHADES - 1)
-            strip.imshow(self._shades[shown.astype(int)][None], aspect="auto")
-            strip.set_axis_off()
-            axes.tick_params(axis="x", pad=12, length=0)
         kinds = [Line2D([], [], marker="o", linestyle="", color=colour, label=name) for name, colour in self._key()]
-        axes.legend(handles=[*handles, *kinds], frameon=False, loc="upper right")
+        axes.legend(handles=[*self._panel.handles, *kinds], frameon=False, loc="upper right")
 
     def _key(self) -> list[tuple[str, Any]]:
         """What colours stand for, where the axis of speeds does not tell it."""
@@ -266,6 +313,15 @@ class Painter:
         self._discs.set(widths=diameter, heights=diameter, angles=np.zeros(len(which)), offsets=position)
         self._discs.set(facecolors=colours[which], edgecolors=colours[which] * (*[self._edge] * 3, 1.0))
 
+    def _trails_to(self, position: np.ndarray) -> list[Line2D]:
+        """Paths of the chosen discs up to now, with gaps where they cross periodic sides."""
+        for (disc, path), line in zip(self._paths.items(), self._trails, strict=True):
+            if path and (np.abs(position[disc] - path[-1]) > np.array(self._gas.box) / 2).any():
+                path.append(np.full(2, np.nan))
+            path.append(position[disc].copy())
+            line.set_data(*np.array(path).T)
+        return self._trails
+
     def _walls_at(self, time: float) -> list[Artist]:
         """Draw the walls that are present at a time, as gates may be open, and the piston."""
         there = [wall.is_there(time) for wall in self._inside]
@@ -276,11 +332,3 @@ class Painter:
         self._piston_line.set(**{"ydata" if self._piston.axis else "xdata": [place] * 2})
         self._piston_name.xy = (self._view[0][0], place) if self._piston.axis else (place, self._view[1][1])
         return [*drawn, self._piston_line, self._piston_name]
-
-    def _law(self, temperature: float) -> np.ndarray:
-        """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""
-        if not temperature > 0:
-            return np.zeros_like(self._speeds)
-        shares = self._species.number / self._species.number.sum()
-        kinds = zip(shares, self._species.mass.tolist(), strict=True)
-        return sum((share * SpeedLaw(temperature, mass).pdf(self._speeds) for share, mass in kinds), np.zeros(1))

@@ -10,7 +10,7 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: length/time². limits: of its way.
+    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: (K,), length/time². limits: of its way.
 
     outward: +1 if the gas is below it on this axis, -1 if above. name: what pictures call it.
     """
@@ -18,7 +18,7 @@ class PistonTrack:
     axis: int
     time: np.ndarray
     place: np.ndarray
-    pull: float
+    pull: np.ndarray
     limits: tuple[float, float]
     outward: float
     name: str = "piston"
@@ -28,7 +28,7 @@ class PistonTrack:
         k = int(np.clip(self.time.searchsorted(time, "right") - 1, 0, len(self.time) - 2))
         before, after = time - self.time[k], time - self.time[k + 1]
         step = self.time[k + 1] - self.time[k]
-        place = (self.place[k + 1] * before - self.place[k] * after) / step + 0.5 * self.pull * before * after
+        place = (self.place[k + 1] * before - self.place[k] * after) / step + 0.5 * self.pull[k] * before * after
         return float(np.clip(place, *self.limits))
 
 
@@ -54,6 +54,6 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
     time, unique = np.unique(np.concatenate(times), return_index=True)
     if len(time) < 2:
         return None
-    pull = piston.acceleration(log.box, log.scene.properties.acceleration)
+    pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
     limits = (0.0, log.box[piston.axis])
     return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward)

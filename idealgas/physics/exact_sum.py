@@ -120,6 +120,13 @@ def values(sums: np.ndarray) -> np.ndarray:
     return np.array([math.ldexp(number, k) for number, k in _numbers(sums)])
 
 
+def add_term(sums: np.ndarray, term: float) -> None:
+    """Add a term to the only sum of an array, as `add` does in compiled code."""
+    ((number, k),) = _numbers(sums)
+    number += round(math.ldexp(term, -k))
+    sums["high"], sums["low"] = number >> 64, number & (1 << 64) - 1
+
+
 def clear(sums: np.ndarray) -> None:
     """Set sums to 0."""
     sums["low"], sums["high"] = 0, 0

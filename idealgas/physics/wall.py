@@ -20,22 +20,10 @@ SEGMENT = np.dtype(
         ("x", "f8"), ("y", "f8"),  # start point, length
         ("tx", "f8"), ("ty", "f8"),  # unit tangent
         ("length", "f8"),  # distance of the two end points
-        ("opens", "f8"), ("closes", "f8"),  # times between which a gate is absent; infinite for a wall
         ("active", "?"),  # whether it is present in this epoch
     ],
     align=True,
 )  # fmt: skip
-
-
-def begin_epoch(segments: np.recarray, time: float) -> None:
-    """Set which segments are present from a time on: gates are absent while they are open."""
-    segments.active[:] = ~((segments.opens <= time) & (time < segments.closes))
-
-
-def next_change(segments: np.recarray, time: float) -> float:
-    """Earliest time, after the given one, at which a gate opens or closes; infinite if none does."""
-    switches = np.concatenate((segments.opens, segments.closes))
-    return float(switches[switches > time].min(initial=math.inf))
 
 
 @inline

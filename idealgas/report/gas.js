@@ -2,10 +2,10 @@
 
 // ── the gas: which event each disc had last, and its free flight since ──
 
+let stored = name => document.getElementById("data-" + name)?.textContent; // numbers as base64
+
 function unpack(name, Type) {
-  const element = document.getElementById("data-" + name);
-  if (!element) return new Type(0);
-  const text = atob(element.textContent.trim());
+  const text = atob((stored(name) ?? "").trim());
   const bytes = new Uint8Array(text.length);
   for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
   return new Type(bytes.buffer);

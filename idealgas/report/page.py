@@ -11,7 +11,7 @@ from idealgas.analysis.core.tables import Number, Table, escape, html_table
 from idealgas.analysis.info import info
 from idealgas.errors import UserError
 from idealgas.files import check_output, written
-from idealgas.log import Log
+from idealgas.log import Log, takes_path
 from idealgas.report.picture import html_pictures
 from idealgas.report.player import MOST_DISCS, Player, player
 from idealgas.report.sections import Section, main_sections, make_sections
@@ -20,11 +20,12 @@ SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
 """The program of the page, in order."""
 
 
-def _text(name: str) -> str:
+def text_of(name: str) -> str:
+    """Text of a file of the page."""
     return resources.files("idealgas.report").joinpath(name).read_text(encoding="utf-8")
 
 
-PLAYER = Template(_text("player.html"))
+PLAYER = Template(text_of("player.html"))
 
 SUMMARY = {
     "end_time": "end (time)",
@@ -45,6 +46,7 @@ SUMMARY = {
 """Labels, with units, of the values in the summary of a run that the report shows."""
 
 
+@takes_path
 def write_report(
     log: Log,
     output: str | os.PathLike[str],
@@ -56,7 +58,7 @@ def write_report(
     """Write the report page of a log and return its path.
 
     Args:
-        log: the log to show.
+        log: the log to show, or its path.
         output: path of the page, with the ending .html or .htm.
         start: first time in the player; None for the start of the log.
         force: whether to replace an existing report.
@@ -90,26 +92,31 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
         rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
         parts.append(("What does not apply", f"<ul>{rows}</ul>"))
-    about = log.scene.scene.description
     title = log.scene.scene.title or Path(log.path).name
     names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
     said = [_summary(log, found), *(section.words for section in main if section.words)]
     shown = [f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)]
     folded = len(main) + 1
-    return Template(_text("report.html")).substitute(
+    return Template(text_of("report.html")).substitute(
         title=escape(title),
-        style=_text("report.css"),
-        script="\n".join(map(_text, SCRIPTS)),
+        style=text_of("report.css"),
+        script="\n".join(map(text_of, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
-        description="".join(f"<p>{escape(' '.join(text.split()))}</p>" for text in about.split("\n\n") if text),
+        description=description_html(log),
         words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
         sections="\n".join(shown[:folded]),
         more="\n".join(shown[folded:]),
         data="" if played is None else _data(played),
         footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
     )
+
+
+def description_html(log: Log) -> str:
+    """HTML of the description of a scene, a paragraph for each of its own."""
+    paragraphs = log.scene.scene.description.split("\n\n")
+    return "".join(f"<p>{escape(' '.join(text.split()))}</p>" for text in paragraphs if text)
 
 
 def _summary(log: Log, found: dict) -> str:
@@ -142,6 +149,11 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
     else:
         shown += "the whole run."
     shown += f" At 1 × a second is {played.head['speed']:.3g} units of time."
+    return player_html(log, heading, shown)
+
+
+def player_html(log: Log, heading: str, shown: str) -> str:
+    """HTML of the player under a heading, with a note on what it shows."""
     return PLAYER.substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
 
 

@@ -11,7 +11,7 @@ class Player {
     this.rates = document.getElementById("rate");
     this.views = [new SpeedView(document.getElementById("speeds"), gas)];
     if (gas.head.positions) this.showDiscs(document.getElementById("discs"));
-    this.curves = makeCurves(time => { this.pause(); this.seek(time); });
+    this.findCurves();
     this.button.addEventListener("click", () => this.toggle());
     this.scrub.addEventListener("input", () => { this.pause(); this.seek(this.at(this.scrub.value / this.scrub.max)); });
     this.rates.addEventListener("change", () => { this.rate = +this.rates.value; });
@@ -54,6 +54,14 @@ class Player {
     this.draw();
   }
 
+  // Go to the time of a click on a curve.
+  jump(time) {
+    this.pause();
+    this.seek(time);
+  }
+
+  findCurves() { this.curves = makeCurves(time => this.jump(time)); }
+
   positions() { return Array.from(this.gas.x, (x, i) => [x, this.gas.y[i]]); }
 
   draw() {
@@ -74,7 +82,7 @@ class Player {
   toggle() { if (this.playing) this.pause(); else this.play(); }
 
   play() {
-    if (this.time >= this.gas.head.end) this.seek(this.gas.head.start);
+    if (this.time >= this.gas.head.end) this.restart();
     this.playing = true;
     this.button.textContent = "Pause";
     let before = null;
@@ -83,9 +91,17 @@ class Player {
       const seconds = Math.min((now - (before ?? now)) / 1000, 0.25); // a hidden page has no frames: no leap after it
       this.seek(this.time + seconds * this.rate * this.gas.head.speed);
       before = now;
-      if (this.time >= this.gas.head.end) this.pause(); else requestAnimationFrame(frame);
+      this.played();
+      requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
+  }
+
+  restart() { this.seek(this.gas.head.start); }
+
+  // After each frame of playing.
+  played() {
+    if (this.time >= this.gas.head.end) this.pause();
   }
 
   pause() {

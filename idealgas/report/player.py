@@ -20,7 +20,8 @@ from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.movie.order_colours import order_colours
-from idealgas.movie.painter import BRIGHTEST, COLOUR_MAP, CROSSING, FASTEST, PALEST
+from idealgas.movie.painter import COLOUR_MAP, CROSSING, PALEST
+from idealgas.movie.panels import BRIGHTEST, FASTEST
 from idealgas.movie.piston_track import piston_track
 from idealgas.scene.walls import walls_inside
 
@@ -50,22 +51,22 @@ class Player:
     end: float
 
 
-def player(log: Log, start: float | None = None) -> Player | None:
-    """Data of the player from time `start`, by default the start of the log, for at most MOST_ROWS event rows.
+def player(log: Log, start: float | None = None, rows: int = MOST_ROWS, order: bool = True) -> Player | None:
+    """Data of the player from time `start`, by default the start of the log, for at most `rows` event rows.
 
-    None if the log has no events or more than MOST_DISCS discs.
+    order: whether the page knows the order ψ₆ of discs. None if the log has no events or more than MOST_DISCS discs.
     """
     gas = log.discs
     if not log.has_events or len(gas) > MOST_DISCS:
         return None
     first, last = span(log, start, None)
-    rows = log.row_at(first, "right")
-    if len(log) - rows > MOST_ROWS:
-        (cut,) = log.chunks(("time",), rows + MOST_ROWS, rows + MOST_ROWS + 1)
+    row = log.row_at(first, "right")
+    if len(log) - row > rows:
+        (cut,) = log.chunks(("time",), row + rows, row + rows + 1)
         last = float(np.nextafter(cut.time[0], first))
     state = log.state_at(first)
     flow = centre_of_mass_velocity(log)
-    typical, thermal = (float(np.sqrt(((state.velocity - u) ** 2).sum(axis=1).mean())) or 1.0 for u in (0.0, flow))
+    thermal = _rms_speed(state.velocity - flow)
     species = composition(gas)
     shades = colormaps[COLOUR_MAP]
     head = {
@@ -76,7 +77,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
         "start": first,
         "end": last,
         "ticks": TICKS,
-        "speed": max(gas.box) / CROSSING / typical,
+        "speed": crossing(gas.box, state.velocity),
         "flow": flow.tolist(),
         "fastest": FASTEST * thermal,
         "brightest": BRIGHTEST * thermal,
@@ -91,7 +92,7 @@ def player(log: Log, start: float | None = None) -> Player | None:
             for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
         ],
         "walls": [
-            {"name": w.name, "from": w.start, "to": w.end, "absent": [t if np.isfinite(t) else None for t in w.absence]}
+            {"name": w.name, "from": w.start, "to": w.end, "absent": np.minimum(w.absences, 2 * last + 1).tolist()}
             for w in walls_inside(log.scene)
         ],
         "piston": _piston(log, first, last),
@@ -99,8 +100,18 @@ def player(log: Log, start: float | None = None) -> Player | None:
     arrays = {"radius": gas.radius, "mass": gas.mass, "species": gas.species.astype("<u2"), "velocity": state.velocity}
     if log.has_positions:
         arrays["position"] = state.position
-        arrays |= _order(log, first, last)
-    return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, rows), first, last)
+        arrays |= _order(log, first, last) if order else {}
+    return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, row), first, last)
+
+
+def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
+    """Time that a second of playing takes, in which a typical disc crosses a part of the box."""
+    return max(box) / CROSSING / _rms_speed(velocity)
+
+
+def _rms_speed(velocity: np.ndarray) -> float:
+    """Root-mean-square speed of velocities (N, 2), 1 if nothing moves."""
+    return float(np.sqrt((velocity**2).sum(axis=1).mean())) or 1.0
 
 
 def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
@@ -111,7 +122,7 @@ def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
     return {
         "axis": track.axis,
         "outward": track.outward,
-        "pull": track.pull,
+        "pull": float(track.pull[0]),
         "limits": track.limits,
         "ends": [track.at(first), track.at(last)],
     }

@@ -36,6 +36,8 @@ class DiscView {
     this.chosen = null; // number of the disc whose flight is shown
   }
 
+  show(gas) { this.gas = gas; }
+
   // The disc below a pointer.
   discAt(event) {
     const box = this.canvas.getBoundingClientRect();
@@ -81,8 +83,7 @@ class DiscView {
     pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
     pen.lineWidth = 2;
     for (const wall of head.walls) {
-      const [opens, closes] = wall.absent;
-      const open = opens !== null && gas.time >= opens && (closes === null || gas.time < closes);
+      const open = wall.absent.some(([opens, closes]) => gas.time >= opens && gas.time < closes);
       pen.strokeStyle = open ? theme.soft : theme.ink;
       pen.lineWidth = open ? 1 : 2;
       pen.setLineDash(open ? [1, 5] : []);
@@ -176,9 +177,14 @@ class DiscView {
 class SpeedView {
   constructor(canvas, gas) {
     this.canvas = canvas;
-    this.gas = gas;
     this.counts = new Float64Array(40);
-    this.top = 1.8 * Math.max(...this.law(this.temperature())) || 1;
+    this.show(gas);
+  }
+
+  show(gas) {
+    const rescaled = gas.head.fastest !== this.gas?.head.fastest;
+    this.gas = gas;
+    if (rescaled) this.top = 1.8 * Math.max(...this.law(this.temperature())) || 1;
   }
 
   temperature() {

@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects import EFFECTS
-from idealgas.effects.bundle import Effects, inner_energy, present
+from idealgas.effects.bundle import Effects, energy_parts, inner_energy, present
 from idealgas.effects.effect import Start
 from idealgas.engine.epoch import driving_energy, driving_speed, encounters_per_length
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
@@ -28,10 +28,17 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene, gas))
     tables = ((effect, scene.tables_of(effect)) for effect in EFFECTS)
     states = {e.field: e.make(own, start) for e, own in tables if e.make_always or e.find(own) is not None}
-    effects = Effects(**states)
+    effects = Effects(**states, schedule=_schedule(scene, start) or None)
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
     loses, inner = scene.properties.dissipative, inner_energy(effects, gas)
     return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
+
+
+def _schedule(scene: Scene, start: Start) -> tuple[tuple[float, int, int, float], ...]:
+    """Changes in time of all effects, in order: time, index of the effect, item of its state, value."""
+    tables = ((k, effect, scene.tables_of(effect)) for k, effect in enumerate(EFFECTS))
+    own = ((k, effect.schedule(table, start)) for k, effect, table in tables if effect.find(table) is not None)
+    return tuple(sorted((change.time, k, change.item, change.value) for k, changes in own for change in changes))
 
 
 def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
@@ -60,6 +67,7 @@ def with_sums(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
         bath_energy=None if scene.properties.bath is None else make_sums([energy]),
+        step_energy=make_sums([energy]) if effects.schedule and energy_parts(effects, gas) else None,
         flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
     )
 
@@ -109,6 +117,8 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
         yield Column("dissipated_energy", "f8", lost.shape, ENERGY), lost
     if (heat := effects.bath_energy) is not None:
         yield Column("bath_energy", "f8", (), ENERGY), heat
+    if (steps := effects.step_energy) is not None:
+        yield Column("step_energy", "f8", (), ENERGY), steps
     if (flow := effects.flow) is not None:
         tensor = np.asarray(flow.tensor)  # a slice of a recarray takes ten times as long
         yield Column("kinetic_flow", "f8", (3,), ACTION), tensor[KINETIC]

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.effects.bundle import Effects, present
+from idealgas.effects.bundle import Effects, energy_parts, present
 from idealgas.physics.exact_sum import values
 from idealgas.state import Gas
 
@@ -17,8 +17,8 @@ class Energy(NamedTuple):
         rotational: of the discs.
         potential: of the discs.
         piston: kinetic and potential energy of a piston with a mass.
-        given: energy that walls and a heat bath gave to the discs, less the losses at walls; without a piston with a
-            mass, whose energy is counted itself.
+        given: energy that walls, a heat bath and changes of a potential in time gave, less the losses at walls; without
+            a piston with a mass, whose energy is counted itself.
         lost: energy lost in collisions between discs, and with a piston with a mass.
     """
 
@@ -49,12 +49,10 @@ def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
     """Energy account of a gas; local_time: of the gas, from the start of the epoch, time."""
     by_wall = np.zeros(0) if effects.wall_energy is None else values(effects.wall_energy)
     losses = np.zeros(0) if effects.dissipated is None else values(effects.dissipated)
-    from_bath = np.zeros(0) if effects.bath_energy is None else values(effects.bath_energy)
-    given, lost, parts = float(by_wall.sum() + from_bath.sum()), float(losses[:1].sum()), {}
+    others = [values(sums) for sums in (effects.bath_energy, effects.step_energy) if sums is not None]
+    given, lost = float(by_wall.sum() + sum(map(np.sum, others))), float(losses[:1].sum())
     for effect, state in present(effects):
-        if effect.energy is not None:
-            parts[effect.energy.part] = effect.energy.of(state, gas, local_time)
         if (wall := effect.own_wall(state)) is not None:
             given -= float(by_wall[wall : wall + 1].sum())
             lost += float(losses[1 + wall : 2 + wall].sum())
-    return Energy(gas.kinetic_energy, **parts, given=given, lost=lost)
+    return Energy(gas.kinetic_energy, **energy_parts(effects, gas, local_time), given=given, lost=lost)

@@ -1,11 +1,13 @@
 """Tables of a scene, except those of effects: box, discs, run and log."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag
 
+from idealgas.columns import SIDES
 from idealgas.effects import EFFECTS
 from idealgas.effects.periodic import PERIODIC
+from idealgas.effects.schedule import SteppedTable
 from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word
 
 WORDS = ("reflecting", *(effect.side for effect in EFFECTS if isinstance(effect.side, str)))
@@ -69,6 +71,12 @@ class Box(Table):
     def periodic(self) -> tuple[bool, bool]:
         """Whether the box is periodic along x, and along y."""
         return self.left == PERIODIC, self.bottom == PERIODIC
+
+    def after(self, time: float) -> Self:
+        """The box in a scene whose clock starts at a later time."""
+        sides = zip(SIDES, self.sides, strict=True)
+        later = {name: side.after(time) for name, side in sides if isinstance(side, SteppedTable)}
+        return self.model_copy(update=later)
 
 
 class Species(Table):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from idealgas.columns import FIRST_SEGMENT, SIDES, Point, side_ends
@@ -12,36 +11,34 @@ if TYPE_CHECKING:
 
 
 class NumberedWall(NamedTuple):
-    """Wall with name, ends (length), description of its action, and times at which it opens and closes."""
+    """Wall with name, ends (length), description of its action, and times from and until which it is absent."""
 
     name: str
     start: Point
     end: Point
     action: str
-    absence: tuple[float, float] = (math.inf, math.inf)
+    absences: tuple[tuple[float, float], ...] = ()
 
     @property
     def is_gate(self) -> bool:
         """Whether the wall opens at some time."""
-        return math.isfinite(self.absence[0])
+        return bool(self.absences)
 
     def is_there(self, time: float) -> bool:
         """Whether the wall is present at a time."""
-        opens, closes = self.absence
-        return not opens <= time < closes
+        return not any(opens <= time < closes for opens, closes in self.absences)
 
 
 def number_walls(scene: Scene) -> list[NumberedWall]:
     """All walls in the order of their numbers."""
-    emits = scene.properties.emits
     walls = []
-    for name, ends, side, temperature in zip(SIDES, side_ends(scene.box.size), scene.box.sides, emits, strict=False):
-        action = str(side) if temperature is None else f"thermal, temperature {temperature:g}"
+    for name, ends, side in zip(SIDES, side_ends(scene.box.size), scene.box.sides, strict=True):
+        action = side if isinstance(side, str) else side.action
         if scene.piston and scene.piston.side == name:
             action = scene.piston.action
         walls.append(NumberedWall(name, *ends, action))
     for k, wall in enumerate(scene.wall, FIRST_SEGMENT):
-        walls.append(NumberedWall(wall.name or f"wall {k}", wall.start, wall.end, wall.action, wall.absence))
+        walls.append(NumberedWall(wall.name or f"wall {k}", wall.start, wall.end, wall.action, wall.absences))
     return walls
 
 

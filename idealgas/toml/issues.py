@@ -26,6 +26,8 @@ _WORDS = {
     "string_pattern_mismatch": ("not a word", "a letter, then letters, digits, - and _"),
     "greater_than": ("out of range", "> {gt:g}"),
     "greater_than_equal": ("out of range", ">= {ge:g}"),
+    "steps_from_0": ("steps that do not begin at t = 0", "[[0, value], [t, value], …]"),
+    "steps_in_order": ("times not increasing", "[[0, value], [t, value], …] with increasing t"),
     "too_close_to_0": ("too close to 0", "a size >= {smallest:g}"),
     "less_than": ("out of range", "< {lt:g}"),
     "less_than_equal": ("out of range", "<= {le:g}"),
@@ -74,8 +76,9 @@ def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
         return Issue((key[:-1],), "too short", _shown(got), _described(key, model))
     if kind == "missing":
         return Issue((key,), "missing", "nothing", _described(key, model))
-    if kind in ("tuple_type", "too_long"):
-        return Issue((key,), "too long" if kind == "too_long" else "wrong type", _shown(got), _described(key, model))
+    if kind in ("tuple_type", "too_long", "too_short"):
+        wrong = {"too_long": "too long", "too_short": "too short"}.get(kind, "wrong type")
+        return Issue((key,), wrong, _shown(got), _described(key, model))
     if key != finding["loc"] and kind == "literal_error":
         return Issue((key,), "unknown value", _shown(got), _described(key, model))
     wrong, allowed = _WORDS.get(kind, ("wrong value", finding["msg"]))

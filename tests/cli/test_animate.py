@@ -1,9 +1,10 @@
 """`idealgas animate`: what it says and makes, and one line for everything it cannot do."""
 
 import os
+import sys
 
 import pytest
-from helpers.support import called, error_of, output_of
+from helpers.support import error_of, output_of
 from PIL import Image
 
 from idealgas.run.simulate import simulate
@@ -51,12 +52,20 @@ def test_one_picture(folder, background, bright, tmp_path):
         assert (min(image.getpixel((1, 1))) > 200) == bright
 
 
-def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
+def test_without_ffmpeg_no_mp4_and_nothing_else(folder, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
-    made = output_of("animate", folder / "run.h5", "-o", tmp_path / "film.mp4", "--to", 1, *SMALL)
-    assert made.startswith(f"{tmp_path}/film.gif instead of {tmp_path}/film.mp4, because ffmpeg was not found: ")
-    assert made.count("\n") == 1
-    assert os.listdir(tmp_path) == ["film.gif"]
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    line = error_of("animate", folder / "run.h5", "-o", tmp_path / "film.mp4", "--to", 1, *SMALL)
+    assert line == "MP4 needs ffmpeg: pip install 'idealgas-md[film]' (GIF needs nothing)\n"
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("panel", ["density", "left-right", "none"])
+def test_panels_and_trails(folder, panel, tmp_path):
+    film = tmp_path / "film.gif"
+    output_of("animate", folder / "run.h5", "-o", film, "--to", 2, "--panel", panel, "--trail", 3, "--trail", 0, *SMALL)
+    with Image.open(film) as image:
+        assert image.n_frames > 2
 
 
 @pytest.mark.parametrize(
@@ -72,6 +81,7 @@ def test_without_ffmpeg_it_is_a_gif_and_says_so(folder, tmp_path, monkeypatch):
         ("run", ("--frame", 4), "film.gif: unknown figure format (allowed .png)"),
         ("run", ("--frame", 31, "-o", "a.png"), "run.h5: no state at t = 31: the log covers t = 0 to 30"),
         ("run", ("-o", "folder.gif"), "folder.gif: is a folder"),
+        ("run", ("--trail", 20), "trail: no disc 20 (allowed 0 to 19)"),
     ],
 )
 def test_bad_input_is_one_line(folder, log, arguments, message, tmp_path, monkeypatch):
@@ -86,7 +96,6 @@ def test_bad_input_is_one_line(folder, log, arguments, message, tmp_path, monkey
     [("--size", "960"), ("--size", "100x100"), ("--size", "9000x300"), ("--fps", 0), ("--speed", 0), ("--speed", -1)],
 )
 def test_options_out_of_range(folder, arguments, tmp_path):
-    result = called("animate", folder / "run.h5", "-o", tmp_path / "film.gif", *arguments)
-    assert result.returncode == 2
-    assert f"Invalid value for '{arguments[0]}'" in result.stderr
+    line = error_of("animate", folder / "run.h5", "-o", tmp_path / "film.gif", *arguments)
+    assert f"invalid value for '{arguments[0]}'" in line
     assert os.listdir(tmp_path) == []

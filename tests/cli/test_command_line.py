@@ -125,7 +125,16 @@ def test_a_scene_from_a_pipe():
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion(shell):
     """The answers that the script of each shell asks for."""
-    for words, answer in (("idealgas pres", "pressure"), ("idealgas pressure --pl", "--plot")):
+    for words, answer in (
+        ("idealgas pres", "pressure"),
+        ("idealgas pressure --pl", "--plot"),
+        ("idealgas info ga", "file"),
+        ("idealgas check ga", "file"),
+        ("idealgas run gas.toml -o ga", "file"),
+        ("idealgas pressure gas.h5 --plot ga", "file"),
+        ("idealgas examples pis", "piston"),
+        ("idealgas run gas.toml --set run.unt", "run.until="),
+    ):
         last = words.split()[-1]
         asked = {"COMP_WORDS": words, "COMP_CWORD": last if shell == "fish" else str(words.count(" "))}
         environment = {"_IDEALGAS_COMPLETE": f"{shell}_complete", **asked}

@@ -4,7 +4,7 @@ import json
 import tomllib
 
 import pytest
-from helpers.support import ROOT, called, error_of, idealgas
+from helpers.support import ROOT, called, error_of, idealgas, output_of
 
 from idealgas.scene import parse_scene
 
@@ -12,10 +12,15 @@ CONFIGS = ROOT / "configs"
 SCENES = sorted(path.stem for path in CONFIGS.glob("*.toml"))
 
 
-def test_examples_are_listed_with_their_titles():
-    lines = called("examples").stdout.splitlines()
-    titles = {name: tomllib.loads((CONFIGS / f"{name}.toml").read_text())["scene"]["title"] for name in SCENES}
-    assert {line.split()[0]: line.split(maxsplit=1)[1] for line in lines} == titles
+def test_examples_are_listed_with_what_they_show():
+    listed = dict(line.split(maxsplit=1) for line in called("examples").stdout.splitlines())
+    assert sorted(listed) == SCENES
+    for name, text in listed.items():
+        scene = tomllib.loads((CONFIGS / f"{name}.toml").read_text())["scene"]
+        assert " ".join(scene.get("description", scene["title"]).split()).startswith(text)
+    assert listed["brownian"] == "Brownian motion: four large, heavy discs among a thousand light ones."
+    narrow = idealgas("examples", COLUMNS="70").stdout.splitlines()
+    assert max(map(len, narrow)) <= 70
 
 
 def test_an_example_is_copied_and_can_be_checked(tmp_path):
@@ -30,6 +35,11 @@ def test_an_example_is_copied_and_can_be_checked(tmp_path):
     assert called("examples", "piston", "--force", folder=tmp_path).returncode == 0
     assert called("examples", "quickstart.toml", "-o", "mine.toml", folder=tmp_path).returncode == 0
     assert (tmp_path / "mine.toml").read_bytes() == (CONFIGS / "quickstart.toml").read_bytes()
+
+
+def test_a_new_scene_to_standard_output(tmp_path):
+    assert output_of("new", "-", folder=tmp_path) == (CONFIGS / "template.toml").read_text(encoding="utf-8")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_mistyped_example_is_one_line(tmp_path):

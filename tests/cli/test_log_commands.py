@@ -125,6 +125,14 @@ def test_follow_shows_what_is_complete(finished):
     assert "6,000" in shown
 
 
+def test_export_by_the_ending_of_the_file(copy, tmp_path):
+    shown = output_of("export", copy, "--frames", 3, "-o", tmp_path / "gas.extxyz")
+    assert shown == f"{tmp_path / 'gas.extxyz'}: 3 frames\n"
+    for options in ((), ("-o", tmp_path / "gas.xyz")):
+        line = error_of("export", copy, "--frames", 3, *options)
+        assert line.startswith("--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)")
+
+
 def test_export(copy):
     shown = output_of("export", copy, "--format", "extxyz", "--frames", "every=0.5")
     assert shown.startswith(f"{copy.with_suffix('.extxyz')}: ")

@@ -1,6 +1,5 @@
 """Small gases with any set of effects, for tests of the engine."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -56,11 +55,14 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     n = len(gas)
     draw = np.random.default_rng(seed)
     walls = []
+    schedule: list[tuple[float, int, int, float]] = []
     if "segments" in names:
-        walls += [(9.0, 1.0, 10.0, 4.0, math.inf, math.inf), (9.5, 7.0, 10.5, 7.0, math.inf, math.inf)]
+        walls += [(9.0, 1.0, 10.0, 4.0, True), (9.5, 7.0, 10.5, 7.0, True)]
     if "gates" in names:
-        walls += [(8.6, 4.5, 8.6, 8.8, 3.0, 7.0), (0.5, 8.6, 3.5, 8.6, 0.0, 4.0)]
-    table = np.array(walls).reshape(-1, 6)
+        first, field = len(walls), [effect.field for effect in EFFECTS].index("segments")
+        walls += [(8.6, 4.5, 8.6, 8.8, True), (0.5, 8.6, 3.5, 8.6, False)]
+        schedule = [(3.0, field, first, 0.0), (4.0, field, first + 1, 1.0), (7.0, field, first, 1.0)]
+    table = np.array(walls).reshape(-1, 5)
     inertia = 0.5 * gas.mass * gas.radius**2
     temperature = np.full(FIRST_SEGMENT + len(walls), -1.0)
     temperature[2] = 1.5
@@ -71,7 +73,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         "periodic": lambda: Periodic(
             "piston" not in names, "piston" in names, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)
         ),
-        "segments": lambda: make_segments(table[:, :2], table[:, 2:4], *table[:, 4:].T),
+        "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
         "rotation": lambda: Rotation(draw.normal(size=n), inertia, 0.6, 0.3),
         "restitution": lambda: Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)),
         "thermal": lambda: Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)),
@@ -85,6 +87,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + len(walls))),
         bath_energy=make_sums([1.0]) if "thermostat" in names else None,
         flow=make_flow(gas, FIRST_SEGMENT + 2 * len(walls), 7 if "rotation" in names else 6),
+        schedule=tuple(schedule) or None,
     )
 
 

@@ -86,8 +86,17 @@ def pick(draw, *values):
     return draw(st.sampled_from(values))
 
 
-def draw_gate(draw) -> dict[str, float]:
+def in_steps(draw, *values: float):
+    """One of some values, or several in steps in time."""
+    times = pick(draw, (), (), (0.3,), (0.01, 0.02), (0.1, 1.0))
+    steps = [[time, pick(draw, *values)] for time in (0.0, *times)]
+    return steps if times else steps[0][1]
+
+
+def draw_gate(draw) -> dict[str, Any]:
     """When a wall opens and closes, if it does."""
+    if pick(draw, False, False, True):
+        return {"opens_at": [pick(draw, 0.0, 0.1), 0.5], "closes_at": [0.2, 0.6]}
     opens, lasts = pick(draw, None, None, 0.1, 1.0), pick(draw, None, 0.01, 0.5)
     gate = {} if opens is None else {"opens_at": opens}
     return gate if lasts is None else gate | {"closes_at": (opens or 0.0) + lasts}
@@ -99,8 +108,9 @@ def draw_piston(draw, size, mass: float) -> dict[str, Any]:
     share = pick(draw, 1.0, 0.9, 0.5)
     piston = {"side": side, "position": size[axis] * (share if upper else 1 - share)}
     if draw(st.booleans()):
-        return piston | {"velocity": pick(draw, 0.0, 0.1, -0.1, -0.003)}
-    return piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3), "pressure": mass * pick(draw, 1.0, 0.01, 30.0)}
+        return piston | {"velocity": in_steps(draw, 0.0, 0.1, -0.1, -0.003)}
+    pressures = (mass * pressure for pressure in (1.0, 0.01, 30.0))
+    return piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3), "pressure": in_steps(draw, *pressures)}
 
 
 def keep_clear_of_piston(walls, size, piston) -> None:
@@ -156,7 +166,7 @@ def tables_of(draw) -> dict[str, Any]:
             if periodic[axis]:
                 tables["box"][side] = "periodic"
             elif "thermal" in called and draw(st.booleans()) and not (piston and piston["side"] == side):
-                tables["box"][side] = {"thermal": masses[-1] * pick(draw, 1.0, 1e-4, 100.0)}
+                tables["box"][side] = {"thermal": in_steps(draw, *(masses[-1] * x for x in (1.0, 1e-4, 100.0)))}
     if len(walls):
         hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}
         gates = draw(st.booleans())
@@ -177,7 +187,7 @@ def tables_of(draw) -> dict[str, Any]:
     if piston:
         tables["piston"] = piston
     if "thermostat" in called:
-        tables["thermostat"] = {"temperature": masses[0] * pick(draw, 1.0, 1e-4, 100.0)}
+        tables["thermostat"] = {"temperature": in_steps(draw, *(masses[0] * x for x in (1.0, 1e-4, 100.0)))}
         tables["thermostat"]["rate"] = pick(draw, 0.1, 1e-3, 10.0)
     if n and n <= 9 and share <= 0.5 and draw(st.booleans()):
         tables["species"] = draw_species(draw, size, masses[0], radius.max(), spins)
@@ -201,6 +211,9 @@ def in_units(value, units, path=()):
     """The tables in other units."""
     if isinstance(value, dict):
         return {key: in_units(item, units, (*path, key)) for key, item in value.items()}
+    stepped = path[-1:] in (("temperature",), ("thermal",), ("pressure",), ("velocity",))
+    if stepped and isinstance(value, list) and isinstance(value[0], list):
+        return [[in_units(time, units, ("until",)), in_units(x, units, path)] for time, x in value]
     if isinstance(value, list):
         return [in_units(item, units, path) for item in value]
     if isinstance(value, (float, np.floating)):

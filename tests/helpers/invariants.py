@@ -49,9 +49,7 @@ class InvariantChecker:
         self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
-        self.absence = np.array([w.absence for w in scene.wall]).reshape(-1, 2)
-        emits = [*scene.properties.emits, *[None] * len(scene.wall)][: 4 + len(scene.wall)]
-        self.temperature = np.array([-1.0 if t is None else t for t in emits])
+        self.gates = scene.wall
         self.piston = scene.piston
         self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
         self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
@@ -181,10 +179,11 @@ class InvariantChecker:
         if (high - low + 1).prod() * len(self.walls) > MOST_IMAGES:
             return
         shifts = [(x, y) for x in range(low[0], high[0] + 1) for y in range(low[1], high[1] + 1)]
-        there = self.absence[:, 0] >= time
+        there = np.array([all(opens >= time for opens, _ in wall.absences) for wall in self.gates])
         walls = np.concatenate([self.walls[there] + np.array(shift) * self.size for shift in shifts])
-        gates = (self.absence[:, 1] <= self.since[disc]) & ~there  # a disc may be in their way when they close
-        closed = np.concatenate([self.walls[there | gates] + np.array(shift) * self.size for shift in shifts])
+        since = self.since[disc]
+        gates = np.array([all(o >= time or c <= since for o, c in wall.absences) for wall in self.gates])
+        closed = np.concatenate([self.walls[gates] + np.array(shift) * self.size for shift in shifts])
         path = self.path(disc, np.sort(np.concatenate((times, *self.nearest(disc, walls, duration)))))
         if len(walls):
             assert distances(path, walls).min() >= radius - self.known - self.sunk[disc], "in a wall"
@@ -286,16 +285,17 @@ class InvariantChecker:
                 edge, stand = simulation.effects.piston[0].x, simulation.effects.piston[0].v
             distance = abs(place[axis] - edge)
         else:
-            opens, closes = self.absence[wall - 4]
-            assert not opens <= time < closes, "an open gate"
+            gate = self.gates[wall - 4]
+            assert gate.is_there(time), "an open gate"
+            closed = any(closes <= time for _, closes in gate.absences)  # perhaps over a disc
             start, end = self.walls[wall - 4]
             share, away = self.near(place, start, end)
             distances = np.hypot(*away.T)
-            if closes < math.inf and distances.min() <= self.touches:
+            if closed and distances.min() <= self.touches:
                 return  # it closed on the very centre: neither side is that of the disc
             normals = away / distances[:, None]
-            if closes < math.inf:
-                distances = np.maximum(distances, radius)  # it may have closed over the disc
+            if closed:
+                distances = np.maximum(distances, radius)
             nearest = np.abs(distances - radius).argmin()
             touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
             normal = self.fitting(normals[touching], before, after, rebounds)
@@ -312,7 +312,8 @@ class InvariantChecker:
         motion = np.zeros(2) if kind != Kind.PISTON else stand * np.abs(normal)
         incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
         grazing = math.sqrt(2 * self.touches * (np.hypot(*self.pull) + self.push + before @ before / radius))
-        if self.temperature[wall] >= 0:
+        thermal = simulation.effects.thermal
+        if thermal is not None and thermal.temperature[wall] >= 0:
             assert incoming <= bound + grazing, "thermal wall: no approach"
             assert outgoing >= -bound, "thermal wall: into it"
         else:

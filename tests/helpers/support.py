@@ -100,7 +100,7 @@ def called(*arguments: object, folder: Path | None = None) -> subprocess.Complet
     """The same within this process, which saves the time in which Python and its packages start."""
     words = [str(argument) for argument in arguments]
     with contextlib.chdir(folder or Path.cwd()):
-        done = CliRunner().invoke(main, words)
+        done = CliRunner().invoke(main, words, prog_name="idealgas")
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         raise done.exception
     return subprocess.CompletedProcess(words, done.exit_code, done.stdout, done.stderr)

@@ -53,6 +53,7 @@ EFFECTS = {
     "restitution": "restitution.normal = 0.95\n",
     "walls": EVERYTHING[EVERYTHING.index("[[wall]]") :],
     "thermal": "box.bottom = { thermal = 1.0 }\nbox.top = { thermal = 3.0 }\n",
+    "steps": "box.bottom = { thermal = [[0, 1.0], [1.5, 4.0]] }\nbox.top = { thermal = [[0, 3], [0.7, 0.5]] }\n",
     "everything": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n' + EVERYTHING,
 }
 

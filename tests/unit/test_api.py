@@ -87,7 +87,13 @@ def test_dir_shows_every_name():
         "resume",
         "open_log",
         "analyse",
+        "animate",
+        "export",
+        "load_sweep",
+        "run_sweep",
         "sensitivity",
+        "study_accuracy",
+        "write_report",
         *registry.names(),
     }
     assert set(dir(idealgas)) == functions | {*TYPES, "UserError", "__version__"}
@@ -191,6 +197,18 @@ def test_errors_of_the_user_are_lines(logs):
             with pytest.raises(idealgas.UserError) as raised:
                 call()
             assert "\n" not in str(raised.value)
+
+
+def test_functions_of_a_log_take_its_path(logs, tmp_path):
+    path = logs["plain"]
+    with idealgas.open_log(path) as log:
+        expected = idealgas.temperature(log).as_dict()
+    assert idealgas.temperature(str(path)).as_dict() == expected
+    assert idealgas.analyse(path, "temperature").as_dict() == expected
+    assert idealgas.animate(path, tmp_path / "film.gif", end=1.0, fps=2, size=(240, 240)).path.exists()
+    assert idealgas.export(path, "extxyz", tmp_path / "gas.extxyz", times=[0.0, 1.0]) == 2
+    with pytest.raises(idealgas.LogError, match="cannot be read"):
+        idealgas.temperature(tmp_path / "none.h5")
 
 
 @pytest.mark.parametrize("name", registry.names())

@@ -9,7 +9,7 @@ from idealgas.effects import EFFECTS, NAMES
 from idealgas.effects.bundle import ENERGIES, Effects
 from idealgas.scene.document import Document
 
-COMMON = ("__init__", "bundle", "effect", "properties")
+COMMON = ("__init__", "bundle", "effect", "properties", "schedule")
 """Files of the effects in common."""
 
 
@@ -21,6 +21,6 @@ def test_an_effect_is_two_files(place, word):
 
 
 def test_all_lists_follow_from_one():
-    assert (*(effect.field for effect in EFFECTS), *ENERGIES, "flow") == Effects._fields
+    assert (*(effect.field for effect in EFFECTS), *ENERGIES, "flow", "schedule") == Effects._fields
     assert {effect.key for effect in EFFECTS if effect.table and effect.key} <= set(Document.model_fields)
     assert {path.stem for path in (ROOT / "idealgas" / "effects").glob("*.py")} == {*NAMES, *COMMON}

@@ -33,7 +33,16 @@ ALLOWED = {
     "files": set(),
     "locks": set(),
     "system": set(),
-    "": {"scene", "log", "run", "analysis"},  # the Python interface, imported when it is asked for
+    "": {
+        "scene",
+        "log",
+        "run",
+        "analysis",
+        "movie",
+        "report",
+        "sweep",
+        "accuracy",
+    },  # the Python interface, imported when it is asked for
     "__main__": set(),
 }
 

@@ -15,12 +15,14 @@ from dataclasses import dataclass, field, fields, replace
 from functools import wraps
 from inspect import signature
 from numbers import Integral, Real
+from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from idealgas.analysis.core import caveats
 from idealgas.analysis.core.result import Origin, Result
 from idealgas.analysis.core.tables import Table
 from idealgas.errors import NotApplicableError, UserError, unknown
+from idealgas.log import takes_path
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -161,13 +163,13 @@ class Analysis:
     @classmethod
     def analyse(
         cls,
-        log: "Log",
+        log: "Log | str | PathLike[str]",
         start: float | None = None,
         end: float | None = None,
         progress: Progress | None = None,
         **options: Any,
     ) -> Any:
-        """Analyse one log between the times `start` and `end` and return the result, a `Result`.
+        """Analyse one log, or that at a path, between the times `start` and `end` and return the result, a `Result`.
 
         Raises:
             UserError: if an option is unknown or its value not allowed, or if the analysis does not apply to the log.
@@ -177,10 +179,16 @@ class Analysis:
             if name not in known:
                 raise unknown(f"option of {cls.key}", name, ("start", "end", *known))
             known[name].check(value)
+        values = {name: option.default for name, option in known.items()} | options
+        return takes_path(cls._analyse)(log, start, end, progress, values)
+
+    @classmethod
+    def _analyse(
+        cls, log: "Log", start: float | None, end: float | None, progress: Progress | None, values: dict[str, Any]
+    ) -> Any:
         if not cls.takes_unlike_discs and (unlike := log.discs.unlike):
             differ = f"discs of one species that differ in radius or mass ({', '.join(unlike)})"
             raise NotApplicableError(f"{log.path}: not applicable to {differ}; `disc.species` gives them several")
-        values = {name: option.default for name, option in known.items()} | options
         with _arithmetic(f"{log.path}: {cls.key}"):
             found = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow = caveats.of_window(found.window) if hasattr(found, "window") else ()

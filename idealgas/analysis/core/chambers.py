@@ -53,7 +53,7 @@ def _cuts(log: Log, axis: int, until: float) -> np.ndarray:
         return np.array([0.0, log.box[axis]])
     rows: dict[float, list[tuple[float, float]]] = defaultdict(list)
     for wall in walls_inside(log.scene):
-        if wall.start[axis] == wall.end[axis] and wall.absence[0] >= until:
+        if wall.start[axis] == wall.end[axis] and all(opens >= until for opens, _ in wall.absences):
             low, high = sorted((wall.start[1 - axis], wall.end[1 - axis]))
             rows[wall.start[axis]].append((low, high))
     found = {0.0, log.box[axis]}

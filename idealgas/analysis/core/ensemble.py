@@ -101,6 +101,8 @@ def nonequilibrium_reason(log: Log) -> str:
     if why := nonstationary_reason(log):
         return why
     scene, properties = log.scene, log.scene.properties
+    if properties.varies:
+        return "values change in time"
     if len(properties.temperatures) > 1:
         sources = "walls" if properties.bath is None else "walls and heat bath"
         return f"{sources} have {len(properties.temperatures)} temperatures"

@@ -30,7 +30,6 @@ from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
 from idealgas.analysis.core.observables import Observable, TimeSeries
 from idealgas.analysis.core.stream import Tally, block_edges, stream
 from idealgas.log import Log
-from idealgas.scene.walls import walls_inside
 
 LEAST_TESTED = 16
 """Least number of blocks in which a transient is looked for."""
@@ -241,12 +240,12 @@ def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]
 
 
 def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable]) -> int:
-    """Index of the first block from which on all series of B blocks of a log are steady, after its gates have moved.
+    """Index of the first block from which on all series of B blocks of a log are steady, after its last change.
 
     Where its equilibrium is not known, the gas is given MEMORIES correlation times to forget its initial positions.
     edges: (B + 1,), times between the blocks, or times of B samples. Raises NotApplicableError if they are not steady.
     """
-    begin = after_gates(log, edges)
+    begin = after_changes(log, edges)
     rest = [one._replace(values=one.values[begin:]) for one in series]
     first = detect_equilibration(rest)
     if first is None:
@@ -257,15 +256,17 @@ def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable])
     return begin + first
 
 
-def after_gates(log: Log, edges: np.ndarray) -> int:
-    """Index of the first block after the last gate has opened or closed; 0 without any. edges: (B + 1,), of the blocks.
+def after_changes(log: Log, edges: np.ndarray) -> int:
+    """Index of the first block after the last change in time of the scene; 0 without any.
+
+    edges: (B + 1,), times between the blocks.
 
     Raises NotApplicableError if so few blocks are left that nothing can be said of them.
     """
-    changes = [time for wall in walls_inside(log.scene) for time in wall.absence if edges[0] < time < edges[-1]]
+    changes = [time for time in log.scene.properties.changes if edges[0] < time < edges[-1]]
     if not changes:
         return 0
     begin = int(np.searchsorted(edges, max(changes)))
     if begin > len(edges) - 1 - LEAST_TESTED:
-        raise not_steady(log, f"a gate opens or closes at t = {max(changes):g}, with too little of the log after it")
+        raise not_steady(log, f"the scene changes at t = {max(changes):g}, with too little of the log after it")
     return begin

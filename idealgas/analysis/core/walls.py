@@ -7,6 +7,7 @@ discs.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -145,7 +146,7 @@ class WallGauge:
         for k, wall in enumerate(number_walls(self._log.scene)):
             if k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]:
                 continue
-            exposed = self._exposed(k, wall.start, wall.end, wall.absence, edges)
+            exposed = self._exposed(k, wall.start, wall.end, wall.absences, edges)
             if not exposed.any():
                 continue
             names = [wall_name(k, wall.name)]
@@ -167,15 +168,16 @@ class WallGauge:
         wall: int,
         start: Sequence[float],
         end: Sequence[float],
-        absence: tuple[float, float],
+        absences: Sequence[tuple[float, float]],
         edges: np.ndarray,
     ) -> np.ndarray:
         """Length of a wall times the time that it is there, in each block; of a side, where gas is beside it."""
         width = np.diff(edges)
         if wall < len(SIDES) and self.moving is not None and axis_of(wall) != self.moving.axis:
             return self.moving.depth * width
-        opens, closes = absence
-        absent = np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
+        absent = np.zeros(len(width))
+        for opens, closes in absences:
+            absent += np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
         length = float(np.hypot(*np.subtract(end, start)))
         if wall < len(SIDES) and self.moving is None:
             length = Chambers(self._log, float(edges[-1])).length(wall)
@@ -200,7 +202,7 @@ class MovingWall:
         self.wall, self.axis = SIDES.index(table.side), table.axis
         self.across = log.box[1 - table.axis]
         self._outward, self._far = table.outward, log.box[table.axis] - table.stop(log.box)
-        self._pull = table.acceleration(log.box, log.scene.properties.acceleration)
+        self._pull = partial(table.acceleration, log.box, log.scene.properties.acceleration)
         self._mass, self._stop = table.mass, table.stop(log.box)
         self._samples = log.observables["piston_position"]
         if not len(self._samples[0]):
@@ -235,7 +237,8 @@ class MovingWall:
         known = np.concatenate((self._known, np.column_stack((time[some], place[some])), hits))
         t, x = known[np.unique(known[:, 0], return_index=True)[1]].T
         step = np.diff(t)
-        total = self._total + np.append(0.0, np.cumsum(step * (x[1:] + x[:-1]) / 2 - self._pull * step**3 / 12))
+        bends = self._pull(t[:-1]) * step**3 / 12
+        total = self._total + np.append(0.0, np.cumsum(step * (x[1:] + x[:-1]) / 2 - bends))
         reached = len(self._edges) if until == np.inf else int(self._edges.searchsorted(t[-1], "right"))
         edges = self._edges[self._done : reached]
         k = np.clip(t.searchsorted(edges, "right") - 1, 0, max(len(t) - 2, 0))
@@ -248,22 +251,26 @@ class MovingWall:
         if len(t) == 1:
             return x[k] * since
         step = t[k + 1] - t[k]
-        speed = (x[k + 1] - x[k]) / step - self._pull * step / 2
-        return since * (x[k] + since * (speed / 2 + since * self._pull / 6))
+        pull = self._pull(t[k])
+        speed = (x[k + 1] - x[k]) / step - pull * step / 2
+        return since * (x[k] + since * (speed / 2 + since * pull / 6))
 
     def balance(self, start: float, end: float) -> float | None:
         """Pressure (force/length) that holds the piston against the gas between two times, beside its inertia.
 
-        None for a piston of a given velocity, and if it came near its end stop, which holds it too.
+        None for a piston of a given velocity, if the pressure changes in between, and if it came near its end stop,
+        which holds it too.
         """
         time, place = self._samples
         inside = (time >= start) & (time <= end)
-        if not self._mass or not inside.any():
+        pulls = np.unique(self._pull(np.append(time[inside], start)))
+        if not self._mass or not inside.any() or len(pulls) > 1:
             return None
-        reach = self._outward * place[inside] + self._speeds[inside] ** 2 / (2 * abs(self._pull))
+        (pull,) = pulls
+        reach = self._outward * place[inside] + self._speeds[inside] ** 2 / (2 * abs(pull))
         if (reach >= self._outward * self._stop).any():
             return None
-        return -self._outward * self._pull * self._mass / self.across
+        return -self._outward * pull * self._mass / self.across
 
 
 def moving_wall(log: Log) -> MovingWall | None:

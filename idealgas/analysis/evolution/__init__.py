@@ -37,7 +37,7 @@ INSTANTS = 257
 MOST_SAMPLES = 2**14
 """Largest number of samples of the energy."""
 
-PISTON, HEAT_BATH = "piston", "the heat bath"
+PISTON, HEAT_BATH, STEPS = "piston", "the heat bath", "changes in time"
 """Names of the side with the piston and of a heat bath among the sources of energy."""
 
 ROUNDING = 1e-12
@@ -141,7 +141,7 @@ class EvolutionAnalysis(Analysis):
         inside = (samples >= first) & (samples <= last)
         frames = _frames(log, first, last, progress) if log.has_events else _samples(log, observables, inside)
         observed = {name: values for name, (_, values) in observables.items()}
-        *energies, balance = _account(log, observed)
+        *energies, balance = _account(log, samples, observed)
         parts, given, lost = ({name: values[inside] for name, values in part.items()} for part in energies)
         law = expected_law(log, frames[0])
         pressure = pressure_series(log, first, last)
@@ -319,7 +319,7 @@ def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate 
     return mean(places[start:], theory)
 
 
-def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
+def _account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
     """Parts of the energy, energy from walls and a heat bath, energy lost by kind of collision, and the balance."""
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
@@ -330,15 +330,15 @@ def _account(log: Log, observed: Series) -> tuple[Series, Series, Series, np.nda
     if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
         own = [wall.name for wall in log.walls].index(piston.side)
         counted[own], unpaid = False, unpaid + lost[:, 1 + own]
-        pull = piston.acceleration(log.box, log.scene.properties.acceleration)
+        pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
         place, velocity = observed["piston_position"], observed["piston_velocity"]
         parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
-    bath = observed.get("bath_energy", np.zeros(len(given)))
-    from_outside = given[:, counted].sum(axis=1) + bath
+    bath, steps = (observed.get(name, np.zeros(len(given))) for name in ("bath_energy", "step_energy"))
+    from_outside = given[:, counted].sum(axis=1) + bath + steps
     total = sum(parts.values()) + unpaid - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
     walls = [PISTON if piston and wall.name == piston.side else wall.name for wall in log.walls]
-    sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath}
+    sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath, STEPS: steps}
     by_source = {name: series for name, series in sources.items() if series.any()}
     sinks = zip(("discs", *walls), lost.T, strict=True)
     losses = {name: series for name, series in sinks if np.abs(series).max(initial=0.0) > ROUNDING * scale}

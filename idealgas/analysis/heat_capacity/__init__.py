@@ -139,8 +139,8 @@ class HeatCapacityAnalysis(Analysis):
                 driven piston, a gas without positions.
         """
         scene, properties, n = log.scene, log.scene.properties, len(log.discs)
-        settles = properties.lossless and not properties.driven and len(properties.temperatures) <= 1
-        if not settles or not log.has_positions:
+        settles = properties.lossless and not properties.driven and not properties.varies
+        if not settles or len(properties.temperatures) > 1 or not log.has_positions:
             raise UserError(f"{log.path}: no known equilibrium, and so no heat capacity")
         has_piston = bool(scene.piston and scene.piston.mass)
         present = {

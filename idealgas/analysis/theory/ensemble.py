@@ -131,7 +131,7 @@ def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
         spin_energy: of all discs at the start, energy.
     """
     properties = scene.properties
-    if not properties.conserves_energy or len(properties.temperatures) > 1:
+    if not properties.conserves_energy or properties.varies or len(properties.temperatures) > 1:
         return None
     dof, energy = _shared(scene, gas, spin_energy)
     if dof == 0 or (len(gas) == 1 and properties.isolated and properties.spins):
@@ -159,7 +159,7 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
     leave it unknown, and for a single disc, which cannot share its energy.
     """
     properties = scene.properties
-    if not properties.fixed_walls or not properties.lossless or len(gas) == 1:
+    if not properties.fixed_walls or not properties.lossless or properties.varies or len(gas) == 1:
         return None
     if baths := properties.temperatures:
         return min(baths) if len(baths) == 1 else None

@@ -11,7 +11,7 @@ import numpy as np
 from idealgas.files import storage_error, written
 from idealgas.log.errors import LogError
 from idealgas.log.export import frames, tables
-from idealgas.log.reader import Log
+from idealgas.log.reader import Log, takes_path
 
 
 class Format(NamedTuple):
@@ -39,6 +39,7 @@ FORMATS = {
 }
 
 
+@takes_path
 def export(
     log: Log,
     kind: str,
@@ -49,7 +50,7 @@ def export(
     """Write the states at some times, or all events, to a file.
 
     Args:
-        log: log to export.
+        log: log to export, or its path.
         kind: name of one of FORMATS.
         output: path, where the file appears when it is complete; or an open binary file, such as a pipe, for a format
             that streams.

@@ -7,7 +7,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from idealgas.log.dataframes import KIND_NAMES, Columns, flat_events, flat_states
+from idealgas.log.dataframes import KIND_NAMES, Columns, flat_discs, flat_events
 from idealgas.log.reader import Log
 
 
@@ -51,5 +51,5 @@ def _event_columns(log: Log) -> Iterator[Columns]:
 
 def _frame_columns(log: Log, times: Sequence[float]) -> Iterator[Columns]:
     species = np.array(log.discs.species_names)
-    for columns in flat_states(log.discs, log.frames(times)):
+    for columns in flat_discs(log.discs, log.frames(times)):
         yield columns | {"species": species[columns["species"]]}

@@ -187,7 +187,7 @@ def wall_overlaps(
 def discs_in_walls(scene: Document) -> Iterator[Issue]:
     """Check given discs that overlap a wall present at the start, at most MOST_OVERLAPS."""
     found: dict[tuple[int, int], float] = {}
-    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.wall) if wall is not None and wall.there_at_start}
+    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.wall) if wall is not None and wall.is_there(0.0)}
     walls = {i: wall for i, wall in walls.items() if not list(wall_issues(box.size, i, wall))}
     for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
         found[k, i] = min(distance, found.get((k, i), math.inf))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from idealgas.columns import SIDES, opposite
 from idealgas.effects.periodic import PERIODIC
+from idealgas.effects.schedule import description, steps_of
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
@@ -64,6 +65,9 @@ def _motion_issues(piston: Piston) -> Iterator[Issue]:
             ", ".join(given) or "nothing",
             "velocity, mass and pressure, or all three",
         )
+    elif piston.mass is not None and len(steps_of(piston.velocity)) > 1:
+        key: Key = ("piston", "velocity")
+        yield Issue((key,), "steps of a piston with a mass", description(piston.velocity), "its velocity at the start")
 
 
 def _depth(scene: Document, piston: Piston, position: float) -> float:
@@ -78,30 +82,42 @@ def _least_depth(scene: Document, piston: Piston) -> float:
 
 def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Check pistons of given velocity, which nothing stops."""
-    velocity = piston.velocity or 0.0
-    if velocity == 0:
+    velocities = [velocity for _, velocity in steps_of(piston.velocity) if velocity]
+    if not velocities:
         return
-    inward = velocity * piston.outward < 0
     keys: tuple[Key, ...] = (("piston", "velocity"), ("piston", "position"), ("run", "until"), ("box", "size"))
     if scene.run.until is None:
+        inward = velocities[-1] * piston.outward < 0
         what = "crushes the gas sooner or later" if inward else "leaves the box sooner or later"
         yield Issue(keys, what, "a run without until", "a run with until")
         return
-    end = piston.start(scene.box.size) + velocity * scene.run.until
-    if inward:
-        depth, least = _depth(scene, piston, end), _least_depth(scene, piston)
-        if depth < least:
-            yield Issue(
-                keys, "crushes the gas before the run ends", f"a depth of {depth:.6g} at the end", f">= {least:.6g}"
-            )
-    elif not 0 <= end <= scene.box.size[piston.axis]:
-        allowed = f"0 <= position <= {scene.box.size[piston.axis]}"
-        yield Issue(keys, "leaves the box before the run ends", f"a position of {end:.6g} at the end", allowed)
+    places, length, least = _places(scene, piston), scene.box.size[piston.axis], _least_depth(scene, piston)
+    nearest, farthest = sorted(places, key=lambda place: place[0] * piston.outward)[:: len(places) - 1]
+    depth = _depth(scene, piston, nearest[0])
+    if depth < least and nearest[1]:
+        got = f"a depth of {depth:.6g} {nearest[1]}"
+        yield Issue(keys, "crushes the gas before the run ends", got, f">= {least:.6g}")
+    elif not 0 <= farthest[0] <= length:
+        got = f"a position of {farthest[0]:.6g} {farthest[1]}"
+        yield Issue(keys, "leaves the box before the run ends", got, f"0 <= position <= {length}")
+
+
+def _places(scene: Document, piston: Piston) -> list[tuple[float, str]]:
+    """Positions of a piston of given velocity at the start, at changes of its velocity and at the end, and when."""
+    until, place = scene.run.until or 0.0, piston.start(scene.box.size)
+    steps = [(time, velocity) for time, velocity in steps_of(piston.velocity) if time < until]
+    found = [(place, "")]
+    for (time, velocity), later in zip(steps, [*(time for time, _ in steps[1:]), until], strict=True):
+        place += velocity * (later - time)
+        found.append((place, "at the end" if later == until else f"at t = {later:g}"))
+    return found
 
 
 def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Check that a piston with a mass is pressed on the gas."""
-    acceleration = piston.acceleration(scene.box.size, scene.properties.acceleration)
+    times = [time for time, _ in steps_of(piston.pressure)]
+    accelerations = (piston.acceleration(scene.box.size, scene.properties.acceleration, time) for time in times)
+    acceleration = max(accelerations, key=lambda a: a * piston.outward)
     if acceleration * piston.outward >= 0:
         keys: tuple[Key, ...] = (("piston", "pressure"), ("piston", "mass"), ("gravity", "acceleration"))
         got = f"an acceleration of {acceleration}"
@@ -110,12 +126,10 @@ def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
 
 def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Check walls that the piston may reach."""
-    position = piston.start(scene.box.size)
     if piston.mass is not None:
         depth = _least_depth(scene, piston)
     else:
-        end = position + (piston.velocity or 0.0) * (scene.run.until or 0.0)
-        depth = min(_depth(scene, piston, position), _depth(scene, piston, end))
+        depth = min(_depth(scene, piston, place) for place, _ in _places(scene, piston))
     for i, wall in enumerate(scene.wall):
         reach = max(_depth(scene, piston, wall.start[piston.axis]), _depth(scene, piston, wall.end[piston.axis]))
         if reach > depth:

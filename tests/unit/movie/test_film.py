@@ -3,19 +3,23 @@
 import json
 import os
 import subprocess
+import sys
+from types import ModuleType
 
 import numpy as np
 import pytest
 from helpers.support import program
+from matplotlib.figure import Figure
 from PIL import Image
 
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.log import LogState, open_log
 from idealgas.movie import film
-from idealgas.movie.film import animate, film_path
+from idealgas.movie.film import animate
 from idealgas.movie.gif import GifWriter
 from idealgas.movie.painter import LEFT, Painter, layout, view
+from idealgas.movie.panels import DensityPanel, SidesPanel
 from idealgas.movie.piston_track import PistonTrack
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
@@ -46,7 +50,7 @@ def scene(extra=""):
 def paint(extra="", state=STATE, piston=None, by_species=False, size=SIZE):
     """(height, width, 3) of a frame, and at(x, y): its pixel there in the box."""
     made = scene(extra)
-    painter = Painter(made, make_gas(made), piston, size, 1.0, "species" if by_species else "speed")
+    painter = Painter(made, make_gas(made), piston, 1.0, size=size, colouring="species" if by_species else "speed")
     frame = painter.paint(state).copy()[..., :3].astype(int)
     place = layout(size, (10.0, 10.0))
 
@@ -60,19 +64,19 @@ def paint(extra="", state=STATE, piston=None, by_species=False, size=SIZE):
 @pytest.mark.parametrize("box", [(1.0, 1.0), (20.0, 1.0), (1.0, 20.0), (1e-3, 2e-3)])
 def test_box_and_speeds_are_in_the_frame_and_apart(size, box):
     place = layout(size, box)
-    for x, y, width, height in (place.box, place.speeds):
+    for x, y, width, height in (place.box, place.panel):
         assert LEFT <= x < x + width < size[0]
         assert 0 < y < y + height < size[1]
     assert place.box[2:] == pytest.approx((box[0] * place.scale, box[1] * place.scale))
-    (x, y, width, height), (u, v, wide, high) = place.box, place.speeds
+    (x, y, width, height), (u, v, wide, high) = place.box, place.panel
     assert x + width < u or v + high < y
     assert wide * high > 0.1 * size[0] * size[1]
 
 
 def test_the_room_beyond_a_piston_is_shown_in_part():
     place = np.array([4.0, 5.0])
-    right = PistonTrack(0, place, place, 0.0, (0.0, 40.0), 1.0)
-    left = PistonTrack(0, place, 40 - place, 0.0, (0.0, 40.0), -1.0)
+    right = PistonTrack(0, place, place, 0 * place, (0.0, 40.0), 1.0)
+    left = PistonTrack(0, place, 40 - place, 0 * place, (0.0, 40.0), -1.0)
     assert view((40.0, 10.0), right) == ((0.0, 6.25), (0.0, 10.0))
     assert view((40.0, 10.0), left) == ((33.75, 40.0), (0.0, 10.0))
     assert view((40.0, 10.0), None) == ((0.0, 40.0), (0.0, 10.0))
@@ -98,7 +102,7 @@ def test_discs_at_joined_sides_show_their_other_half():
     made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
         f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
     ))  # fmt: skip
-    painter = Painter(made, make_gas(made), None, SIZE, 1.0)
+    painter = Painter(made, make_gas(made), None, 1.0, size=SIZE)
     frame = painter.paint(state)[..., :3]
     place = layout(SIZE, (10.0, 10.0))
     for x, y in ((0.25, 9.75), (9.75, 9.75), (0.25, 0.25), (9.75, 0.25)):
@@ -112,7 +116,7 @@ def test_a_gate_is_there_until_it_opens():
 
 
 def test_the_piston_is_drawn():
-    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), 0.0, (0.0, 10.0), 1.0)
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), np.zeros(2), (0.0, 10.0), 1.0)
     red, green, blue = paint(piston=track)[1](6.5, 5)
     assert red > 150 > green > blue
     assert paint(piston=track)[1](6.2, 5).min() > WHITE
@@ -120,7 +124,7 @@ def test_the_piston_is_drawn():
 
 def test_frames_of_the_same_state_are_the_same_whatever_came_before():
     made = scene()
-    painter = Painter(made, make_gas(made), None, SIZE, 1.0)
+    painter = Painter(made, make_gas(made), None, 1.0, size=SIZE)
     first = painter.paint(STATE).copy()
     painter.paint(STATE._replace(time=9.0, position=STATE.position + 1, velocity=3 * STATE.velocity))
     assert np.array_equal(painter.paint(STATE), first)
@@ -190,10 +194,78 @@ def test_a_video_has_all_frames(path, tmp_path):
     assert int(stream["nb_read_frames"]) == made.frames == 51
 
 
-def test_no_ffmpeg_no_video(tmp_path, monkeypatch):
+def test_ffmpeg_of_a_package(monkeypatch):
     monkeypatch.setattr(film.shutil, "which", lambda _: None)
-    assert film_path(tmp_path / "film.mp4") == tmp_path / "film.gif"
-    assert film_path(tmp_path / "film.GIF") == tmp_path / "film.GIF"
+    package = ModuleType("imageio_ffmpeg")
+    package.get_ffmpeg_exe = lambda: "/there/ffmpeg"
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", package)
+    assert film.ffmpeg() == "/there/ffmpeg"
+
+
+@pytest.mark.parametrize(
+    ("box", "size"), [((20.0, 60.0), (540, 960)), ((40.0, 20.0), (720, 720)), ((10.0, 10.0), (960, 540))]
+)
+def test_the_size_follows_the_box(box, size):
+    made = parse_scene(f"box.size = {list(box)}\nrun.until = 1\nspecies = [{{name='a', count=9, radius=0.1, speed=1}}]")
+    painter = Painter(made, make_gas(made), None, 1.0)
+    assert painter.size == size
+    assert painter.paint(STATE._replace(position=made_up(9, box), velocity=np.ones((9, 2)))).shape[:2] == size[::-1]
+
+
+def made_up(number, box):
+    return np.random.default_rng(1).random((number, 2)) * box
+
+
+@pytest.mark.parametrize("panel", ["density", "left-right", "none"])
+def test_other_panels(panel):
+    """The same frame again for the same states; without a panel the box is as high as the frame allows."""
+
+    def frame():
+        made = scene()
+        painter = Painter(made, make_gas(made), None, 1.0, (0.0, 3.0), [STATE], size=SIZE, panel=panel)
+        painter.paint(STATE._replace(time=0.0))
+        return painter.paint(STATE).copy()
+
+    assert np.array_equal(frame(), frame())
+    place = layout(SIZE, (10.0, 10.0), panel != "none")
+    assert (place.panel is None) == (panel == "none")
+    if place.panel:
+        x, y, width, height = (round(v) for v in place.panel)
+        assert frame()[SIZE[1] - y - height : SIZE[1] - y, x : x + width, :3].min() < WHITE
+
+
+def test_the_panel_counts_the_discs_on_the_right():
+    made, axes = scene("[[wall]]\nfrom = [7, 0]\nto = [7, 9]\nopens_at = 1\n"), Figure().add_subplot()
+    panel = SidesPanel(axes, made, make_gas(made), "black", (0.0, 3.0))
+    for time, places in ((0.0, [2.0, 6.0]), (1.0, [8.0, 6.9]), (2.0, [7.1, 9.0])):
+        curve, _ = panel.update(STATE._replace(time=time, position=np.array([[x, 1.0] for x in places])), np.ones(2))
+    assert np.array_equal(curve.get_data(), [[0.0, 1.0, 2.0], [0.0, 0.5, 1.0]])
+    assert panel.handles[0].get_label() == "equal density"
+
+
+def test_the_density_is_that_of_the_strips():
+    """Along gravity: two discs in a strip 10 wide and 10/36 high."""
+    made, axes = scene("[gravity]\nacceleration = [0, -1]"), Figure().add_subplot()
+    panel = DensityPanel(axes, made, make_gas(made), "black", [])
+    (bars,) = panel.update(STATE._replace(position=np.array([[1.0, 5.1], [9.0, 5.1]])), np.ones(2))
+    values, edges, _ = bars.get_data()
+    (strip,) = np.flatnonzero(values)
+    assert edges[strip] == 5.0
+    assert values.max() == pytest.approx(2 / (10 * 10 / 36))
+
+
+def test_a_trail_is_a_line_between_the_frames_with_gaps_at_joined_sides():
+    periodic = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right"))
+    made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
+        f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.1\n" for x in (2, 8)
+    ))  # fmt: skip
+    painter, place = Painter(made, make_gas(made), None, 1.0, size=SIZE, trails=[1]), layout(SIZE, (10.0, 10.0))
+    for x in (6.0, 9.0, 1.0, 3.0):
+        frame = painter.paint(STATE._replace(position=np.array([[5.0, 9.0], [x, 4.0]])))[..., :3]
+    at = lambda x, y: frame[round(540 - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)].max()  # noqa: E731
+    assert [bool(at(x, 4.0) < 200) for x in (7.5, 2.0, 5.0, 9.6)] == [True, True, False, False]
+    with pytest.raises(UserError, match=r"^trail: no disc 2 \(allowed 0 to 1\)$"):
+        Painter(made, make_gas(made), None, 1.0, trails=[0, 2])
 
 
 def test_a_video_that_fails_says_why_and_leaves_nothing(path, tmp_path, monkeypatch):
@@ -232,8 +304,8 @@ def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
             for k, velocity in enumerate(velocities)
         )
         made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
-        frame = Painter(made, make_gas(made), None, SIZE, 1.0).paint(STATE._replace(velocity=np.array(velocities)))
-        x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).speeds)
+        frame = Painter(made, make_gas(made), None, 1.0, size=SIZE).paint(STATE._replace(velocity=np.array(velocities)))
+        x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).panel)
         return frame[SIZE[1] - y - height + 4 : SIZE[1] - y - 4, x + 4 : x + width - 4].copy()
 
     assert np.array_equal(speeds(10.0), speeds(0.0))

@@ -68,10 +68,15 @@ WALLS = """wall = [
 
 
 def test_wall_segments_and_gates():
-    segments = effects_of(text=WALLS + PLAIN)[1].segments
+    effects = effects_of(text=WALLS + PLAIN)[1]
+    segments = effects.segments
     assert (segments.x[0], segments.y[0], segments.tx[0], segments.ty[0], segments.length[0]) == (10, 1, 0.6, 0.8, 5)
-    assert segments.opens.tolist() == [math.inf, 2, 0, 2]
-    assert segments.closes.tolist() == [math.inf, math.inf, 3, 3]
+    assert [(time, wall, active) for time, _, wall, active in effects.schedule] == [
+        (2, 1, 0),
+        (2, 3, 0),
+        (3, 2, 1),
+        (3, 3, 1),
+    ]
     assert segments.active.tolist() == [True, True, False, True]
     assert segments.dtype == SEGMENT
 

@@ -65,6 +65,8 @@ def test_frames_as_a_table(log, frames, kind, tmp_path):
     assert np.array_equal(table["time"], np.repeat(times, number))
     assert np.array_equal(table["disc"], np.tile(np.arange(number), FRAMES))
     assert table["species"][0] == log.discs.species_names[log.discs.species[0]]
+    assert np.array_equal(table["radius"], np.tile(log.discs.radius, FRAMES))
+    assert np.array_equal(table["mass"], np.tile(log.discs.mass, FRAMES))
     assert np.array_equal(table["x"], np.concatenate([state.position[:, 0] for state in states]))
     assert np.array_equal(table["vy"], np.concatenate([state.velocity[:, 1] for state in states]))
 

@@ -1,0 +1,73 @@
+"""Command `idealgas watch`: a log in the browser, also while it is written."""
+
+import os
+import subprocess
+import sys
+import webbrowser
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from threading import Thread
+
+import click
+
+from ._analysis import log_argument
+from ._options import quiet_option
+from ._terminal import echo
+
+
+@click.command(epilog="Example: idealgas watch gas.h5")
+@log_argument
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port of the page.  [default: a free one]")
+@click.option("--no-browser", is_flag=True, help="Only print the address of the page.")
+@quiet_option
+def watch(path: str, port: int, no_browser: bool) -> None:
+    """Show a log in the browser until Ctrl-C, also while it is written.
+
+    The page has the discs, their speeds beside the Maxwell-Boltzmann distribution, and temperature and pressure in
+    time. Only browsers on this machine can open it.
+    """
+    from idealgas.log import open_log
+    from idealgas.report.live import serve
+
+    def ready(address: str) -> None:
+        echo(f"{address} shows {path} until Ctrl-C", err=True)
+        if not no_browser and has_screen():
+            webbrowser.open(address)
+
+    with open_log(path) as log, suppress(KeyboardInterrupt):
+        serve(log, port, ready)
+
+
+def has_screen() -> bool:
+    """Whether a browser opens in a window; without a screen, one would open in the terminal of the command."""
+    return sys.platform != "linux" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+@contextmanager
+def watching(path: str) -> Iterator[Callable[[], None]]:
+    """Yield a function that starts `idealgas watch` for the log of a run, once; its page stays until Ctrl-C.
+
+    The page has a process of its own, so that it does not slow down the run.
+    """
+    pages: list[subprocess.Popen[str]] = []
+
+    def show() -> None:
+        if not pages:
+            command = [sys.executable, "-m", "idealgas", "watch", "--", path]
+            pages.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+            Thread(target=_repeat, args=(pages[0].stderr,), daemon=True).start()
+
+    try:
+        yield show
+        show()
+        with suppress(KeyboardInterrupt):
+            pages[0].wait()
+    finally:
+        for page in pages:
+            page.terminate()
+            page.wait()
+
+
+def _repeat(lines: Iterable[str]) -> None:
+    for line in lines:
+        echo(line.rstrip("\n"), err=True)  # above the progress bar

@@ -1,0 +1,111 @@
+"""Values that change in time: a number, or steps [[t, value], …] that begin at time 0.
+
+All changes of a scene are one list, the schedule. An epoch ends at each of them, so they are exact for every method.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
+
+import numpy as np
+from pydantic import AfterValidator, Discriminator, Field, Tag
+from pydantic_core import PydanticCustomError
+
+from idealgas.toml.table import NotNegative, Number, Positive, Table
+
+REFLECTING = "reflecting"
+"""Step of a thermal wall that reflects for a time."""
+
+
+class Change(NamedTuple):
+    """A value that an effect has from a time on.
+
+    Attributes:
+        time: from the start of the run, time.
+        item: number of the value in the state of the effect.
+        value: the value.
+    """
+
+    time: float
+    item: int
+    value: float
+
+
+def _in_order(steps: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Refuse steps that do not begin at time 0, or whose times do not increase."""
+    times = [time for time, _ in steps]
+    if not times or times[0] != 0:
+        raise PydanticCustomError("steps_from_0", "")
+    if any(later <= earlier for earlier, later in pairwise(times)):
+        raise PydanticCustomError("steps_in_order", "")
+    return steps
+
+
+def _is_list(value: Any) -> str:
+    return "(steps)" if isinstance(value, (list, tuple)) else "(number)"
+
+
+def _in_steps(number: Any, value: Any = None) -> Any:
+    """Type of a number that may change in time. value: type of the value of a step, if it is another."""
+    value = value or number
+    step: Any = Annotated[tuple[NotNegative, value], Field(strict=False)]
+    kinds: Any = Annotated[tuple[step, ...], Field(strict=False), AfterValidator(_in_order), Tag("(steps)")]
+    kinds |= Annotated[number, Tag("(number)")]
+    return Annotated[kinds, Discriminator(_is_list)]
+
+
+_POSITIVE_OR_WORD = Annotated[
+    Annotated[Positive, Tag("(number)")] | Annotated[Literal["reflecting"], Tag("(word)")],
+    Discriminator(lambda value: "(word)" if isinstance(value, str) else "(number)"),
+]
+
+if TYPE_CHECKING:
+    NumberInSteps: TypeAlias = Any
+    PositiveInSteps: TypeAlias = Any
+    NotNegativeInSteps: TypeAlias = Any
+    WallTemperature: TypeAlias = Any
+else:
+    NumberInSteps, PositiveInSteps, NotNegativeInSteps = map(_in_steps, (Number, Positive, NotNegative))
+    WallTemperature = _in_steps(Positive, _POSITIVE_OR_WORD)
+
+
+def steps_of(value: Any) -> tuple[tuple[float, Any], ...]:
+    """Times from which values hold, and the values; a number holds from time 0 on."""
+    return value if isinstance(value, tuple) else ((0.0, value),)
+
+
+def value_at(value: Any, time: Any) -> Any:
+    """Value at a time; array of the values at an array of times."""
+    times, values = zip(*steps_of(value), strict=True)
+    if np.ndim(time):
+        return np.array(values)[np.searchsorted(times, time, "right") - 1]
+    return values[bisect_right(times, time) - 1]
+
+
+def changes_of(value: Any, item: int) -> Iterator[Change]:
+    """Changes after time 0 of a value that may be in steps; item: its number in the state of its effect."""
+    return (Change(time, item, value) for time, value in steps_of(value)[1:])
+
+
+def description(value: Any) -> str:
+    """Values and times of steps in words."""
+    texts = [x if isinstance(x, str) else f"{x:g}" for _, x in steps_of(value)]
+    later = (f"{text} from t = {time:g}" for text, (time, _) in zip(texts[1:], steps_of(value)[1:], strict=True))
+    return ", ".join((texts[0], *later))
+
+
+class SteppedTable(Table):
+    """A table with values that may be in steps."""
+
+    in_steps: ClassVar[tuple[str, ...]]
+    """Keys of these values."""
+
+    def after(self, time: float) -> Self:
+        """The table in a scene whose clock starts at a later time."""
+        return self.model_copy(update={key: _after(getattr(self, key), time) for key in self.in_steps})
+
+
+def _after(value: Any, time: float) -> Any:
+    now, later = value_at(value, time), [(t - time, x) for t, x in steps_of(value) if t > time]
+    return ((0.0, now), *later) if later or now == REFLECTING else now

@@ -1,0 +1,126 @@
+"""Panels beside the discs of a film: their speeds, their density, or how many are on the right."""
+
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import StepPatch
+
+from idealgas.analysis.core.style import COLOURS
+from idealgas.analysis.theory.distributions import SpeedLaw
+from idealgas.analysis.theory.ensemble import composition
+from idealgas.log import LogState
+from idealgas.scene import Scene
+from idealgas.scene.walls import walls_inside
+from idealgas.state import Gas
+
+BINS = 36
+
+FASTEST, BRIGHTEST = 3.2, 2.0
+"""End of the speed axis and of the colour scale, in units of the root-mean-square speed."""
+
+STRIP = 9  # pixels, height of the strip with the colours
+
+
+class Panel(Protocol):
+    """Panel of a film. handles: what its legend shows."""
+
+    handles: list[Line2D]
+
+    def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
+        """What to draw of a state; speed: (N,), of the discs."""
+
+
+class SpeedPanel:
+    """Distribution of the speeds next to the Maxwell-Boltzmann distribution."""
+
+    def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str, shades: np.ndarray | None) -> None:
+        """Draw the axes. line: colour of the curve. shades: (n, 4), colours of the discs along the axis of speeds."""
+        self._gas, self._species = gas, composition(gas)
+        top = FASTEST * rms_speed or 1.0
+        self._edges, self._speeds = np.linspace(0, top, BINS + 1), np.linspace(0, top, 200)
+        highest = 1.8 * self._density((top / FASTEST) ** 2 * float(gas.mass.mean()) / 2).max()
+        axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)", xlabel="speed (length/time)")
+        self._bars = _bars(axes, self._edges)
+        (self._curve,) = axes.plot(self._speeds, self._density(1.0), color=line, animated=True)
+        self.handles = [Line2D([], [], color=line, label="Maxwell-Boltzmann")]
+        if shades is not None:
+            high = STRIP / (axes.bbox.height * 100 / axes.figure.dpi)
+            strip = axes.inset_axes((0, -high, 1, high))
+            shown = np.minimum(np.linspace(0, FASTEST / BRIGHTEST, 200), 1) * (len(shades) - 1)
+            strip.imshow(shades[shown.astype(int)][None], aspect="auto")
+            strip.set_axis_off()
+            axes.tick_params(axis="x", pad=12, length=0)
+
+    def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
+        """Bars of the speeds, and the curve at their temperature."""
+        self._bars.set_data(np.histogram(speed, self._edges)[0] / (len(speed) * self._edges[1]))
+        self._curve.set_ydata(self._density(float(self._gas.mass @ speed**2) / 2 / len(speed)))
+        return self._bars, self._curve
+
+    def _density(self, temperature: float) -> np.ndarray:
+        """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""
+        if not temperature > 0:
+            return np.zeros_like(self._speeds)
+        shares = self._species.number / self._species.number.sum()
+        kinds = zip(shares, self._species.mass.tolist(), strict=True)
+        return sum((share * SpeedLaw(temperature, mass).pdf(self._speeds) for share, mass in kinds), np.zeros(1))
+
+
+class DensityPanel:
+    """Number density in strips along the axis of gravity, or else the longer one of the box."""
+
+    def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, some: Sequence[LogState]) -> None:
+        """Draw the axes. line: colour of the mean density. some: states of the film, which decide how high they are."""
+        falls = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0)) != 0
+        self._axis = int(falls[1] if falls.any() else gas.box[1] > gas.box[0])
+        length = gas.box[self._axis]
+        self._edges = np.linspace(0, length, BINS + 1)
+        self._area = gas.area / BINS
+        mean = len(gas) / gas.area
+        positions = [gas.position, *(state.position for state in some)]
+        highest = max(float(self._density(position).max()) for position in positions)
+        axes.set(xlim=(0, length), ylim=(0, 1.1 * max(highest, 2 * mean)), ylabel="density (discs/length²)")
+        axes.set_xlabel(f"{'xy'[self._axis]} (length)")
+        self._bars = _bars(axes, self._edges)
+        axes.axhline(mean, ls="--", color=line)
+        self.handles = [Line2D([], [], ls="--", color=line, label="mean")]
+
+    def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
+        """Bars of the density."""
+        self._bars.set_data(self._density(state.position))
+        return (self._bars,)
+
+    def _density(self, position: np.ndarray) -> np.ndarray:
+        return np.histogram(position[:, self._axis], self._edges)[0] / self._area
+
+
+class SidesPanel:
+    """Fraction of the discs right of the first gate, or of the middle, in time."""
+
+    def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, times: tuple[float, float]) -> None:
+        """Draw the axes. line: colour of the fraction at equal density. times: start and end of the film."""
+        gates = (wall.start[0] for wall in walls_inside(scene) if wall.is_gate and wall.start[0] == wall.end[0])
+        self._middle = next(gates, gas.box[0] / 2)
+        self._points: list[tuple[float, float]] = []
+        axes.set(xlim=times, ylim=(0, 1), xlabel="t (time)", ylabel=f"fraction right of x = {self._middle:g} (no unit)")
+        axes.axhline(1 - self._middle / gas.box[0], ls="--", color=line)
+        (self._curve,) = axes.plot([], [], "-", color=COLOURS[0], animated=True)
+        (self._now,) = axes.plot([], [], "o", color=COLOURS[0], ms=4, animated=True)
+        self.handles = [Line2D([], [], ls="--", color=line, label="equal density")]
+
+    def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
+        """Curve up to this state."""
+        self._points.append((state.time, float((state.position[:, 0] > self._middle).mean())))
+        self._curve.set_data(*zip(*self._points, strict=True))
+        self._now.set_data(*zip(self._points[-1], strict=True))
+        return self._curve, self._now
+
+
+def _bars(axes: Axes, edges: np.ndarray) -> StepPatch:
+    bars = StepPatch(np.zeros(BINS), edges, color=COLOURS[5], alpha=0.6, fill=True, animated=True)
+    axes.add_patch(bars)
+    return bars

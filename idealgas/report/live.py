@@ -1,0 +1,274 @@
+"""Page that shows a log in the browser, also while it is written, and its server, which only this machine can reach."""
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler
+from pathlib import Path
+from socketserver import ThreadingTCPServer
+from string import Template
+from threading import Lock
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+import numpy as np
+
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
+from idealgas.analysis.core.tables import escape
+from idealgas.analysis.evolution.theory import expected_law
+from idealgas.analysis.pressure.measure import PAIRS, pressure
+from idealgas.errors import UserError
+from idealgas.log import DamageError, Log
+from idealgas.report.page import SCRIPTS, description_html, player_html, text_of
+from idealgas.report.picture import html_pictures
+from idealgas.report.player import MOST_DISCS, crossing, player
+
+HOST = "127.0.0.1"
+
+ROWS = 2**16
+"""Largest number of event rows in a part of the motion."""
+
+SECONDS = 2.0
+"""Played time of the newest part of a run, s."""
+
+POINTS = 128
+"""Smallest number of points of the curves in a long log."""
+
+POINT_ROWS = 2**14
+"""Number of event rows around a point over which the pressure is averaged."""
+
+MEASURING = 0.2
+"""Time for new points in an answer, s."""
+
+
+class Live:
+    """Parts of the motion in a log that may still be written, and curves of temperature and pressure."""
+
+    def __init__(self, log: Log) -> None:
+        """Prepare the log.
+
+        Raises:
+            UserError: if the log has no events, or too many discs.
+        """
+        if not log.has_events:
+            raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
+        if len(log.discs) > MOST_DISCS:
+            raise UserError(f"{log.path}: has {len(log.discs):,} discs (allowed up to {MOST_DISCS:,} to be shown)")
+        self._log, self._lock, self._second = log, Lock(), crossing(log.box, log.discs.velocity)
+        self._points: dict[float, tuple[float, dict[str, Estimate]]] = {}  # temperature and pressures by time
+
+    @property
+    def running(self) -> bool:
+        """Whether the log is being written."""
+        return self._log.live
+
+    def page(self) -> str:
+        """HTML of the page, which asks for everything that changes."""
+        log, scene = self._log, self._log.scene.scene
+        heading = "The discs" if log.has_positions else "The speeds"
+        shown = "After each part of the motion comes the newest one, or with the mark removed the next one."
+        return Template(text_of("watch.html")).substitute(
+            title=escape(scene.title or Path(log.path).name),
+            style=text_of("report.css"),
+            script="\n".join(map(text_of, (*SCRIPTS, "live.js"))),
+            description=description_html(log),
+            state=log.run_state,
+            newest="" if log.complete else " checked",
+            player=player_html(log, heading, shown),
+            footer=escape(str(log.path)),
+        )
+
+    def part(self, after: float, newest: bool) -> dict[str, Any]:
+        """Part of the motion, plain values for JSON.
+
+        after: time at which it begins. newest: whether it may begin later, to show the newest SECONDS of the run.
+        """
+        with self._refreshed() as log:
+            first = max(after, self._newest()) if newest else after
+            motion = None
+            if first < log.end_time and (played := player(log, first, ROWS, order=False)):
+                self._second = played.head["speed"]
+                if newest:
+                    played.head["speed"] = min(self._second, (played.end - played.start) / SECONDS)
+                motion = {"head": played.head, "arrays": played.arrays}
+            return {"running": self.running, "motion": motion}
+
+    def curves(self, points: int) -> dict[str, Any]:
+        """Curves with some more points, if there are more than a number of them, and the state of the run."""
+        with self._refreshed() as log:
+            self._measure()
+            return {
+                "running": self.running,
+                "state": f"{log.run_state}: {len(log):,} event rows up to t = {log.end_time:.6g}",
+                "points": len(self._points),
+                "html": self._curves() if len(self._points) > points else None,
+            }
+
+    @contextmanager
+    def _refreshed(self) -> Iterator[Log]:
+        """Yield the log as it is now, to one request at a time."""
+        with self._lock:
+            if not self._log.complete:
+                self._log.refresh()
+            yield self._log
+
+    def _newest(self) -> float:
+        """Start of the newest part of the motion."""
+        log = self._log
+        row = max(len(log) - ROWS, 0)
+        return max(self._time_of(row) if row else log.start_time, log.end_time - SECONDS * self._second)
+
+    def _time_of(self, row: int) -> float:
+        (found,) = self._log.chunks(("time",), row, row + 1)
+        return float(found.time[0])
+
+    def _measure(self) -> None:
+        """Measure points in the middle of the longest times without one."""
+        log, done = self._log, time.monotonic() + MEASURING
+        while log.end_time > log.start_time and time.monotonic() < done:
+            edges = np.array([log.start_time, *sorted(self._points), log.end_time])
+            k = int(np.diff(edges).argmax())
+            if edges[k + 1] - edges[k] < (log.end_time - log.start_time) / POINTS:
+                break
+            middle = float(edges[k] + edges[k + 1]) / 2
+            self._points[middle] = _temperature(log, middle), self._pressures(middle)
+
+    def _pressures(self, middle: float) -> dict[str, Estimate]:
+        """Pressure of the gas around a time, or on each wall of a gas without an equation of state, by name."""
+        log = self._log
+        row = min(max(log.row_at(middle) - POINT_ROWS // 2, 0), max(len(log) - 1 - POINT_ROWS, 0))
+        try:
+            found = pressure(log, self._time_of(row), self._time_of(min(row + POINT_ROWS, len(log) - 1)))
+        except DamageError:
+            raise
+        except UserError:
+            return {}
+        if found.mechanical:
+            return {f"on {wall.name}": wall.pressure for wall in found.mechanical.walls}
+        pairs = next((route.pressure for route in found.routes if route.name == PAIRS), None)
+        return {} if pairs is None else {"of the gas": pairs}
+
+    def _curves(self) -> str:
+        """Pictures of temperature and pressure in time, as HTML."""
+        times = np.array(sorted(self._points))
+        temperatures, pressures = zip(*(self._points[t] for t in times), strict=True)
+        names = list(dict.fromkeys(name for found in pressures for name in found))
+        figure, axes = panels(2 if names else 1)
+        axes[0].plot(times, temperatures, "o", ms=3, color=COLOURS[0], label="kinetic energy per disc")
+        if law := expected_law(self._log, times):
+            axes[0].plot(times, law.temperature, "--", color=BLACK, label=law.text)
+        low, high = min(temperatures), max(temperatures)
+        if high - low < 1e-6 * high:  # changes only by rounding
+            axes[0].set_ylim(0.9 * low, 1.1 * high)
+        axes[0].set_ylabel("temperature (energy, k_B = 1)")
+        for k, name in enumerate(names):
+            colour, _, marker = curve_style(k)
+            own = [(t, found[name]) for t, found in zip(times, pressures, strict=True) if name in found]
+            at, values = zip(*own, strict=True)
+            axes[1].errorbar(
+                at, [one.value for one in values], [one.standard_error for one in values],
+                fmt=marker, ms=3, elinewidth=0.8, color=colour, label=f"P {name}",
+            )  # fmt: skip
+            if values[0].theory is not None:
+                axes[1].plot(at, [one.theory for one in values], "--", color=BLACK, label="theory")
+            axes[1].set_ylabel("pressure (energy/length²)")
+        for ax in axes:
+            ax.time_axis()
+            ax.legend()
+        caption = f"Temperature at, and pressure around, {len(times)} times of the run; a click shows the discs there"
+        return html_pictures(figure, caption, "live")
+
+
+def _temperature(log: Log, at: float) -> float:
+    """Kinetic energy per disc, without a conserved motion of the whole gas."""
+    velocity = log.state_at(at).velocity - centre_of_mass_velocity(log)
+    return float((log.discs.mass * (velocity**2).sum(axis=1)).mean() / 2)
+
+
+# ── the server ──
+
+
+class _Server(ThreadingTCPServer):
+    """Server of the page of one log."""
+
+    allow_reuse_address = True
+    daemon_threads = True
+
+    def __init__(self, live: Live, port: int) -> None:
+        self.live = live
+        super().__init__((HOST, port), _Handler)
+        self.name = f"{HOST}:{self.server_address[1]}"
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Answers to a browser: the page, and parts of the motion."""
+
+    server: _Server
+    server_version, sys_version = "idealgas", ""
+
+    def do_GET(self) -> None:
+        """Answer a request; other sites whose name leads here get nothing."""
+        url = urlsplit(self.path)
+        if self.headers["Host"] != self.server.name:
+            self._answer(403, "text/plain", "not the name of this page")
+        elif url.path == "/":
+            self._answer(200, "text/html", self.server.live.page())
+        elif url.path in ("/part", "/curves"):
+            self._data(url.path, dict(parse_qsl(url.query)))
+        else:
+            self._answer(404, "text/plain", "no such page")
+
+    def _data(self, path: str, query: dict[str, str]) -> None:
+        live = self.server.live
+        try:
+            if path == "/part":
+                found = live.part(float(query["after"]), query["newest"] == "1")
+            else:
+                found = live.curves(int(query["points"]))
+        except (LookupError, ValueError):
+            self._answer(400, "text/plain", "wrong query")
+            return
+        except UserError as error:  # of a log that changes while it is read, only now
+            found = {"running": live.running, "state": str(error), "motion": None, "points": 0}
+        self._answer(200, "application/json", json.dumps(found, allow_nan=False))
+
+    def _answer(self, status: int, kind: str, text: str) -> None:
+        body = text.encode()
+        try:
+            self.send_response(status)
+            self.send_header("Content-Type", f"{kind}; charset=utf-8")
+            self.send_header("Content-Length", str(len(body)))
+            self.send_header("Cache-Control", "no-store")
+            self.send_header("Content-Security-Policy", POLICY)
+            self.end_headers()
+            self.wfile.write(body)
+        except ConnectionError:
+            pass  # the tab was closed
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Print nothing."""
+
+
+POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'"
+"""What the page may load: nothing from elsewhere."""
+
+
+def serve(log: Log, port: int = 0, ready: Callable[[str], None] = lambda address: None) -> None:
+    """Serve the page of a log to browsers of this machine until KeyboardInterrupt.
+
+    port: number of the port, 0 for a free one. ready: called with the address of the page.
+
+    Raises:
+        UserError: if the log has nothing to show, or if the port is in use or not allowed.
+    """
+    live = Live(log)
+    try:
+        server = _Server(live, port)
+    except OSError as error:
+        raise UserError(f"port {port}: {error.strerror}") from error
+    with server:
+        ready(f"http://{server.name}/")
+        server.serve_forever()

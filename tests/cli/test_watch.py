@@ -1,0 +1,141 @@
+"""`idealgas watch` and `run --watch`: the page of a log that is being written, in headless Chromium."""
+
+import re
+import signal
+import socket
+import subprocess
+import urllib.error
+import urllib.request
+from contextlib import contextmanager
+
+import pytest
+from helpers.report_pages import assert_positions, picture
+from helpers.support import IDEALGAS, error_of
+from selenium.webdriver.support.ui import WebDriverWait
+
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+from idealgas.scene import parse_scene
+
+SCENE = """
+scene.description = "A gas that is watched."
+scene.seed = 3
+box.size = [20, 10]
+species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
+"""
+ENDLESS = SCENE + "run.events = 100_000_000\n"
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    path = tmp_path_factory.mktemp("watch") / "gas.h5"
+    simulate(parse_scene(SCENE + "run.events = 150_000\n"), path)  # several parts of the motion
+    return path
+
+
+@contextmanager
+def started(*arguments, **options):
+    """A command that prints the address of its page, and the address."""
+    child = subprocess.Popen([IDEALGAS, *map(str, arguments)], stderr=subprocess.PIPE, text=True, **options)
+    try:
+        lines = iter(child.stderr.readline, "")
+        yield child, next(found[0] for line in lines if (found := re.search(r"http://127\.0\.0\.1:\d+/", line)))
+    finally:
+        child.kill()
+        child.wait()
+
+
+@contextmanager
+def opened(browser, address):
+    """A tab of its own with a page, whose requests are logged; nothing may be complained about."""
+    first = browser.current_window_handle
+    browser.switch_to.new_window("tab")
+    browser.get(address)
+    WebDriverWait(browser, 60).until(lambda b: b.execute_script("return player.playing"))
+    yield browser
+    requests = browser.execute_script("return performance.getEntriesByType('resource').map(entry => entry.name)")
+    assert requests
+    assert all(request.startswith((address, "data:")) for request in requests)
+    assert browser.get_log("browser") == []
+    browser.close()
+    browser.switch_to.window(first)
+
+
+def ended(child):
+    """Exit code and messages after Ctrl-C."""
+    child.send_signal(signal.SIGINT)
+    _, messages = child.communicate(timeout=60)
+    return child.returncode, messages
+
+
+def points(browser):
+    return browser.execute_script("return document.querySelectorAll('#sections svg use').length")
+
+
+@pytest.mark.slow
+def test_a_run_is_watched(browser, tmp_path):
+    (tmp_path / "gas.toml").write_text(ENDLESS)
+    with started("run", "gas.toml", "-o", "gas.h5", "--watch", cwd=tmp_path) as (child, address):
+        with opened(browser, address):
+            assert "A gas that is watched." in browser.page_source
+            before = picture(browser), picture(browser, "speeds")
+            time = browser.execute_script("return player.time")
+            WebDriverWait(browser, 60).until(lambda b: points(b) > 10)
+            few = points(browser)
+            WebDriverWait(browser, 60).until(
+                lambda b: points(b) > few and b.execute_script("return player.time") > time
+            )
+            assert before[0] != picture(browser)
+            assert before[1] != picture(browser, "speeds")
+            assert "running: " in browser.find_element("id", "state").text
+            browser.execute_script("player.pause()")
+            with open_log(tmp_path / "gas.h5") as log:
+                assert log.live
+                assert_positions(browser, log, browser.execute_script("return player.time"))
+        assert child.poll() is None  # a closed tab ends nothing
+        code, messages = ended(child)
+    assert (code, "interrupted; `idealgas resume gas.h5` continues it" in messages) == (130, True)
+    assert "Traceback" not in messages
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(address, timeout=5)
+
+
+@pytest.mark.slow
+def test_a_finished_log_is_shown_part_after_part(browser, finished):
+    with started("watch", finished, "--no-browser") as (child, address), open_log(finished) as log:
+        with opened(browser, address):
+            assert browser.execute_script("return player.gas.head.start") == 0
+            end = browser.execute_script("return player.gas.head.end")
+            assert end < log.end_time / 2
+            browser.execute_script("player.seek(player.gas.head.end)")
+            WebDriverWait(browser, 60).until(lambda b: b.execute_script("return player.gas.head.start") == end)
+            browser.execute_script("player.jump(arguments[0])", 0.9 * log.end_time)
+            WebDriverWait(browser, 60).until(lambda b: b.execute_script("return player.time") == 0.9 * log.end_time)
+            assert_positions(browser, log, 0.9 * log.end_time)
+            assert browser.find_element("id", "state").text.startswith("complete: ")
+            browser.execute_script("player.seek(player.gas.head.end); player.play()")
+            WebDriverWait(browser, 60).until(lambda b: b.execute_script("return !player.playing"))
+            WebDriverWait(browser, 60).until(lambda b: points(b) > 2 * 100)
+        assert ended(child) == (0, "")
+
+
+def test_only_this_machine_and_this_name(finished):
+    with started("watch", finished) as (child, address):
+        other = urllib.request.Request(address, headers={"Host": "example.org"})
+        for request, code in ((other, 403), (address + "none", 404), (address + "part?after=x&newest=0", 400)):
+            with pytest.raises(urllib.error.HTTPError) as refused:
+                urllib.request.urlopen(request)
+            assert refused.value.code == code
+        with urllib.request.urlopen(address) as page:
+            assert "default-src 'none'" in page.headers["Content-Security-Policy"]
+        port = int(address.rstrip("/").rpartition(":")[2])
+        line = error_of("watch", finished, "--port", port)
+        assert line == f"port {port}: Address already in use\n"
+        with socket.socket() as outside, pytest.raises(ConnectionRefusedError):
+            outside.connect(("127.0.0.2", port))
+        assert ended(child) == (0, "")
+
+
+def test_a_log_without_events_is_one_line(tmp_path):
+    simulate(parse_scene(SCENE + "run.until = 1\nlog.events = false\n"), tmp_path / "gas.h5")
+    assert "has no events to show" in error_of("watch", tmp_path / "gas.h5")
