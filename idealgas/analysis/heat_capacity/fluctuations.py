@@ -1,7 +1,8 @@
-"""Heat capacity from the fluctuations of sampled energies, and its theory; no events are needed.
+"""Heat capacity from the fluctuations of the energy, and its theory.
 
-Samples are stored at the starts of epochs, whose length depends on the speed of the discs at that time, and with
-`log.snapshot_every` also at evenly spaced times, which are independent of the state of the gas.
+Events give the energy at all times. Samples are stored at the starts of epochs, whose length depends on the speed of
+the discs at that time, and with `log.snapshot_every` also at evenly spaced times, which are independent of the state of
+the gas.
 """
 
 import math
@@ -45,11 +46,11 @@ SOURCE = "degrees of freedom"
 
 @dataclass(frozen=True)
 class EnergySeries:
-    """Energies of a gas at n sampled times after equilibration.
+    """Energies of a gas at n times after equilibration.
 
     kinetic: (n,), kinetic energy of translation of the discs. energy: (n,), energy of the discs by motion, spin and
     position, including that of a piston with a mass. Both are relative to the gas as a whole where nothing stops its
-    motion. position: (n,), coordinate of the piston, length; None without one. start: time of the first sample.
+    motion. position: (n,), coordinate of the piston, length; None without one. start: first of the times.
     """
 
     kinetic: np.ndarray
@@ -59,26 +60,49 @@ class EnergySeries:
 
 
 def energy_series(log: Log, start: float | None = None, end: float | None = None) -> EnergySeries:
-    """Sampled energies between two times, by default from detected equilibrium to the end of the log.
+    """Energies between two times, by default from detected equilibrium to the end of the log.
+
+    Events give them at all times, and those at the edges of the blocks of the window are taken; without events, and
+    with a piston, there are those of the samples.
 
     Raises:
         UserError: if there are no samples, or too few in equilibrium.
     """
+    if log.has_events:
+        window = measure(log, [], start, end)
+        if log.scene.piston is None:
+            return _in_events(log, window.edges[window.first :])
+        start = window.start
+    return _in_samples(log, start, log.end_time if end is None else end)
+
+
+def _in_events(log: Log, times: np.ndarray) -> EnergySeries:
+    """Energies of discs at given times (n,)."""
+    gas, kinetic, inner = log.discs, np.zeros(len(times)), np.zeros(len(times))
+    for k, state in enumerate(log.frames(times)):
+        kinetic[k] = gas.mass @ (state.velocity**2).sum(axis=1) / 2
+        if any(log.gravity):
+            inner[k] -= gas.mass @ (state.position @ np.array(log.gravity))
+        if log.inertia is not None and state.angular_velocity is not None:
+            inner[k] += log.inertia @ state.angular_velocity**2 / 2
+    kinetic -= centre_of_mass_energy(log)
+    return EnergySeries(kinetic, kinetic + inner, None, float(times[0]))
+
+
+def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
+    """Energies at samples between two times, evenly spaced where they can be."""
     scene, observed = log.scene, log.observables
     time = observed["kinetic_energy"][0]
-    last = log.end_time if end is None else end
     if len(time) < 2 or not np.diff(time).max() > 0:
         raise UserError(f"{log.path}: no samples of the energy")
-    if start is None and log.has_events:
-        start = measure(log, [], None, end).start
     first_time = log.start_time if start is None else start
     if every := scene.log.snapshot_every:
-        at = np.flatnonzero(np.isin(time, every * np.arange(last // every + 1)) & (time >= first_time) & (time <= last))
+        at = np.flatnonzero(np.isin(time, every * np.arange(end // every + 1)) & (time >= first_time) & (time <= end))
     else:
         step = np.diff(time).max()
-        grid = np.arange(first_time, last + 1e-9 * step, step)
+        grid = np.arange(first_time, end + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample at a point of the grid, but for rounding
-        at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(last, "right"))]
+        at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(end, "right"))]
     common = centre_of_mass_energy(log)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
@@ -146,7 +170,7 @@ def too_few(found: Estimate, series: np.ndarray) -> str:
         return ""
     else:
         why = f"its error is too large ({found.value:.2g} ± {error:.2g})"
-    return f"{why}; a longer run, or samples at shorter times, would give one"
+    return f"{why}; a longer run, or without events samples at shorter times, would give one"
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:

@@ -246,7 +246,7 @@ def test_a_conserved_momentum_is_no_degree_of_freedom(made):
 
 
 def test_samples_of_the_energy_begin_in_the_window(made):
-    log = made("gravity.acceleration=[0, -0.3]", "run.collisions_per_disc=800")
+    log = made("gravity.acceleration=[0, -0.3]", "run.collisions_per_disc=800", "log.events=false")
     first = log.observables["energy"][0][1]
     assert energy_series(log, start=0.9 * first).start == first
 

@@ -1,10 +1,14 @@
 """Routes to the heat capacity that a log refuses give the reason of that log."""
 
+import math
+
+import numpy as np
 import pytest
 from helpers.support import ROOT
 
 from idealgas import heat_capacity, load_scene, open_log, simulate
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
+from idealgas.analysis.heat_capacity.fluctuations import energy_series
 from idealgas.errors import UserError
 
 
@@ -20,6 +24,26 @@ def test_a_short_run_with_a_piston_lacks_samples_not_a_piston(tmp_path):
 
 
 def test_few_samples_of_the_energy_name_the_key_that_stores_more(tmp_path):
-    simulate(load_scene(ROOT / "configs/rough.toml", ["run.collisions_per_disc=20"]), tmp_path / "run.h5")
+    scene = load_scene(ROOT / "configs/rough.toml", ["run.collisions_per_disc=20", "log.events=false"])
+    simulate(scene, tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log, pytest.raises(UserError, match="16 needed"):
         heat_capacity(log, start=1.0)
+
+
+@pytest.mark.parametrize(
+    ("effect", "collisions"), [("rotation={inertia=0.5, roughness=1}", 800), ("gravity.acceleration=[0, -0.1]", 100)]
+)
+def test_events_tell_the_energy_at_all_times(effect, collisions, tmp_path):
+    """The capacity of rough discs is 3N/2; samples at the starts of epochs were too few to give any."""
+    gas = ["species.0.count=100", f"species.0.radius={math.sqrt(0.1 / math.pi)!r}"]
+    scene = load_scene(ROOT / "configs/quickstart.toml", [*gas, effect, f"run.collisions_per_disc={collisions}"])
+    simulate(scene, tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        series, measured = energy_series(log), heat_capacity(log)
+        time, kinetic = log.observables["kinetic_energy"]
+        assert energy_series(log, start=float(time[1])).kinetic[0] == pytest.approx(kinetic[1], rel=1e-12)
+    assert np.ptp(series.energy) < 1e-9 * series.energy.mean()
+    for route in measured.routes.values():
+        assert abs(route.deviation) < 4
+        assert route.standard_error < 0.3
+    assert bool(measured.routes) == (collisions > 100)
