@@ -114,7 +114,7 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
     yield force_option
     yield json_option
     yield quiet_option
-    words = "Print the rows of the tables as CSV with all digits."
+    words = "Print all numbers as CSV, a row for each quantity, with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.is_checked():
         words = "Exit with code 1 if measurement and theory differ by more than chance allows, 0 without a theory."
@@ -162,11 +162,11 @@ def _analyse(
         unasked = {"agrees": None} if analysis.is_checked() else {}
         print_json(result.as_dict() | (checked.as_dict() if checked else unasked))
     elif as_csv:
-        from idealgas.analysis.core import tables
+        from idealgas.analysis.core.quantities import as_csv as csv_of
 
         for sentence in result.caveats:
             echo(f"caveat: {sentence}", err=True)
-        data(tables.as_csv(analysis.shown_tables(result)), nl=False)
+        data(csv_of(result.as_dict(), analysis.name), nl=False)
     else:
         if headline := analysis.summary(result):
             echo(headline)

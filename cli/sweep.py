@@ -15,7 +15,7 @@ from ._analysis import print_json
 from ._options import FILE, force_option, json_option, plot_option, quiet_option
 from ._progress import progress_bar
 from ._tables import print_tables, shown
-from ._terminal import echo, written
+from ._terminal import data, echo, written
 
 if TYPE_CHECKING:
     from idealgas.sweep.plan import Sweep
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command(epilog="Example: idealgas sweep phi.toml -o phi --workers 2")
-@click.argument("path", type=FILE, metavar="SWEEP.toml")
+@click.argument("path", type=FILE, metavar="SWEEP.toml", required=False)
 @click.option(
     "-o", "--output", type=FILE, metavar="DIR", help="Folder for logs and results; an existing one is continued."
 )
@@ -34,15 +34,16 @@ if TYPE_CHECKING:
 @click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
 @plot_option
 @click.option(
-    "--of", "quantity", metavar="ANALYSIS/QUANTITY",
-    help="Quantity to plot, by its name in results.csv.  [default: the first with an error bar]",
+    "--of", "quantity", metavar="QUANTITY",
+    help="Quantity to plot, by its name in results.csv.  [default: the main one of the first analysis]",
 )  # fmt: skip
 @click.option("--against", "axis", metavar="KEY", help="Axis to plot against.  [default: the first one]")
+@click.option("--list", "listing", is_flag=True, help="List the quantities of all analyses; * stands for any group.")
 @force_option
 @json_option
 @quiet_option
 def sweep(
-    path: str,
+    path: str | None,
     output: str | None,
     workers: int | None,
     scheduler: str | None,
@@ -50,6 +51,7 @@ def sweep(
     plot: str | None,
     quantity: str | None,
     axis: str | None,
+    listing: bool,
     force: bool,
     as_json: bool,
 ) -> None:
@@ -58,6 +60,11 @@ def sweep(
     The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
     twice more and then reported; the other points run. With --plot it draws a figure at the end.
     """
+    if listing:
+        _list_quantities()
+        return
+    if path is None:
+        raise UserError("SWEEP.toml: missing (the file of the sweep)")
     from idealgas.sweep.plan import load_sweep
 
     plan = load_sweep(path)
@@ -129,15 +136,23 @@ def _run(
     return bool(outcome.failures)
 
 
+def _list_quantities() -> None:
+    from idealgas.analysis import registry
+    from idealgas.analysis.core.quantities import names
+
+    for analysis in registry.analyses():
+        data("\n".join(names(analysis.results[0], (analysis.name,))))
+
+
 def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
     from rich.filesize import decimal
 
     from idealgas.analysis.core.tables import Cell, Number, Table
-    from idealgas.sweep.cost import estimate_cost
+    from idealgas.sweep.cost import estimate_cost, total_seconds
 
     workers = workers or os.cpu_count() or 1
     costs = estimate_cost(plan)
-    seconds = sum(cost.seconds for cost in costs) / workers
+    seconds = total_seconds(costs, workers)
     if as_json:
         labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)
         points = [label | cost._asdict() for label, cost in zip(labels, costs, strict=True)]

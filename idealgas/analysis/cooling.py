@@ -107,6 +107,7 @@ class CoolingAnalysis(Analysis):
     """Cooling of a granular gas."""
 
     position = 30
+    headline = "loss"
     results = (Cooling,)
     sections = (
         Section(

@@ -90,6 +90,7 @@ class EffusionAnalysis(Analysis):
     """Effusion through a slit."""
 
     position = 110
+    headline = "speed"
     results = (Effusion, Effusions)
     sections = (Section("Effusion", "Fraction of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),)
     averages = True

@@ -75,6 +75,7 @@ class LyapunovAnalysis(Analysis):
     """Lyapunov exponents of smooth elastic discs in a box, by the tangent map of each flight and collision."""
 
     position = 105
+    headline = "exponents.0"
     results = (Lyapunov,)
     options = (
         Option("exponents", int, "How many exponents, the largest ones; 4N are all.", default=1, least=1, metavar="K"),

@@ -102,6 +102,7 @@ class OrderAnalysis(Analysis):
     """Order of the discs of one log."""
 
     position = 80
+    headline = "whole"
     results = (Order,)
     sections = (
         Section(

@@ -100,6 +100,7 @@ class SoundAnalysis(Analysis):
     """Sound in a gas of one species."""
 
     position = 90
+    headline = "waves.*.speed"
     results = (Sound,)
     sections = (Section("Sound", "Correlation in time of the longest waves of density, hydrodynamics dashed"),)
     reads = "frames"

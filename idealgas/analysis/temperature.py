@@ -193,6 +193,7 @@ class TemperatureAnalysis(Analysis):
     """Declaration of the analysis; its docstring for users is that of `temperature`."""
 
     position = 10
+    headline = "species.*.both"
     results = (Temperature,)
     takes_unlike_discs = True  # a mean of m v² depends on the mean mass only
     sections = (Section("Temperature", "Kinetic temperature of each species against time"),)

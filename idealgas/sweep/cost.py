@@ -2,17 +2,23 @@
 
 import math
 import tempfile
+import time
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from idealgas.analysis.registry import analyse
 from idealgas.analysis.theory.forecast import BYTES_A_ROW, forecast
+from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep
 
 TRIAL_EVENTS = 20_000  # events of the short runs that measure the speed
-ALONE = 0.05  # seconds that every point takes for its log, its analyses and the scheduler
+START = 3.0  # seconds in which workers start
+ROWS_PER_SECOND = 1e6  # event rows that an analysis reads per second
 
 
 class Cost(NamedTuple):
@@ -29,11 +35,12 @@ class Cost(NamedTuple):
 
 
 class _Trial(NamedTuple):
-    """Short run of a scene: event rows in the log per event, events per second, and events per simulated time."""
+    """Short run of a scene: rows per event, events per second and per simulated time, seconds of its analyses."""
 
     rows: float
     per_second: float
     per_time: float
+    analysed: float
 
 
 def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
@@ -42,12 +49,17 @@ def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
     costs = []
     for point in sweep.points:
         if point.combination not in trials:
-            trials[point.combination] = _try(point.scene)
-        costs.append(_cost(point.scene, trials[point.combination]))
+            trials[point.combination] = _try(point.scene, sweep.analyses)
+        costs.append(_cost(point.scene, trials[point.combination], len(sweep.analyses)))
     return tuple(costs)
 
 
-def _cost(scene: Scene, trial: _Trial) -> Cost:
+def total_seconds(costs: Sequence[Cost], workers: int) -> float:
+    """Time of a sweep with the costs of its points on a number of workers of this machine, seconds."""
+    return START + sum(cost.seconds for cost in costs) / workers
+
+
+def _cost(scene: Scene, trial: _Trial, analyses: int) -> Cost:
     expected = forecast(scene, make_gas(scene))
     events, size = expected.events, expected.bytes
     if events is None:
@@ -56,12 +68,24 @@ def _cost(scene: Scene, trial: _Trial) -> Cost:
         events = min(scene.run.events or math.inf, collisions, trial.per_time * until)
     if size is None:
         size = events * trial.rows * BYTES_A_ROW[scene.log.compression]
-    return Cost(expected.number, expected.packing_fraction, events, size, ALONE + events / trial.per_second)
+    seconds = trial.analysed + events / trial.per_second + analyses * events * trial.rows / ROWS_PER_SECOND
+    return Cost(expected.number, expected.packing_fraction, events, size, seconds)
 
 
-def _try(scene: Scene) -> _Trial:
+def _try(scene: Scene, analyses: Sequence[str]) -> _Trial:
     run = scene.run.model_copy(update={"events": min(TRIAL_EVENTS, scene.run.events or TRIAL_EVENTS)})
     with tempfile.TemporaryDirectory(prefix="idealgas-sweep-") as folder:
-        summary = simulate(scene.model_copy(update={"run": run}), Path(folder) / "trial.h5")
+        path = Path(folder) / "trial.h5"
+        summary = simulate(scene.model_copy(update={"run": run}), path)
+        analysed = [_analyse(path, analyses) for _ in range(2)][1]  # the first one loads machine code
     events = max(summary.events, 1)
-    return _Trial(summary.rows / events, events / summary.seconds, events / max(summary.end_time, 1e-300))
+    return _Trial(summary.rows / events, events / summary.seconds, events / max(summary.end_time, 1e-300), analysed)
+
+
+def _analyse(path: Path, analyses: Sequence[str]) -> float:
+    """Seconds that analyses of a short log take."""
+    started = time.monotonic()
+    for name in analyses:
+        with suppress(UserError):
+            analyse(path, name)
+    return time.monotonic() - started

@@ -2,13 +2,16 @@
 
 import os
 from collections.abc import Iterable
+from fnmatch import fnmatchcase
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
+from idealgas.analysis import registry
 from idealgas.analysis.core.style import curve_style, panels
 from idealgas.errors import UserError, unknown
-from idealgas.sweep.results import RESULT, average, name_of, result_rows
+from idealgas.sweep.results import RESULT, average, result_rows
 
 Row = dict[str, Any]
 
@@ -16,20 +19,22 @@ Row = dict[str, Any]
 def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, axis: str | None = None) -> Figure:
     """Figure of a quantity against an axis: averages over the replicates, theory, one curve per set of other values.
 
-    quantity: "analysis/quantity" with the names of results.csv; None for the first number with an error bar. axis: key
-    of an axis with numbers; None for the first one.
+    quantity: its name in results.csv; None for the headline of the first analysis that has one, or else the first
+    number with an error bar. axis: key of an axis with numbers; None for the first one.
 
     Raises:
         UserError: if the sweep has no such quantity or axis, or no results.
     """
     rows = result_rows(folder)
     axis = _choice("axis", axis, [key for key in _axes(rows) if _all_numbers(row[key] for row in rows)])
-    estimates = [name_of(row) for row in rows if row.get("standard_error") is not None]
-    names = list(dict.fromkeys([*estimates, *map(name_of, rows)]))
-    quantity = _choice("quantity", quantity, names)
+    headlines = [f"{analysis.name}.{analysis.headline}" for analysis in registry.analyses()]
+    found = [row["quantity"] for row in rows]
+    estimates = [row["quantity"] for row in rows if row.get("standard_error") is not None]
+    first = [name for name in found if any(fnmatchcase(name, headline) for headline in headlines)]
+    quantity = _choice("quantity", quantity, list(dict.fromkeys([*first, *estimates, *found])))
     curves: dict[str, dict[float, list[Row]]] = {}
     for row in rows:
-        if name_of(row) == quantity:
+        if row["quantity"] == quantity:
             others = ", ".join(f"{key} = {row[key]}" for key in _axes(rows) if key != axis)
             curves.setdefault(others, {}).setdefault(float(row[axis]), []).append(row)
     figure, (ax,) = panels(1)
@@ -38,9 +43,13 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
         values, errors = zip(*(average(points[place]) for place in places), strict=True)
         colour, line, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
-        theory = [(x, found) for x in places if (found := points[x][0].get("theory")) is not None]
-        if theory:
-            ax.plot(*zip(*theory, strict=True), line, color=colour, label=f"{label}: theory" if label else "theory")
+        known = [
+            (x, row["theory"], row["theory_error"]) for x in places if (row := points[x][0]).get("theory") is not None
+        ]
+        if known:
+            at, theory, error = np.array(known).T
+            ax.plot(at, theory, line, color=colour, label=f"{label}: theory" if label else "theory")
+            ax.fill_between(at, theory - error, theory + error, color=colour, alpha=0.2, linewidth=0)
     ax.set_xlabel(axis)
     ax.set_ylabel(quantity)
     ax.legend()

@@ -82,7 +82,7 @@ class Published(Table):
     """Table `[[published]]`: values of a quantity in a paper, one for each combination of the axes, in their order."""
 
     source: str = Field(description="the paper")
-    quantity: str = Field(description='"analysis/quantity" with the names of results.csv')
+    quantity: str = Field(description='its name in results.csv, such as "run.events"')
     values: Annotated[tuple[Number, ...], Field(strict=False)] = Field(description="one for each point")
     errors: Annotated[tuple[NotNegative, ...], Field(strict=False)] = Field(
         default=(), description="their standard errors; none: exact"

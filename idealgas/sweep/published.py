@@ -9,7 +9,7 @@ from typing import Any
 from idealgas.analysis.core.tables import Number, Table, with_error
 from idealgas.errors import unknown
 from idealgas.sweep.plan import Sweep
-from idealgas.sweep.results import average, name_of, read_points, rows_of
+from idealgas.sweep.results import average, read_points, rows_of
 
 HEADS = ("", "value", "± s.e.", "published", "± error", "deviation (σ)")
 
@@ -23,14 +23,14 @@ def published_tables(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[T
     rows: dict[str, list[dict[str, Any]]] = {}
     for point in read_points(folder):
         rows.setdefault(_label(point["values"]), []).extend(rows_of(point))
-    names = list(dict.fromkeys(name_of(row) for of_point in rows.values() for row in of_point))
+    names = list(dict.fromkeys(row["quantity"] for of_point in rows.values() for row in of_point))
     labels = list(dict.fromkeys(_label(point.values) for point in sweep.points))
     for paper in sweep.published:
         if paper.quantity not in names:
             raise unknown("quantity", paper.quantity, names)
         lines = []
         for label, value, error in zip(labels, paper.values, paper.errors or (0.0,) * len(labels), strict=True):
-            if found := [row for row in rows.get(label, ()) if name_of(row) == paper.quantity]:
+            if found := [row for row in rows.get(label, ()) if row["quantity"] == paper.quantity]:
                 own, own_error = average(found)
                 both = math.hypot(error, own_error)
                 off = (own - value) / both if both else None

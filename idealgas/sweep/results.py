@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from idealgas.analysis.core.caveats import origin_of
+from idealgas.analysis.core.quantities import ESTIMATE, rows
 from idealgas.analysis.core.result import Origin
 from idealgas.errors import UserError
 from idealgas.files import replacing
@@ -22,9 +23,6 @@ from idealgas.sweep.point import points_folder, result_path
 
 MOST_BYTES = 2**26
 """Largest size of the result file of a point."""
-
-ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
-
 
 _Count = Annotated[int, Field(ge=0, lt=2**63)]
 
@@ -52,7 +50,7 @@ class _Caveats(BaseModel):
 
 _estimate = TypeAdapter(dict[str, float | None], config=ConfigDict(allow_inf_nan=False))
 
-RESULT = ("analysis", "quantity", *ESTIMATE, "caveats")
+RESULT = ("quantity", "group", *ESTIMATE, "caveats")
 """Columns of results.csv after those that identify the point."""
 
 
@@ -87,8 +85,8 @@ def _read_point(path: Path) -> dict[str, Any]:
         _StoredResult.model_validate(found)
         for result in found["analyses"].values():
             _Caveats.model_validate(result)
-            for _, estimate in _estimates(result):
-                _estimate.validate_python(estimate)
+            for row in rows(result, ""):
+                _estimate.validate_python(row.values)
         if path.name != result_path("", found["point"]).name:
             raise ValueError(f"point {found['point']} under another name")
     except ValidationError as error:
@@ -143,8 +141,8 @@ def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:
 
 def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
     """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files; return their paths."""
-    rows = result_rows(folder)
-    names = list(dict.fromkeys(name for row in rows for name in row))
+    found = result_rows(folder)
+    names = list(dict.fromkeys(name for row in found for name in row))
     identify = [name for name in names if name not in RESULT]
     names = [*identify, *(name for name in RESULT if name in names)]
     table, columnar = table_paths(folder)
@@ -152,21 +150,16 @@ def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
     with replacing(table) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, names, restval="")
         writer.writeheader()
-        writer.writerows(rows)
+        writer.writerows(found)
     if find_spec("pyarrow"):
         import pyarrow
         from pyarrow import parquet
 
         tables.append(columnar)
-        columns = {name: [row.get(name) for row in rows] for name in names}
+        columns = {name: [row.get(name) for row in found] for name in names}
         with replacing(columnar) as part:
             parquet.write_table(pyarrow.table(columns), part)
     return tables
-
-
-def name_of(row: dict[str, Any]) -> str:
-    """Analysis and quantity of a row."""
-    return f"{row['analysis']}/{row['quantity']}"
 
 
 def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:
@@ -184,28 +177,9 @@ def rows_of(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
     labels |= {key: json.dumps(v) if isinstance(v, list) else v for key, v in point["values"].items()}
     for name, value in point["summary"].items():
         if isinstance(value, bool | int | float):
-            yield {**labels, "analysis": "run", "quantity": name, "value": float(value)}
+            yield {**labels, "quantity": f"run.{name}", "group": "", "value": float(value)}
     for analysis, found in point["analyses"].items():
         caveats = {"caveats": " ".join(found["caveats"])}
-        for quantity, estimate in _estimates(found):
-            yield {**labels, "analysis": analysis, "quantity": quantity, **estimate, **caveats}
-
-
-def _estimates(found: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict[str, float | None]]]:
-    """Numbers in a result by their path in it; series are left out.
-
-    An entry of a list is named by its texts or, without texts, by its index.
-    """
-    if isinstance(found, dict):
-        if set(ESTIMATE) <= found.keys():
-            yield "/".join(path), {name: found[name] for name in ESTIMATE}
-            return
-        for name, value in found.items():
-            yield from _estimates(value, (*path, name))
-    elif isinstance(found, list):
-        for k, entry in enumerate(found):
-            if isinstance(entry, dict):
-                label = ", ".join(value for value in entry.values() if isinstance(value, str)) or str(k)
-                yield from _estimates(entry, (*path, label))
-    elif isinstance(found, int | float):
-        yield "/".join(path), {"value": float(found)}
+        for row in rows(found, analysis.replace("-", "_")):
+            if row.entry is None:
+                yield {**labels, "quantity": row.quantity, "group": row.group, **row.values, **caveats}

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from idealgas.errors import OutputError, UserError
-from idealgas.sweep.cost import estimate_cost
+from idealgas.sweep.cost import estimate_cost, total_seconds
 from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
 from idealgas.sweep.plan import Sweep
 from idealgas.sweep.point import result_path, run_point
@@ -114,7 +114,7 @@ def run_sweep(
 def _estimate(sweep: Sweep, workers: int) -> float | None:
     """Estimated time of a sweep on a number of workers, seconds; None if one of its points cannot be run."""
     with suppress(UserError):
-        return sum(cost.seconds for cost in estimate_cost(sweep)) / workers
+        return total_seconds(estimate_cost(sweep), workers)
     return None
 
 

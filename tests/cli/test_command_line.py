@@ -63,7 +63,7 @@ def test_what_is_written_is_named(log, tmp_path):
 
 def test_a_quiet_command_still_prints_what_is_asked_for_and_errors(log):
     assert called("temperature", log, "-q", "--json").stdout.startswith("{")
-    assert called("temperature", log, "-q", "--csv").stdout.startswith("table,")
+    assert called("temperature", log, "-q", "--csv").stdout.startswith("quantity,group,index,value,")
     error_of("temperature", "missing.h5", "-q")
 
 

@@ -106,7 +106,7 @@ def test_tables_json_csv_and_pictures(idealgas):
     assert "at the end\nOf one disc" in table
     assert f"{speed:.6g}" in table
     (row,) = csv.DictReader(idealgas("fastest-disc", "run.h5", "--csv").splitlines())
-    assert (row["table"], row["name"], float(row["value"])) == ("Of one disc", "speed", speed)
+    assert (row["quantity"], float(row["value"])) == ("fastest_disc.speed", speed)
     second = json.loads(idealgas("fastest-disc", "run.h5", "--rank", 2, "--json"))["speed"]["value"]
     assert 0 < second < speed
     idealgas("fastest-disc", "run.h5", "--plot", "speeds.png")
@@ -138,8 +138,8 @@ def test_the_report_has_its_sections_or_says_why_not(idealgas):
 def test_a_sweep_asks_for_it(idealgas):
     idealgas("sweep", "sweep.toml", "-o", "out", "--workers", 1)
     with (idealgas.folder / "out" / "results.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if row["analysis"] == "fastest-disc"]
-    assert [(row["point"], row["quantity"]) for row in rows] == [("0", "speed"), ("1", "speed")]
+        rows = [row for row in csv.DictReader(file) if row["quantity"] == "fastest_disc.speed"]
+    assert [row["point"] for row in rows] == ["0", "1"]
     for row in rows:
         log = f"out/points/{int(row['point']):04d}.h5"
         assert float(row["value"]) == json.loads(idealgas("fastest-disc", log, "--json"))["speed"]["value"]

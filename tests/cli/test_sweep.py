@@ -16,6 +16,7 @@ import psutil
 import pytest
 from helpers.support import IDEALGAS, called, error_of, idealgas, output_of
 
+from idealgas.analysis import registry
 from idealgas.sweep.run import Outcome, Progress
 
 SWEEP = """
@@ -114,6 +115,13 @@ def test_a_dry_run_has_the_axes_in_their_order_also_as_json(plan, tmp_path):
     ]
 
 
+def test_the_quantities_are_listed():
+    listed = output_of("sweep", "--list").splitlines()
+    assert {"pressure.routes.*.compressibility_factor", "temperature.species.*.both", "pressure.area"} <= set(listed)
+    assert {line.partition(".")[0] for line in listed} == set(registry.names())
+    assert "SWEEP.toml: missing" in error_of("sweep")
+
+
 @pytest.mark.slow
 def test_all_that_people_want_of_a_sweep(plan, tmp_path):
     """Every kind of analysis in the table, its caveats, the time beside its estimate, JSON, and a picture."""
@@ -128,12 +136,12 @@ def test_all_that_people_want_of_a_sweep(plan, tmp_path):
     assert (tmp_path / "z.png").stat().st_size > 5000
     with (tmp_path / "out" / "results.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert {row["analysis"] for row in rows} == {"run", "pressure", "profile", "evolution"}
+    assert {row["quantity"].partition(".")[0] for row in rows} == {"run", "pressure", "profile", "evolution"}
     assert list(rows[0])[-1] == "caveats"
     again = called("sweep", plan, "-o", tmp_path / "out", "--json")
     found = json.loads(again.stdout)
     assert (found["ran"], found["before"], len(found["results"])) == (0, 4, len(rows))
-    for option, name in (("--of", "pressure/area"), ("--against", "phi")):
+    for option, name in (("--of", "pressure.area"), ("--against", "phi")):
         wrong = error_of("sweep", plan, "-o", tmp_path / "out", "-q", "--plot", tmp_path / "y.png", option, f"{name}s")
         assert f'did you mean "{name}"' in wrong
     assert not (tmp_path / "y.png").exists()

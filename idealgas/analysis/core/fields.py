@@ -44,7 +44,7 @@ def as_dict(found: Any) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for one in fields(found):
         values |= _of_field(one, getattr(found, one.name))
-    return values | {name: plain_value(getattr(found, name)) for name in _reported(type(found))}
+    return values | {name: plain_value(getattr(found, name)) for name in reported_properties(type(found))}
 
 
 def _of_field(one: "Field[Any]", value: Any) -> dict[str, Any]:
@@ -55,7 +55,8 @@ def _of_field(one: "Field[Any]", value: Any) -> dict[str, Any]:
     return plain if INLINE in marks else {next((m.name for m in marks if isinstance(m, Key)), one.name): plain}
 
 
-def _reported(kind: type) -> Iterator[str]:
+def reported_properties(kind: type) -> Iterator[str]:
+    """Names of the properties of a class that are plain values."""
     for part in reversed(kind.__mro__):
         for name, member in vars(part).items():
             if isinstance(member, property) and getattr(member.fget, "reported", False):

@@ -1,8 +1,6 @@
-"""Tables of results: the same rows for the terminal, CSV, notebooks and the report page; histograms in characters."""
+"""Tables of results: the same rows for the terminal, notebooks and the report page; histograms in characters."""
 
-import csv
 import html
-import io
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,8 +19,8 @@ if TYPE_CHECKING:
 class Number(NamedTuple):
     """A number in a table.
 
-    value: the number, None if there is none. digits: format for the terminal and the report. absent: text that is shown
-    if there is no value. instead: text that is shown instead of the value; CSV has the value.
+    value: the number, None if there is none. digits: format of the number. absent: text that is shown if there is no
+    value. instead: text that is shown instead of the value.
     """
 
     value: float | None
@@ -44,8 +42,7 @@ class Table:
     """A table of a result.
 
     title: heading of the table. heads: headings of the columns; the first column names the rows. rows: cells, row by
-    row. notes: lines printed before the rows. most: largest number of rows that are shown, evenly chosen from all rows;
-    CSV has all of them. With 0 the table is for CSV alone.
+    row. notes: lines printed before the rows. most: largest number of rows that are shown, evenly chosen from all rows.
     """
 
     title: str
@@ -69,19 +66,10 @@ MOST_DIGITS = 9
 """Largest number of digits before and after the decimal point."""
 
 SHOWN_ROWS = 9
-"""Number of instants of a series that the terminal and the report show; CSV has all."""
+"""Number of instants of a series that the terminal and the report show."""
 
 THEORY_ERROR = "± theory"
 """Heading of the error of theory, a column of those tables in which a theory has one."""
-
-CSV_HEADS = {
-    "": "name",
-    "± s.e.": "standard_error",
-    "samples": "independent_samples",
-    THEORY_ERROR: "theory_error",
-    "deviation (σ)": "deviation",
-}
-"""Column names in CSV that differ from the shown headings; they are those of the results of a sweep."""
 
 
 def digits(error: float, *shown: float | None) -> str:
@@ -180,30 +168,6 @@ def as_text(tables: Iterable[Table]) -> str:
             lines.append("  ".join(padded).rstrip())
         lines.append("")
     return "\n".join(lines).rstrip("\n")
-
-
-def as_csv(tables: Iterable[Table]) -> str:
-    """All rows of all tables as one CSV text, whose first line has the headings of all columns.
-
-    The first column has the title of the table. Numbers have all their digits. A cell is empty if its table does not
-    have the column, or if its number is not finite.
-    """
-    rows: list[dict[str, str | float]] = []
-    for table in tables:
-        names = ("table", *(CSV_HEADS.get(head, head) for head in table.heads))
-        rows += (dict(zip(names, (table.title, *map(_plain, row)), strict=True)) for row in table.rows)
-    file = io.StringIO()
-    columns = list(dict.fromkeys(name for row in rows for name in row)) or ["table"]
-    writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return file.getvalue()
-
-
-def _plain(cell: Cell) -> str | float:
-    if isinstance(cell, str):
-        return cell
-    return "" if cell.value is None or not math.isfinite(cell.value) else cell.value
 
 
 def format_estimate(found: "Estimate") -> str:

@@ -104,6 +104,7 @@ class EvolutionAnalysis(Analysis):
     """Evolution in time."""
 
     position = 20
+    headline = "rest"
     takes_unlike_discs = True
     results = (Evolution,)
     sections = (

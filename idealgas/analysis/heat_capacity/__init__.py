@@ -114,6 +114,7 @@ class HeatCapacityAnalysis(Analysis):
     """Heat capacity per disc."""
 
     position = 100
+    headline = "routes.*"
     results = (Measured, HeatCapacity)
     sections = (Section("Heat capacity", "Heat capacity per disc by every route with its standard error, and theory"),)
     averages = True

@@ -74,6 +74,7 @@ class HistogramAnalysis(Analysis):
     """Distributions of speeds, energies, free flights and waiting times."""
 
     position = 50
+    headline = "distributions.*.mean"
     results = (Histogram,)
     sections = tuple(
         Section(
@@ -139,28 +140,21 @@ class HistogramAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Histogram) -> list[Table]:
-        """Tables of the means, of Kolmogorov-Smirnov distances between samples and laws, and of densities in bins."""
+        """Tables of the means, and of Kolmogorov-Smirnov distances between samples and laws."""
         tests: list[tuple[Cell, ...]] = []
-        bins: list[tuple[Cell, ...]] = []
         for found in result.distributions:
-            low, high, spacing = found.edges[:-1], found.edges[1:], Number(found.correlation_time, ".4g")
+            spacing = Number(found.correlation_time, ".4g")
             for test in found.tests:
                 distance, error = Number(test.distance, ".4f"), Number(test.law_error, ".2g")
                 p, samples = Number(test.p_value, ".3g"), Number(found.samples, "d")
                 tests.append((found.name, test.law_name, distance, error, p, samples, spacing))
-            law = [None] * len(low)
-            if found.tests:  # the first of the laws as theory, as its mean over a bin
-                law = (np.diff(found.tests[0].law.cdf(found.edges)) / (high - low)).tolist()
-            columns = (low.tolist(), high.tolist(), found.density.tolist(), found.error.tolist(), law)
-            bins += ((found.name, *map(Number, row)) for row in zip(*columns, strict=True))
         means = [(found.name, found.mean) for found in result.distributions]
         notes = (describe(result.window), *([f"No law here: {result.no_law}."] if result.no_law else []))
         tables = [estimates(f"Mean {result.quantity} ({result.unit})", means, notes)]
         if tests:
             columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)")
             tables.append(Table("Kolmogorov-Smirnov tests (no unit)", columns_of_tests, tests))
-        heads = ("", "from", "to", "value", "± s.e.", "theory")
-        return [*tables, Table(f"Density of {result.quantity} (per {result.unit})", heads, bins, most=0)]
+        return tables
 
     @staticmethod
     def summary(result: Histogram) -> str:

@@ -22,6 +22,7 @@ class PressureAnalysis(Analysis):
     """Declaration of the analysis; its docstring for users is that of `pressure`."""
 
     position = 0
+    headline = "routes.pairs_virial*.compressibility_factor"
     results = (
         Pressure,
         EquationOfState,

@@ -138,6 +138,7 @@ class RelaxationAnalysis(Analysis):
     """Relaxation to equilibrium."""
 
     position = 60
+    headline = "relaxation_time"
     results = (Relaxation, Relaxations)
     sections = (
         Section(

@@ -21,6 +21,7 @@ class TransportAnalysis(Analysis):
     """Declaration of the analysis; its docstring for users is that of `transport`."""
 
     position = 70
+    headline = "diffusion.*.coefficient"
     results = (
         Transport,
         States,

@@ -6,6 +6,7 @@ import io
 import json
 import subprocess
 import sys
+from fnmatch import fnmatchcase
 from importlib import import_module
 from pkgutil import iter_modules
 
@@ -15,9 +16,10 @@ import idealgas
 from idealgas import analysis as package
 from idealgas.analysis import registry
 from idealgas.analysis.core.analysis import Option
+from idealgas.analysis.core.quantities import ESTIMATE, as_csv, names
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Number, Table, as_csv, escape, estimates, html_table
+from idealgas.analysis.core.tables import Number, Table, escape, estimates, html_table
 from idealgas.errors import UserError
 from idealgas.report.sections import make_sections
 
@@ -122,12 +124,14 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
     assert any(
         word in headline.lower() for word in ("agree", "differ", "theory")
     )  # no number without a theory or its absence
-    rows = list(csv.DictReader(io.StringIO(as_csv(tables))))
-    assert [row["table"] for row in rows] == [table.title for table in tables for _ in table.rows]
     text = json.dumps(result.as_dict(), allow_nan=False)
-    known = {repr(number) for number in _numbers(json.loads(text))}
-    values = [row["value"] for row in rows if row.get("value") and row.get("standard_error")]
-    assert {repr(float(value)) for value in values} <= known
+    rows = list(csv.DictReader(io.StringIO(as_csv(result.as_dict(), analysis.name))))
+    numbers = [float(row[name]) for row in rows for name in ESTIMATE if row[name]]
+    assert sorted(numbers) == sorted(_numbers(json.loads(text)))
+    known = list(names(type(result), (analysis.name,)))
+    for row in rows:
+        assert all(part.isidentifier() or part.isdigit() for part in row["quantity"].split("."))
+        assert row["index"] or any(fnmatchcase(row["quantity"], name) for name in known), row["quantity"]
     for table in tables:
         assert all(len(row) == len(table.heads) for row in table.rows)
 
@@ -175,16 +179,24 @@ def test_a_report_shows_every_section_or_says_why_not(make):
     assert "Evolution" not in left_out
 
 
-def test_csv_has_all_digits_and_people_see_some():
+def test_people_see_some_rows_and_digits():
     table = Table("t", ("", "n"), [(str(k), Number(k / 7, ".2f")) for k in range(10)], most=3)
     assert table.shown == [["0", "0.00"], ["4", "0.57"], ["9", "1.29"]]
     other = estimates("e", [("a, b", Estimate(1 / 3, float("nan"), 5.0))])
-    lines = as_csv([table, other]).splitlines()
-    assert lines[0] == "table,name,n,value,standard_error,independent_samples,theory,deviation"
-    assert lines[2] == f"t,1,{1 / 7!r},,,,,"
-    assert lines[11] == f'e,"a, b",,{1 / 3!r},,5.0,,'
     assert other.shown == [["a, b", "0.333333", "", "5", "", ""]]
-    assert as_csv([Table("empty", ("",), [])]) == "table\n"
+
+
+def test_csv_has_a_row_for_each_number_with_all_digits():
+    one = Estimate(1 / 3, float("nan"), 5.0).as_dict()
+    found = {"routes": [{"route": "a, b", "z": one}], "left wall": 2, "series": [[0.1, None], [0.3, 0.4]], "none": None}
+    assert as_csv(found, "p").splitlines() == [
+        "quantity,group,index,value,standard_error,independent_samples,theory,theory_error,deviation",
+        f'p.routes.a_b.z,"a, b",,{1 / 3!r},,5.0,,0.0,',
+        "p.left_wall,left wall,,2.0,,,,,",
+        "p.series.0,,0,0.1,,,,,",
+        "p.series.0,,1,0.3,,,,,",
+        "p.series.1,,1,0.4,,,,,",
+    ]
 
 
 @pytest.mark.parametrize(("overrides", "ideal"), [((), 1.0), (("gravity.acceleration=[0, -0.1]",), None)])

@@ -1,11 +1,13 @@
 import csv
 import json
+from dataclasses import replace
 
 import pytest
 
 from idealgas.analysis.pressure.combine import restore_pressure
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
+from idealgas.sweep.figure import sweep_figure
 from idealgas.sweep.plan import Point
 from idealgas.sweep.point import log_path, points_folder, result_path, run_point
 from idealgas.sweep.results import read_points, stored_results, write_tables
@@ -60,20 +62,36 @@ def test_the_table_is_tidy(point, tmp_path):
     with (tmp_path / "results.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0])[:5] == ["point", "replicate", "seed", "phi", "species.x"]
-    by_name = {(row["analysis"], row["quantity"]): row for row in rows}
+    by_name = {row["quantity"]: row for row in rows}
     assert len(by_name) == len(rows)
-    pairs = by_name["pressure", "routes/pairs, virial/compressibility_factor"]
+    assert all(part.isidentifier() or part.isdigit() for name in by_name for part in name.split("."))
+    pairs = by_name["pressure.routes.pairs_virial.compressibility_factor"]
+    assert pairs["group"] == "pairs, virial"
     ((label, result, _),) = stored_results(tmp_path, "pressure")
     assert label == "phi = 0.1, species.x = [1, 2]"
     sample = restore_pressure(result, label)
     assert float(pairs["value"]) == sample.compressibility_factor.value
     assert float(pairs["theory"]) == sample.compressibility_factor.theory
     assert pairs["species.x"] == "[1, 2]"
-    assert by_name["temperature", "species/gas/both"]["standard_error"]
+    assert by_name["temperature.species.gas.both"]["standard_error"]
     if len(tables) == 2:
         from pyarrow import parquet
 
         assert parquet.read_table(tables[1]).num_rows == len(rows)
+
+
+def test_the_figure_shows_the_headline_with_its_theory(point, tmp_path):
+    run_point(point, tmp_path, ANALYSES, False)
+    run_point(replace(point, index=4, values={"phi": 0.2, "species.x": [1, 2]}), tmp_path, ANALYSES, False)
+    (panel,) = sweep_figure(tmp_path).axes
+    assert panel.get_ylabel() == "pressure.routes.pairs_virial.compressibility_factor"
+    assert [text.get_text() for text in panel.get_legend().get_texts()] == [
+        "species.x = [1, 2]: theory", "species.x = [1, 2]",
+    ]  # fmt: skip
+    (panel,) = sweep_figure(tmp_path, "temperature.species.gas.both").axes
+    assert panel.get_ylabel() == "temperature.species.gas.both"
+    with pytest.raises(UserError, match=r'did you mean "pressure\.area"'):
+        sweep_figure(tmp_path, "pressure.aria")
 
 
 def test_folders_without_results_are_refused(point, tmp_path):
