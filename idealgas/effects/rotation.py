@@ -1,7 +1,5 @@
 """Rough discs that spin."""
 
-import math
-
 import numpy as np
 from pydantic import Field
 
@@ -42,14 +40,12 @@ def _properties(tables: Tables) -> Properties:
 
 def _make(tables: Tables, start: Start) -> law.Rotation:
     table, gas = tables.own, start.gas
-    omega = start.angular_velocity.copy()
+    omega, inertias = start.angular_velocity.copy(), law.moment_of_inertia(table.inertia, gas.mass, gas.radius)
     for k, name in enumerate(gas.species_names):
         ids = np.flatnonzero(gas.species == k)
         if len(ids) and (temperature := start.spin_temperature[ids[0]]) > 0:
             spin = rng(start.seed, f"spins {name}").standard_normal(len(ids))
-            inertia = law.moment_of_inertia(table.inertia, gas.mass[ids[0]], gas.radius[ids[0]])
-            omega[ids] = spin * math.sqrt(temperature / (inertia * (spin**2).mean()))
-    inertias = law.moment_of_inertia(table.inertia, gas.mass, gas.radius)
+            omega[ids] = spin * np.sqrt(temperature / (inertias[ids] * (spin**2).mean()))
     return law.Rotation(omega, inertias, table.roughness, table.wall_roughness)
 
 

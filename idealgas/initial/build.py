@@ -7,6 +7,7 @@ import numpy as np
 from idealgas.initial.contacts import static_contact_issues
 from idealgas.physics.elementary import cos_sin_turns
 from idealgas.scene import Scene, SceneError, Species
+from idealgas.scene.sizes import Values, mass_of
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas, rng
 from idealgas.toml.issues import Issue
@@ -15,14 +16,14 @@ from idealgas.toml.issues import Issue
 def make_gas(scene: Scene) -> Gas:
     """Discs of a scene at time 0: given ones have the first ids, then each species in the order of the file.
 
-    A species with a table has one radius and one mass; given discs of other species may differ. SceneError if the discs
-    cannot be placed, or if one is in static contact with a wall or the piston to which it is pressed.
+    SceneError if the discs cannot be placed, or if one is in static contact with a wall or the piston to which it is
+    pressed.
     """
     radius, mass, species, names = disc_constants(scene)
     gas = Gas(
         box=scene.box.size,
         position=_positions(scene, radius),
-        velocity=_all_velocities(scene, species, names),
+        velocity=_all_velocities(scene, mass, species, names),
         radius=radius,
         mass=mass,
         species=species,
@@ -39,32 +40,43 @@ def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tu
     names = (*(name for name in given.names if name not in tables), *tables)
     number = {name: k for k, name in enumerate(names)}
     count = [s.count for _, s in scene.placed]
-    radius, mass = (np.repeat([getattr(s, key) for s in scene.species], count) for key in ("radius", "mass"))
+    radius = [_radii(s, scene.scene.seed) for _, s in scene.placed]
+    mass = [mass_of(s.mass, values) for (_, s), values in zip(scene.placed, radius, strict=True)]
     others = np.repeat(np.array([number[name] for name in tables], np.uint16), count)
     return (
-        np.concatenate((given.radius, radius)),
-        np.concatenate((given.mass, mass)),
+        np.concatenate((given.radius, *radius)),
+        np.concatenate((given.mass, *mass)),
         np.concatenate((np.array([number[name] for name in given.names], np.uint16)[given.species], others)),
         names,
     )
 
 
-def _all_velocities(scene: Scene, species: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Velocities (N, 2) of all discs, length/time; given discs keep theirs unless the scene draws new ones."""
-    kinds = scene.species if scene.draws_velocities else [s for _, s in scene.placed]
-    drawn = [_velocities(s, rng(scene.scene.seed, f"velocities {s.name}")) for s in kinds]
-    if not scene.draws_velocities:
-        return np.concatenate([scene.given.velocity, *drawn])
+def _radii(species: Species, seed: int) -> np.ndarray:
+    """Radii (count,) of the discs of a species, length; those of a continuous distribution in random order."""
+    if isinstance(species.radius, float):
+        return np.full(species.count, species.radius)
+    found = np.array([size.radius for size in species.sizes])
+    return found if isinstance(species.radius, Values) else rng(seed, f"radii {species.name}").permutation(found)
+
+
+def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+    """Velocities (N, 2) of all discs, length/time; given discs keep theirs unless the scene draws new ones.
+
+    mass, species: (N,), of all discs.
+    """
     velocity = np.empty((len(species), 2))
-    for s, values in zip(kinds, drawn, strict=True):
-        velocity[species == names.index(s.name)] = values
+    kept = 0 if scene.draws_velocities else len(scene.given)
+    velocity[:kept] = scene.given.velocity[:kept]
+    for s in scene.species if scene.draws_velocities else [s for _, s in scene.placed]:
+        members = kept + np.flatnonzero(species[kept:] == names.index(s.name))
+        velocity[members] = _velocities(s, mass[members], rng(scene.scene.seed, f"velocities {s.name}"))
     return velocity
 
 
-def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
+def _velocities(species: Species, mass: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """Velocities (count, 2) of a species, length/time; those of a temperature T have the kinetic energy count * T.
 
-    Their total momentum is 0 if there are two discs or more.
+    Their total momentum is 0 if there are two discs or more. mass: (count,), of the discs.
     """
     n = species.count
     if n == 0:
@@ -74,10 +86,13 @@ def _velocities(species: Species, random: np.random.Generator) -> np.ndarray:
     if species.speed is not None:
         return species.speed * np.column_stack(cos_sin_turns(random.random(n)))
     velocity = random.standard_normal((n, 2))
-    if n > 1:
+    if np.ptp(mass) > 0:
+        velocity /= np.sqrt(mass)[:, None]
+        velocity -= mass @ velocity / mass.sum()
+    elif n > 1:
         velocity -= velocity.mean(axis=0)
-    mean_square = (velocity**2).sum() / n
-    return velocity * np.sqrt(2 * (species.temperature or 0.0) / (species.mass * mean_square))
+    mean_square = (mass @ velocity**2).sum() / n if np.ptp(mass) > 0 else mass[0] * ((velocity**2).sum() / n)
+    return velocity * np.sqrt(2 * (species.temperature or 0.0) / mean_square)
 
 
 def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
@@ -117,7 +132,8 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
         if s.count == 0:
             continue
         x0, y0, x1, y1 = region = s.region or space
-        bounds[ids[k + 1]] = x0 + s.radius, y0 + s.radius, x1 - s.radius, y1 - s.radius
+        own = radius[ids[k + 1]]
+        bounds[ids[k + 1]] = np.column_stack((x0 + own, y0 + own, x1 - own, y1 - own))
         if s.placement == "lattice":
             lattices.setdefault(region, []).append(k)
         elif s.placement == "triangular":
@@ -145,7 +161,8 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
                 scene, triangular[0], "on a triangular lattice", f"{len(chosen)} discs", "no others in its way"
             )
     if at_random:
-        chosen = np.concatenate([ids[k + 1] for k in sorted(at_random, key=lambda k: -scene.species[k].radius)])
+        chosen = np.concatenate([ids[k + 1] for k in at_random])
+        chosen = chosen[np.argsort(-radius[chosen], kind="stable")]  # the largest first
         max_refusals = max(placement.REFUSALS_PER_DISC * len(chosen), placement.MIN_REFUSALS)
         placed = placement.insert_randomly(grid, position, radius, bounds, chosen, random, max_refusals)
         if placed < len(chosen):

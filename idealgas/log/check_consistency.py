@@ -11,6 +11,9 @@ from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
+DRAWN = 1e-12
+"""Largest relative difference of radii that two systems make of one distribution, as their logarithms are rounded."""
+
 
 def check_scene(
     scene: Scene,
@@ -42,8 +45,9 @@ def check_scene(
     radius, mass, species, names = disc_constants(scene)
     if names != gas.species_names:
         raise ValueError(f"species {', '.join(names)} (discs/species_name: {', '.join(gas.species_names)})")
+    rounding = 0.0 if all(isinstance(s.radius, float) for s in scene.species) else DRAWN
     for name, values in {"radius": radius, "mass": mass, "species": species}.items():
-        if not np.array_equal(values, getattr(gas, name)):
+        if not np.allclose(values, getattr(gas, name), rtol=rounding, atol=0.0):
             raise ValueError(f"not of discs with this discs/{name}")
     if [(wall.name, wall.start, wall.end) for wall in number_walls(scene)] != list(walls):
         raise ValueError("other walls than walls/name and walls/endpoints")

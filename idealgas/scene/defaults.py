@@ -20,9 +20,10 @@ def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
         if s.velocities is not None:
             speeds += [math.hypot(*v) for v in s.velocities]
     spread = sum(
-        s.count * (s.speed or math.sqrt(math.pi * (s.temperature or 0.0) / (2 * s.mass)))
+        size.number * (s.speed or math.sqrt(math.pi * (s.temperature or 0.0) / (2 * size.mass)))
         for s in species
         if s.velocities is None
+        for size in s.sizes
     )
     return (sum(speeds) + spread) / max(len(velocity) + sum(s.count for s in species), 1)
 

@@ -17,6 +17,7 @@ from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mea
 from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
 from idealgas.scene.discs import Discs, Given, discs_of_tables
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
+from idealgas.scene.sizes import Size
 from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
 from idealgas.toml.table import Rectangle, Table, Vector
 
@@ -82,6 +83,11 @@ class Document(_DiscsAndEffects):
         if not given.names:
             return found
         return [(i, s.model_copy(update={"count": max(s.count - given.numbers.get(s.name, 0), 0)})) for i, s in found]
+
+    @property
+    def sizes(self) -> list[Size]:
+        """Discs that are not given, by size."""
+        return [size for _, s in self.placed for size in s.sizes]
 
     @property
     def has_discs(self) -> bool:
@@ -160,12 +166,12 @@ class Document(_DiscsAndEffects):
     @property
     def largest_radius(self) -> float:
         """Largest radius of the discs, length; 0 without discs."""
-        return max([float(self.given.radius.max(initial=0.0)), *(s.radius for _, s in self.placed)])
+        return max([float(self.given.radius.max(initial=0.0)), *(s.largest_radius for _, s in self.placed)])
 
     @property
     def covered_area(self) -> float:
         """Area of all discs, length²."""
-        placed = [s.radius * s.radius * s.count for _, s in self.placed]
+        placed = [size.radius * size.radius * size.number for size in self.sizes]
         return math.pi * math.fsum([*placed, *(self.given.radius**2).tolist()])
 
     @property
@@ -225,7 +231,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def _sum_of_diameters(self) -> float:
-        return sum(2 * s.radius * s.count for _, s in self.placed) + sum(2 * r for r in self.given.radius.tolist())
+        return sum(2 * s.radius * s.number for s in self.sizes) + sum(2 * r for r in self.given.radius.tolist())
 
     @property
     def rest(self) -> RestingDisc | None:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
@@ -70,6 +71,9 @@ class Scene(Document, metaclass=_SceneType):
         return self._origin.report(issues)
 
 
+MOST_NAMED = 6
+"""Number of different radii that the description of a gas lists."""
+
 STATE = ("temperature", "position", "velocity")
 """Keys, outside the tables of discs, of the initial state and temperature of a gas, which are not in `gas_digest`."""
 
@@ -104,8 +108,13 @@ def gas_kind(scene: Scene) -> str:
     """Description of a gas by the sizes of its discs and its effects, without their number and the size of the box."""
     sizes = _sizes(scene)
     smallest, number = min(sizes), sizes.total()
-    parts = [f"{count / number:.3g} of radius {radius / smallest:.3g}" for radius, count in sorted(sizes.items())]
-    discs = f"mixture ({', '.join(parts)})" if len(parts) > 1 else "equal discs"
+    if len(sizes) > MOST_NAMED:
+        mean = math.fsum(radius * count for radius, count in sizes.items()) / number
+        spread = math.sqrt(math.fsum((radius - mean) ** 2 * count for radius, count in sizes.items()) / number)
+        parts = [f"radii of s.d. {spread / mean:.3g}, {smallest / mean:.3g} to {max(sizes) / mean:.3g} times the mean"]
+    else:
+        parts = [f"{count / number:.3g} of radius {radius / smallest:.3g}" for radius, count in sorted(sizes.items())]
+    discs = f"mixture ({', '.join(parts)})" if len(sizes) > 1 else "equal discs"
     return ", ".join((discs, *(scene.effects or ("reflecting box",))))
 
 
@@ -124,8 +133,8 @@ def describe_gas(scene: Scene) -> str:
 def _discs(scene: Scene) -> Counter[tuple[float, float]]:
     """Number of discs by their radius and mass."""
     discs: Counter[tuple[float, float]] = Counter()
-    for _, species in scene.placed:
-        discs[species.radius, species.mass] += species.count
+    for size in scene.sizes:
+        discs[size.radius, size.mass] += size.number
     discs.update(zip(scene.given.radius.tolist(), scene.given.mass.tolist(), strict=True))
     return +discs
 

@@ -4,7 +4,7 @@
 |---|---|---|
 | `position` (n, 2) | length | required; `x` and `y` in a .csv file |
 | `velocity` (n, 2) | length/time | 0; `vx` and `vy` in a .csv file |
-| `radius`, `mass` (n,) | length, mass | those of the species' table; without a table, radius is required and mass 1 |
+| `radius`, `mass` (n,) | length, mass | those of the species' table; without them radius is required and mass 1 |
 | `angular_velocity` (n,) | 1/time | 0 |
 | `species` (n,) | names | that of the only table [[species]], or "disc" |
 """
@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.scene.discs import EXPLICIT, Discs, make_discs
+from idealgas.scene.sizes import mass_of
 from idealgas.toml.table import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
@@ -88,11 +89,13 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
     for name, array in arrays.items():
         if len(array) != n:
             raise StartError(key, f"column {name} of another length", f"{len(array)} rows", f"{n}, as position")
-    for name, default in (("radius", math.nan), ("mass", 1.0)):
-        column = arrays.get(name, np.full(n, default))
-        arrays[name] = np.array(
-            [getattr(tables.get(kind), name, x) for kind, x in zip(names, column.tolist(), strict=True)]
-        )
+    arrays |= {name: arrays.get(name, np.full(n, value)) for name, value in (("radius", math.nan), ("mass", 1.0))}
+    kinds = np.array(names)
+    for table in tables.values():
+        own = kinds == table.name
+        if isinstance(table.radius, float):
+            arrays["radius"][own] = table.radius
+        arrays["mass"][own] = mass_of(table.mass, arrays["radius"][own])
     for name, array in arrays.items():
         size = np.abs(array).reshape(n, -1)
         wrong = ~np.isfinite(size) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))

@@ -8,36 +8,14 @@ from idealgas.columns import SIDES
 from idealgas.effects import EFFECTS
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.schedule import SteppedTable
-from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word
+from idealgas.scene.sizes import Density, Normal, Size, Uniform, Values, sizes_of
+from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word, either
 
 WORDS = ("reflecting", *(effect.side for effect in EFFECTS if isinstance(effect.side, str)))
 """Kinds of sides that are a word."""
 
 TABLES = tuple(effect.side for effect in EFFECTS if isinstance(effect.side, type))
 """Kinds of sides that are a table with one key."""
-
-
-def _key_of(table: type[Table]) -> str:
-    return next(iter(table.model_fields))
-
-
-def _tag(side: Any) -> str:
-    """Kind of a side; a table without a known key counts as the first kind, whose error then lists all keys."""
-    if not isinstance(side, (dict, *TABLES)):
-        return "(word)"
-    kinds = (
-        _key_of(table)
-        for table in TABLES
-        if isinstance(side, table) or (isinstance(side, dict) and _key_of(table) in side)
-    )
-    return f"({next(kinds, _key_of(TABLES[0]))})"
-
-
-def _kind_of_side() -> Any:
-    kinds: Any = Annotated[Literal[WORDS], Tag("(word)")]
-    for table in TABLES:
-        kinds |= Annotated[table, Tag(f"({_key_of(table)})")]
-    return Annotated[kinds, Discriminator(_tag)]
 
 
 def _description() -> str:
@@ -47,8 +25,12 @@ def _description() -> str:
 
 if TYPE_CHECKING:
     Side = Any
+    Radius = Any
+    Mass = Any
 else:
-    Side = _kind_of_side()
+    Side = either(Literal[WORDS], *TABLES)
+    Radius = either(Positive, Uniform, Normal, Values)
+    Mass = either(Positive, Density)
 
 _SIDE = _description()
 
@@ -84,8 +66,10 @@ class Species(Table):
 
     name: Word = Field(description="unique word")
     count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1, those of [start] and [[disc]] included")
-    radius: Positive = Field(description="radius > 0, length")
-    mass: Positive = Field(default=1.0, description="mass")
+    radius: Radius = Field(
+        description="radius > 0, length, or { uniform = [a, b] }, { normal = [mean, s.d.] } or { values = [r, ...] }"
+    )
+    mass: Mass = Field(default=1.0, description="mass, or { density = mass per area }")
     temperature: NotNegative | None = Field(
         default=None, description="energy; Gaussian velocities, kinetic energy count * T"
     )
@@ -104,6 +88,16 @@ class Species(Table):
         default=None,
         description="[x0, y0, x1, y1], length: whole discs lie in it; if absent the box, up to the piston",
     )
+
+    @property
+    def sizes(self) -> tuple[Size, ...]:
+        """Its discs by size."""
+        return sizes_of(self.radius, self.mass, self.count)
+
+    @property
+    def largest_radius(self) -> float:
+        """Largest radius of its discs, length; 0 without discs of a distribution."""
+        return max((size.radius for size in self.sizes), default=0.0)
 
 
 class Disc(Table):

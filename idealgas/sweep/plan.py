@@ -291,6 +291,5 @@ def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) ->
     if isinstance(phi, bool) or not isinstance(phi, int | float) or not 0 < phi < 1:
         raise SceneError([f"{place}: not a packing fraction (got {toml_value(phi)}; allowed 0 < phi < 1)"])
     width, height = scene.box.size
-    covered = math.pi * sum(s.count * s.radius**2 for s in scene.species)
-    scale = math.sqrt(covered / (phi * width * height))
+    scale = math.sqrt(scene.covered_area / (phi * width * height))
     document["box"]["size"] = [width * scale, height * scale]

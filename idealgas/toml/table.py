@@ -3,7 +3,7 @@
 import json
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
 SMALLEST, LARGEST = 1e-60, 1e30
@@ -42,6 +42,28 @@ class Table(BaseModel):
     """A TOML table: immutable, without unknown keys, with strict types."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def _key_of(table: type[Table]) -> str:
+    return next(iter(table.model_fields))
+
+
+def either(plain: Any, *tables: type[Table]) -> Any:
+    """Type of a value that is plain, or one of several tables, which are told apart by their first keys.
+
+    A table without a known key counts as the first kind, whose error then lists all keys.
+    """
+
+    def tag(value: Any) -> str:
+        if not isinstance(value, (dict, *tables)):
+            return "(plain)"
+        given = (one for one in tables if isinstance(value, one) or (isinstance(value, dict) and _key_of(one) in value))
+        return f"({_key_of(next(given, tables[0]))})"
+
+    kinds: Any = Annotated[plain, Tag("(plain)")]
+    for table in tables:
+        kinds |= Annotated[table, Tag(f"({_key_of(table)})")]
+    return Annotated[kinds, Discriminator(tag)]
 
 
 def schema_text(model: type[BaseModel]) -> str:

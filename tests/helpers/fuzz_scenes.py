@@ -122,8 +122,11 @@ def keep_clear_of_piston(walls, size, piston) -> None:
 
 
 def draw_species(draw, size, mass: float, largest: float, spins: bool) -> list[dict[str, Any]]:
-    """A few small discs more, put where there is room."""
-    table = {"name": "gas", "count": pick(draw, 1, 3, 6), "radius": min(0.2 * largest, 0.02 * min(size)), "mass": mass}
+    """A few small discs more, equal or not, put where there is room."""
+    radius = min(0.2 * largest, 0.02 * min(size))
+    table = {"name": "gas", "count": pick(draw, 1, 3, 6, 40)}
+    table["radius"] = pick(draw, radius, {"uniform": [0.1 * radius, radius]}, {"values": [radius, 0.3 * radius]})
+    table["mass"] = pick(draw, mass, {"density": mass / radius**2})
     table |= pick(draw, {"temperature": mass}, {"speed": 0.5}, {"temperature": 1e-6 * mass})
     table |= {"placement": pick(draw, "random", "lattice")}
     return [table | ({"spin_temperature": mass} if spins else {})]
@@ -202,7 +205,8 @@ def dimension(path: tuple[str, ...]) -> tuple[int, int, int]:
         "velocity": (0, 1, 0), "speed": (0, 1, 0), "mass": (0, 0, 1), "angular_velocity": (-1, 1, 0),
         "temperature": (0, 2, 1), "thermal": (0, 2, 1), "spin_temperature": (0, 2, 1), "acceleration": (-1, 2, 0),
         "pressure": (-2, 2, 1), "until": (1, -1, 0), "opens_at": (1, -1, 0), "closes_at": (1, -1, 0),
-        "contact_duration": (1, -1, 0), "rate": (-1, 1, 0),
+        "contact_duration": (1, -1, 0), "rate": (-1, 1, 0), "uniform": (1, 0, 0), "values": (1, 0, 0),
+        "density": (-2, 0, 1),
     }  # fmt: skip
     return powers.get(key, (0, 0, 0))
 

@@ -13,6 +13,7 @@ from idealgas.scene.checks import piston
 from idealgas.scene.checks.discs import placement_issues, room_issues, species_issues
 from idealgas.scene.checks.overlaps import discs_in_walls, label, overlap_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
+from idealgas.scene.sizes import wrong_radius
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
@@ -33,8 +34,8 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
 
     Tables in `invalid`, and None in an array of tables, have other errors and are left out.
     """
-    if too_many := list(_size_issues(scene)):
-        yield from too_many  # before anything that takes long for so many
+    if found := list(_radius_issues(scene)) or list(_size_issues(scene)):
+        yield from found  # before anything that takes long for so many
         return
     box = None if "box" in invalid else scene.box
     if not scene.species and not scene.disc and scene.start is None:
@@ -64,6 +65,13 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
             yield from number_issues(scene, invalid)
     if "run" not in invalid:
         yield from method_issues(scene, invalid)
+
+
+def _radius_issues(scene: Document) -> Iterator[Issue]:
+    """Check the distributions of radii."""
+    for i, s in _valid(scene.species):
+        if wrong := wrong_radius(s.radius):
+            yield Issue((("species", i, "radius"),), *wrong)
 
 
 def _size_issues(scene: Document) -> Iterator[Issue]:

@@ -75,6 +75,8 @@ def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[I
             continue
         for key in ("radius", "mass"):
             expected = getattr(scene.species[tables[name]], key)
+            if not isinstance(expected, float):
+                continue
             differs = np.flatnonzero((discs.species == k) & (getattr(discs, key) != expected))
             for i in differs[:1]:
                 number = int(discs.index[i])
@@ -93,7 +95,9 @@ def room_issues(
     outside = [*_regions_outside(box, space, kinds), *_discs_outside(scene)]
     yield from outside
     smallest = RESOLUTION * max(box.size)
-    small: list[tuple[tuple[Key, ...], str, float]] = [((("species", i, "radius"),), "", s.radius) for i, s in kinds]
+    small: list[tuple[tuple[Key, ...], str, float]] = [
+        ((("species", i, "radius"),), "", min(size.radius for size in s.sizes)) for i, s in kinds
+    ]
     for k in np.flatnonzero(discs.radius < smallest)[:MOST_OVERLAPS].tolist():
         number = int(discs.index[k])
         small.append((disc_keys(scene, (number,), "radius"), label(scene, number), float(discs.radius[k])))
@@ -115,10 +119,11 @@ def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]
         if not (left <= x0 < x1 <= right and bottom <= y0 < y1 <= top):
             allowed = f"[x0, y0, x1, y1] with {left:.17g} <= x0 < x1 <= {right} and {bottom:.17g} <= y0 < y1 <= {top}"
             yield Issue((key, *others), f"region not in the {place}", str(list(s.region or space)), allowed)
-        elif 2 * s.radius > min(x1 - x0, y1 - y0):
+        elif 2 * s.largest_radius > min(x1 - x0, y1 - y0):
             keys = (("species", i, "radius"), key, *others)
             where = "region" if s.region else place
-            yield Issue(keys, f"discs wider than the {where}", f"{s.radius}", f"<= {min(x1 - x0, y1 - y0) / 2}")
+            got, allowed = f"{s.largest_radius}", f"<= {min(x1 - x0, y1 - y0) / 2}"
+            yield Issue(keys, f"discs wider than the {where}", got, allowed)
 
 
 def _discs_outside(scene: Document) -> Iterator[Issue]:
@@ -157,13 +162,13 @@ def _crowding(whole: Rectangle, name: str, kinds: list[tuple[int, Species]], dis
     """Check the packing fractions of the regions and of the whole space."""
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
-        covered = math.pi * sum(s.count * s.radius**2 for _, s in here)
+        covered = math.pi * sum(_area(s) for _, s in here)
         if region == whole:
             covered += math.pi * math.fsum((discs.radius**2).tolist())
         packing = covered / ((region[2] - region[0]) * (region[3] - region[1]))
         random = all(s.placement == "random" for _, s in here)
         if packing > (RANDOM_PACKING if random else CLOSE_PACKING):
-            most = max(here, key=lambda item: item[1].count * item[1].radius ** 2)[0]
+            most = max(here, key=lambda item: _area(item[1]))[0]
             others = [("species", i, key) for i, _ in here for key in ("count", "radius", "region", "placement")]
             place = name if region == whole else "region"
             allowed = f"<= {CLOSE_PACKING:.4f} on a lattice, <= {RANDOM_PACKING} at random"
@@ -173,6 +178,11 @@ def _crowding(whole: Rectangle, name: str, kinds: list[tuple[int, Species]], dis
                 f"packing fraction {packing:.4g}",
                 allowed,
             )
+
+
+def _area(species: Species) -> float:
+    """Area of all discs of a species, divided by pi, length²."""
+    return sum(size.number * size.radius**2 for size in species.sizes)
 
 
 def placement_issues(scene: Document) -> Iterator[Issue]:
@@ -204,7 +214,7 @@ def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> It
     if others:
         allowed = "compressed for all species, and no [[disc]], [start] or [[wall]]"
         yield Issue((key,), "compressed beside what is not", ", ".join(others), allowed)
-    least = NARROWEST * max(s.radius for _, s in kinds)
+    least = NARROWEST * max(s.largest_radius for _, s in kinds)
     if min(scene.box.size) < least:
         got = f"a side of {min(scene.box.size)}"
         yield Issue((key, ("box", "size")), "box too narrow to compress the discs in it", got, f">= {least}")
@@ -218,7 +228,7 @@ def _on_lattice(size: tuple[float, float], kinds: list[tuple[int, Species]]) -> 
     if lattice is None:
         yield Issue(keys, "no triangular lattice through periodic sides", f"{number} discs", "an even number of discs")
         return
-    least = 2 * max(s.radius for _, s in kinds)
+    least = 2 * max(s.largest_radius for _, s in kinds)
     if lattice.nearest < least:
         got = f"sites {lattice.nearest:.6g} apart, {lattice.columns} in each of {lattice.rows} rows"
         allowed = f">= {least:.6g}, two radii; box.size = {list(lattice.unstrained)} has no strain"

@@ -110,7 +110,7 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
     """Check for a v_ref that is too small, which the run might not detect before its end."""
     for i, s in enumerate(scene.species) if scene.draws_velocities else scene.placed:
         still = s.velocities or s.count <= 1
-        least = 0.0 if still else mean_speed([s], np.empty((0, 2))) * s.radius / scene.largest_radius
+        least = 0.0 if still else mean_speed([s], np.empty((0, 2))) * s.largest_radius / scene.largest_radius
         if v_ref < least:
             keys = (("run", "v_ref"), *(("species", i, key) for key in ("speed", "temperature", "mass", "radius")))
             yield Issue(
