@@ -1,6 +1,7 @@
 """Cells of the neighbour search: nearly square, at least one diameter wide, with a ring of empty ones around them.
 
-Each cell has a doubly linked list of the discs whose centres it contains.
+Each cell has a doubly linked list of the discs whose centres it contains. Where some discs are far larger than the
+others, these have coarse cells of their own: Ogarko & Luding, Comput. Phys. Commun. 183, 931 (2012).
 """
 
 import math
@@ -13,6 +14,8 @@ from idealgas.jit import aligned, inline
 LINK = np.dtype([("next", "i4"), ("previous", "i4")], align=True)  # indices of discs, or -1
 MARGIN = 1e-9  # by which a cell is wider than a diameter, relative
 MOST_A_SIDE = 30_000  # columns or rows: a disc's are stored in 16 bits
+OTHER_WORK = 20.0  # discs that could be searched in the time for the rest of an event
+WORTH_SPLITTING = 0.5  # part of the time per event with coarse cells from which on these are used
 
 U = np.uintp
 
@@ -41,6 +44,23 @@ class Cells(NamedTuple):
     Ly: float
 
 
+class CoarseCells(NamedTuple):
+    """Cells of discs that are far larger than the others; each covers ratio × ratio cells of the others.
+
+    They are as wide as the largest and the smaller discs together: large discs meet others in adjacent cells, and one
+    another up to two cells apart.
+
+    Attributes:
+        cells: the cells; they share the array `link` with those of the other discs.
+        ratio: number of columns, and of rows, of the other cells in each of them.
+        limit: radius beyond which a disc is in them, length.
+    """
+
+    cells: Cells
+    ratio: int
+    limit: float
+
+
 def discs_per_cell(packing_fraction: float) -> float:
     """Mean number of discs per cell that was fastest: 0.4 at a packing fraction of 0.1 and more, 0.8 at 0.01."""
     return min(max(0.4 * (0.1 / max(packing_fraction, 1e-9)) ** 0.3, 0.4), 4.0)
@@ -59,6 +79,46 @@ def make_cells(n: int, box: tuple[float, float], largest_radius: float, filling:
     return Cells(head, link, Lx / columns, Ly / rows, columns + 2, rows + 2, Lx, Ly)
 
 
+def make_levels(radius: np.ndarray, box: tuple[float, float], filling: float) -> tuple[Cells, CoarseCells | None]:
+    """Empty cells for discs of some radii (N,), length, and coarse ones for the largest if the search is then faster.
+
+    box: width and height, length. filling: mean number of discs per cell.
+    """
+    n, limit = len(radius), split_radius(radius, box[0] * box[1], filling)
+    small = radius[radius <= limit]
+    fine = make_cells(n, box, float(small.max()), filling)
+    if len(small) == n:
+        return fine, None
+    coarse = make_cells(n, box, (float(radius.max()) + float(small.max())) / 2, filling)
+    across, along = coarse.columns - 2, coarse.rows - 2
+    ratio = min((fine.columns - 2) // across, (fine.rows - 2) // along)
+    columns, rows = ratio * across, ratio * along
+    head = np.full((columns + 2) * (rows + 2), -1, np.int32)
+    fine = Cells(head, fine.link, box[0] / columns, box[1] / rows, columns + 2, rows + 2, *box)
+    return fine, CoarseCells(coarse._replace(link=fine.link), ratio, limit)
+
+
+def split_radius(radius: np.ndarray, area: float, filling: float) -> float:
+    """Radius beyond which discs have coarse cells, length; infinite if equal cells are nearly as fast.
+
+    An event of a disc takes time in proportion to the number of others in the cells that are searched, and the rate of
+    events to the sum of its radius and the mean radius.
+    """
+    density, largest, reach = len(radius) / area, float(radius.max()), radius + radius.mean()
+
+    def searched(limit: float) -> float:
+        """Time per event, in units of that for one disc in the cells."""
+        large = radius > limit
+        small = radius[~large].max()
+        fine, coarse = (max(filling / density, (small + r) ** 2) for r in (small, largest))
+        share = reach[large].sum() / reach.sum()
+        return OTHER_WORK + 9.0 * float(density * fine + (share * density + large.sum() / area) * coarse)
+
+    limits = [limit for limit in (largest * 0.5 ** np.arange(1, 40)).tolist() if limit >= radius.min()]
+    best = min(limits, key=searched, default=math.inf)
+    return best if limits and searched(best) < WORTH_SPLITTING * searched(math.inf) else math.inf
+
+
 def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
     """Column and row (N,) of the cells of positions (N, 2), length.
 
@@ -66,6 +126,30 @@ def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]
     """
     column, row = (position / (cells.width, cells.height)).astype(np.int64).T + 1
     return np.minimum(np.maximum(column, 1), cells.columns - 2), np.minimum(np.maximum(row, 1), cells.rows - 2)
+
+
+@inline
+def is_large(coarse, disc):
+    """Whether a disc is in coarse cells."""
+    if coarse is not None:
+        return disc.r > coarse.limit
+    return False
+
+
+@inline
+def own_cells(cells, coarse, disc):
+    """The cells that a disc is in."""
+    if coarse is not None:
+        return coarse.cells if is_large(coarse, disc) else cells
+    return cells
+
+
+@inline
+def clear_cells(cells, coarse):
+    """Remove all discs from their cells."""
+    cells.head[:] = -1
+    if coarse is not None:
+        coarse.cells.head[:] = -1
 
 
 @inline

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave
+from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave, own_cells
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
 from idealgas.physics.disc_wall import arrival_delay
@@ -97,8 +97,9 @@ def predict_crossing(record, ids, state, i, now, effects):
     """Store in disc i's prediction the time and kind of its next cell crossing, side or thermostat collision."""
     disc = record[U(i)]
     own = ids[U(i)]
-    x_time, right, x_side = axis_crossing(disc, False, state.cells, own, now, effects)
-    y_time, up, y_side = axis_crossing(disc, True, state.cells, own, now, effects)
+    cells = own_cells(state.cells, state.coarse, disc)
+    x_time, right, x_side = axis_crossing(disc, False, cells, own, now, effects)
+    y_time, up, y_side = axis_crossing(disc, True, cells, own, now, effects)
     along_y = y_time < x_time  # either is as likely: to branch on it would take 7 % of all time
     x_code = (1 if right else 0) + (SIDE_OF_BOX if x_side else 0)
     y_code = (3 if up else 2) + (SIDE_OF_BOX if y_side else 0)
@@ -144,10 +145,11 @@ def wrap_cell(disc, own, cells, along_y, periodic):
 def cross_cell(record, ids, state, i, crossing_code, periodic):
     """Move disc i from its cell's list to that of the next cell; crossing_code: direction, see PREDICTION."""
     disc = record[U(i)]
-    leave(state.cells, i, cell_index(state.cells, disc))
+    cells = own_cells(state.cells, state.coarse, disc)
+    leave(cells, i, cell_index(cells, disc))
     forward = 1 if crossing_code & 1 else -1
     upwards = forward if crossing_code >= 2 else 0
     disc.row += upwards
     disc.column += forward - upwards
-    wrap_cell(disc, ids[U(i)], state.cells, crossing_code >= 2, periodic)
-    enter(state.cells, i, cell_index(state.cells, disc))
+    wrap_cell(disc, ids[U(i)], cells, crossing_code >= 2, periodic)
+    enter(cells, i, cell_index(cells, disc))

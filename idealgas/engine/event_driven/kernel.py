@@ -9,7 +9,7 @@ from enum import IntEnum
 import numpy as np
 
 from idealgas.columns import BATH, FIRST_SEGMENT
-from idealgas.engine.event_driven.cells import cell_index, enter, find_cell
+from idealgas.engine.event_driven.cells import cell_index, clear_cells, enter, find_cell, own_cells
 from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
@@ -65,14 +65,15 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
 
 
 @njit
-def place(record, ids, position, velocity, cells, tree):
+def place(record, ids, position, velocity, state):
     """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id, and clear the scheduler."""
-    cells.head[:] = -1
+    clear_cells(state.cells, state.coarse)
     for i in range(record.shape[0]):
         reload(record[U(i)], U(ids[U(i)]), position, velocity)
+        cells = own_cells(state.cells, state.coarse, record[U(i)])
         find_cell(cells, record[U(i)])
         enter(cells, i, cell_index(cells, record[U(i)]))
-    clear(tree)
+    clear(state.tree)
 
 
 @njit

@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
-from idealgas.engine.event_driven.cells import cell_of, discs_per_cell, make_cells
+from idealgas.engine.event_driven.cells import Cells, CoarseCells, cell_of, discs_per_cell, make_levels
 from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
@@ -25,8 +25,17 @@ MAX_UNSORTED = 4096
 
 def expected_threads(gas: Gas, threads: int | None, local: bool) -> Threads:
     """How the work will be shared; threads: as in `EventDriven`. local: whether discs collide only with near ones."""
-    cells = make_cells(len(gas), gas.box, float(gas.radius.max()), discs_per_cell(gas.packing_fraction))
-    return choose_threads(threads, cells.rows - 2, len(gas), local)
+    cells, coarse = make_levels(gas.radius, gas.box, discs_per_cell(gas.packing_fraction))
+    return _share(cells, coarse, threads, len(gas), local)
+
+
+def _share(
+    cells: Cells, coarse: CoarseCells | None, threads: int | None, n: int, local: bool, tuning: Tuning = DEFAULT_TUNING
+) -> Threads:
+    """Number of threads for n discs in cells, see `choose_threads`; one if some discs reach over many rows."""
+    if coarse is not None:
+        return Threads(1, "the largest discs reach over many rows of cells")
+    return choose_threads(threads, cells.rows - 2, n, local, tuning)
 
 
 class EventDriven(Method):
@@ -45,7 +54,7 @@ class EventDriven(Method):
         self._threads = threads
         self.workers = Workers(tuning)
         self._decomposition: DomainDecomposition | None = None
-        self._walls: tuple[bytes, WallCells] | None = None
+        self._walls: tuple[bytes, WallCells, WallCells | None] | None = None
         self._radius: np.ndarray | None = None  # of the discs for which there is memory
 
     def __copy__(self) -> "EventDriven":
@@ -62,9 +71,10 @@ class EventDriven(Method):
         if another or len(gas) > MAX_UNSORTED:
             self._sort(gas)
         self._effects = effects
-        self._state = self._state._replace(walls=self._wall_cells(effects))
+        walls, coarse_walls = self._wall_cells(effects)
+        self._state = self._state._replace(walls=walls, coarse_walls=coarse_walls)
         position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
-        place(self.discs.record, self.discs.id, position, velocity, self._state.cells, self._state.tree)
+        place(self.discs.record, self.discs.id, position, velocity, self._state)
         self._state.unpredicted[0] = True
         slabs = self._shared.number
         self._decomposition = (
@@ -73,13 +83,11 @@ class EventDriven(Method):
 
     def _allocate(self, gas: Gas, effects: Effects) -> None:
         """Allocate cells and memory for the discs of a run, of which only positions and velocities change."""
-        self._radius, self._largest_radius = gas.radius, float(gas.radius.max())
+        self._radius = gas.radius
         filling = self._filling or discs_per_cell(gas.packing_fraction)
-        cells = make_cells(len(gas), gas.box, self._largest_radius, filling)
-        self._state = make_state(len(gas), cells, effects)
-        self._shared = choose_threads(
-            self._threads, cells.rows - 2, len(gas), effects.piston is None, self.workers.tuning
-        )
+        cells, coarse = make_levels(gas.radius, gas.box, filling)
+        self._state = make_state(len(gas), cells, coarse, effects)
+        self._shared = _share(cells, coarse, self._threads, len(gas), effects.piston is None, self.workers.tuning)
 
     def _sort(self, gas: Gas) -> None:
         """Sort the discs in memory by cell."""
@@ -97,15 +105,18 @@ class EventDriven(Method):
         """Whether rows of past events are still to be delivered by `advance`."""
         return self._decomposition is not None and self._decomposition.pending
 
-    def _wall_cells(self, effects: Effects) -> WallCells | None:
-        """Wall segments of each cell, from the previous epoch unless a gate has opened or closed."""
-        if effects.segments is None:
-            return None
-        active = effects.segments.active.tobytes()
+    def _wall_cells(self, effects: Effects) -> tuple[WallCells | None, WallCells | None]:
+        """Wall segments of each cell and coarse cell, from the previous epoch unless a gate has opened or closed."""
+        segments, coarse, radius = effects.segments, self._state.coarse, self._radius
+        if segments is None or radius is None:
+            return None, None
+        active = segments.active.tobytes()
         if self._walls is None or self._walls[0] != active:
-            cells, radius = self._state.cells, self._largest_radius
-            self._walls = active, make_wall_cells(effects.segments, effects.periodic, cells, radius)
-        return self._walls[1]
+            small = radius if coarse is None else radius[radius <= coarse.limit]
+            cells = [(self._state.cells, small)] + ([] if coarse is None else [(coarse.cells, radius)])
+            made = [make_wall_cells(segments, effects.periodic, own, float(r.max())) for own, r in cells]
+            self._walls = active, made[0], None if coarse is None else made[1]
+        return self._walls[1:]
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.effects.bundle import Effects
-from idealgas.engine.event_driven.cells import Cells
+from idealgas.engine.event_driven.cells import Cells, CoarseCells
 from idealgas.engine.event_driven.prediction import PREDICTION
 from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import Tree, make_tree
@@ -21,37 +21,43 @@ class EventDrivenState(NamedTuple):
 
     Attributes:
         cells: cells of the neighbour search.
+        coarse: coarse cells of the largest discs; None if all are in the same cells.
         tree: schedule of the discs' next events.
         prediction: (N,) PREDICTION by index, next events of each disc; with a piston (N + 1,), the last is the
             piston's.
         candidates: i4 scratch memory for indices of discs that may be in contact.
         images: (…) IMAGE scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
+        coarse_walls: wall segments of each coarse cell; None without either.
         pipeline: (3,) i8, see `make_pipeline`; None for a gas that the caches hold.
         unpredicted: (1,) bool, whether an epoch begins of which nothing is predicted yet.
     """
 
     cells: Cells
+    coarse: CoarseCells | None
     tree: Tree
     prediction: np.ndarray
     candidates: np.ndarray
     images: np.ndarray | None
     walls: WallCells | None
+    coarse_walls: WallCells | None
     pipeline: np.ndarray | None
     unpredicted: np.ndarray
 
 
-def make_state(n: int, cells: Cells, effects: Effects) -> EventDrivenState:
+def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effects) -> EventDrivenState:
     """Event-driven state of n discs, without any prediction, and before the walls are known."""
     leaves = n if effects.piston is None else n + 1
     room = 9 * n + 16  # in a box of one cell, each disc is a candidate in nine images
     tree = make_tree(leaves)
     return EventDrivenState(
         cells,
+        coarse,
         tree,
         aligned(leaves, PREDICTION),
         aligned(room if effects.periodic else n + 16, np.dtype("i4")),
         aligned(room, IMAGE) if effects.periodic else None,
+        None,
         None,
         make_pipeline(n, len(tree.start)),
         np.ones(1, np.bool_),
