@@ -17,6 +17,7 @@ NAMES = (
     "rotation",
     "restitution",
     "thermal",
+    "vibration",
     "piston",
     "thermostat",
 )

@@ -90,5 +90,5 @@ EFFECT = EffectSpec(
     disc_state=lambda thermal: {EMISSIONS: thermal.emissions},
     gives_energy=lambda thermal: True,
     samples=(Sample(box=lambda side: _hot(*SIDES)),),
-    sample_together=Sample(box=lambda side: _hot("bottom")),
+    sample_together=Sample(),
 )

@@ -184,5 +184,5 @@ EFFECT = EffectSpec(
         Sample("6", tables=lambda side: _polygon(side, 6, side / 2)),
         Sample("1000", tables=lambda side: _polygon(side, 1000, side / 2)),
     ),
-    sample_together=Sample(tables=lambda side: _polygon(side, 6, 5.0)),
+    sample_together=Sample(tables=lambda side: _polygon(side, 6, 5.0) + "temperature = 1\n"),
 )

@@ -29,10 +29,11 @@ from idealgas.engine.resolve import (
 )
 from idealgas.jit import inline, njit
 from idealgas.physics.disc_disc import contact_time
-from idealgas.physics.disc_wall import arrival_delay, side_contact
+from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
+from idealgas.physics.vibration import contact_with_side
 from idealgas.physics.wall import segment_contact
 
 SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
@@ -52,7 +53,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
             if time < best[0]:
                 best = (time, PISTON, i, side, 0, 0)
         elif not boundary_crossings_along(effects.periodic, i, along_y)[1]:
-            time = side_contact(disc, side, length_y if along_y else length_x, effects.gravity)
+            time = contact_with_side(disc, side, length_y if along_y else length_x, effects.gravity, effects.vibration)
             if time < best[0]:
                 best = (time, WALL, i, side, 0, 0)
     return segment_event(disc, i, effects.segments, effects, best)

@@ -83,7 +83,7 @@ def epoch_length(
 
 
 def driving_speed(gas: Gas, effects: Effects) -> float:
-    """Estimated increase of the mean speed of the discs by gravity, a piston or a heat bath, length/time.
+    """Estimated increase of the mean speed of the discs by gravity, moving walls or a heat bath, length/time.
 
     For epoch lengths only.
     """
@@ -92,6 +92,8 @@ def driving_speed(gas: Gas, effects: Effects) -> float:
         speed += math.sqrt(math.hypot(*effects.gravity) * sum(gas.box))
     if effects.piston is not None:
         speed += abs(float(effects.piston[0].v))
+    if effects.vibration is not None:
+        speed += 0.5 * float((effects.vibration.acceleration * effects.vibration.half).max())
     if effects.thermostat is not None:
         fastest = math.sqrt(float((gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2).max()))
         speed += max(math.sqrt(effects.thermostat.temperature / float(gas.mass.min())) - fastest, 0.0)

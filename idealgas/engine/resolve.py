@@ -14,6 +14,7 @@ from idealgas.physics.restitution import record_collision
 from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import andersen_collision
+from idealgas.physics.vibration import side_velocity
 from idealgas.physics.wall import segment_normal
 
 U = np.uintp
@@ -100,11 +101,32 @@ def bounce(disc, own, nx, ny, wall, time, effects):
 
 
 @inline
+def bounce_off_side(disc, own, nx, ny, side, time, vibration, effects):
+    """Reflect or emit a disc at a side of the box, which may vibrate; see `bounce`."""
+    if vibration is None:
+        return bounce(disc, own, nx, ny, side, time, effects)
+    speed = side_velocity(vibration, side, time)
+    before = energy_of(disc, own, effects.rotation)
+    vx = disc.vx
+    vy = disc.vy
+    disc.vx -= speed * nx
+    disc.vy -= speed * ny
+    lost = energy_of(disc, own, effects.rotation)
+    collide_with_wall(disc, own, nx, ny, side, effects.restitution, effects.rotation, effects.thermal)
+    lost -= energy_of(disc, own, effects.rotation)
+    disc.vx += speed * nx
+    disc.vy += speed * ny
+    record_wall_energy(side, energy_of(disc, own, effects.rotation) - before, lost, effects)
+    finish(disc, own, time, effects)
+    return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
+
+
+@inline
 def resolve_side(disc, own, side, time, effects):
     """Collide a disc with a side of the box at a local time."""
     arrive(disc, time, effects)
     nx, ny = inward_normal(side)
-    px, py = bounce(disc, own, nx, ny, side, time, effects)
+    px, py = bounce_off_side(disc, own, nx, ny, side, time, effects.vibration, effects)
     record_hit(effects.flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
 
 

@@ -32,7 +32,8 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     acceleration = np.array(scene.properties.acceleration)
     for side, name in enumerate(SIDES):
         axis = axis_of(side)
-        if acceleration @ OUTWARD[side] > 0 and not (scene.piston and scene.piston.side == name):
+        pressed = acceleration @ OUTWARD[side] > 0 or hasattr(scene.box.sides[side], "vibrating")
+        if pressed and not (scene.piston and scene.piston.side == name):
             coordinate = gas.position[:, axis]
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)

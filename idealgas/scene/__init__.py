@@ -6,6 +6,7 @@ from idealgas.effects.restitution import Restitution
 from idealgas.effects.rotation import Rotation
 from idealgas.effects.thermal import ThermalSide
 from idealgas.effects.thermostat import Thermostat
+from idealgas.effects.vibration import VibratingSide
 from idealgas.effects.wall import Wall
 from idealgas.scene.defaults import RestingDisc
 from idealgas.scene.loader import load_scene, parse_scene
@@ -29,6 +30,7 @@ __all__ = [
     "Species",
     "ThermalSide",
     "Thermostat",
+    "VibratingSide",
     "Wall",
     "load_scene",
     "parse_scene",

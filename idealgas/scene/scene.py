@@ -100,7 +100,7 @@ def gas_digest(scene: Scene) -> str:
     """Digest of the discs, the box and the effects of a scene, without its initial state and temperature."""
     left_out = ("scene", "run", "log", "species", "disc", "start")
     rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
-    box = {side: list(value) if isinstance(value, dict) else value for side, value in rest["box"].items()}
+    box = {side: "thermal" if "thermal" in value else value for side, value in rest["box"].items()}
     return _digest([sorted(_discs(scene).items()), rest | {"box": box}])
 
 

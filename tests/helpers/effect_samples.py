@@ -130,7 +130,7 @@ def sums_of(effects: Effects) -> list[np.ndarray]:
 
 def allowed(names: set[str]) -> bool:
     """Whether the effects go together here: gravity points down, so it leaves only the left and right sides to join."""
-    return not {"gravity", "periodic", "piston"} <= names and not {"thermal", "periodic", "piston"} <= names
+    return not any({one, "periodic", "piston"} <= names for one in ("gravity", "thermal", "vibration"))
 
 
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:

@@ -20,7 +20,18 @@ from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import toml_value
 
-EFFECTS = ("periodic x", "periodic y", "walls", "gravity", "rotation", "restitution", "thermal", "piston", "thermostat")
+EFFECTS = (
+    "periodic x",
+    "periodic y",
+    "walls",
+    "gravity",
+    "rotation",
+    "restitution",
+    "thermal",
+    "piston",
+    "thermostat",
+    "vibration",
+)
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
 MASSES = (1.0, 1e-8, 1e8)
@@ -168,6 +179,9 @@ def tables_of(draw) -> dict[str, Any]:
         for side in SIDES[2 * axis : 2 * axis + 2]:
             if periodic[axis]:
                 tables["box"][side] = "periodic"
+            elif "vibration" in called and draw(st.booleans()):
+                amplitude = pick(draw, 1e-3, 0.02, 0.1) * min(size)
+                tables["box"][side] = {"vibrating": {"amplitude": amplitude, "frequency": pick(draw, 0.1, 1.0, 30.0)}}
             elif "thermal" in called and draw(st.booleans()) and not (piston and piston["side"] == side):
                 tables["box"][side] = {"thermal": in_steps(draw, *(masses[-1] * x for x in (1.0, 1e-4, 100.0)))}
     if len(walls):
@@ -206,7 +220,7 @@ def dimension(path: tuple[str, ...]) -> tuple[int, int, int]:
         "temperature": (0, 2, 1), "thermal": (0, 2, 1), "spin_temperature": (0, 2, 1), "acceleration": (-1, 2, 0),
         "pressure": (-2, 2, 1), "until": (1, -1, 0), "opens_at": (1, -1, 0), "closes_at": (1, -1, 0),
         "contact_duration": (1, -1, 0), "rate": (-1, 1, 0), "uniform": (1, 0, 0), "values": (1, 0, 0),
-        "density": (-2, 0, 1),
+        "density": (-2, 0, 1), "amplitude": (1, 0, 0), "frequency": (-1, 1, 0),
     }  # fmt: skip
     return powers.get(key, (0, 0, 0))
 

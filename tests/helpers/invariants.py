@@ -20,6 +20,7 @@ from idealgas.columns import BATH, SIDES, EventBatch, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation
 from idealgas.physics.piston import piston_motion
+from idealgas.physics.vibration import height_on, parabola_at
 from idealgas.run.energy import energy_of
 from idealgas.scene import Scene
 from idealgas.state import Gas
@@ -281,6 +282,12 @@ class InvariantChecker:
             normal[axis] = -1.0 if upper else 1.0
             edge = self.size[axis] * upper
             assert (kind == Kind.PISTON) == (self.piston is not None and self.piston.side == SIDES[wall])
+            vibration = simulation.effects.vibration
+            if vibration is not None and vibration[wall].amplitude > 0:
+                own, inward = vibration[wall], -1.0 if upper else 1.0
+                local = time - simulation.time
+                height, speed, _ = height_on(own, parabola_at(own, local), local)
+                edge, stand = edge + inward * height, inward * speed
             if kind == Kind.PISTON:
                 edge, stand = simulation.effects.piston[0].x, simulation.effects.piston[0].v
             distance = abs(place[axis] - edge)
@@ -309,7 +316,7 @@ class InvariantChecker:
             return  # its own change is in the balance of energy
         speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
         bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius)
-        motion = np.zeros(2) if kind != Kind.PISTON else stand * np.abs(normal)
+        motion = stand * np.abs(normal)
         incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
         grazing = math.sqrt(2 * self.touches * (np.hypot(*self.pull) + self.push + before @ before / radius))
         thermal = simulation.effects.thermal

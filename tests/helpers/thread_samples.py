@@ -54,6 +54,8 @@ EFFECTS = {
     "walls": EVERYTHING[EVERYTHING.index("[[wall]]") :],
     "thermal": "box.bottom = { thermal = 1.0 }\nbox.top = { thermal = 3.0 }\n",
     "steps": "box.bottom = { thermal = [[0, 1.0], [1.5, 4.0]] }\nbox.top = { thermal = [[0, 3], [0.7, 0.5]] }\n",
+    "vibration": "box.bottom = { vibrating = { amplitude = 0.4, frequency = 2 } }\n"
+    "box.top = { vibrating = { amplitude = 0.1, frequency = 0.7 } }\ngravity.acceleration = [0.0, -0.05]\n",
     "everything": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n' + EVERYTHING,
 }
 

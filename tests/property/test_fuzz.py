@@ -34,6 +34,7 @@ from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
 from idealgas.physics.thermal import Thermal
 from idealgas.physics.thermostat import Thermostat
+from idealgas.physics.vibration import VIBRATION
 from idealgas.physics.wall import SEGMENT
 from idealgas.run.effects import make_effects, with_sums
 from idealgas.run.simulate import stop_of
@@ -76,6 +77,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
         thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),
+        vibration=aligned(4, VIBRATION),
         piston=beyond,
         thermostat=Thermostat(0.0, 0.0, np.uint64(0), np.full(n, math.inf), np.zeros(n, np.uint64)),
     )

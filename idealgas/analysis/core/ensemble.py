@@ -86,12 +86,14 @@ def _spin_energy(log: Log) -> float:
 def nonstationary_reason(log: Log) -> str:
     """Why a gas never comes to a stationary state, as part of a sentence; empty if nothing is known to prevent it.
 
-    Such a gas is driven by a moving wall, or loses energy that no wall gives back.
+    Such a gas is driven by a moving wall, or loses or gains energy without a balance.
     """
     scene, properties = log.scene, log.scene.properties
     if properties.driven:
         return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
-    if not properties.lossless and properties.isolated:
+    if properties.vibrates and properties.lossless and properties.isolated:
+        return "a vibrating side heats the gas"
+    if not properties.lossless and properties.isolated and not properties.vibrates:
         return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
     return ""
 
@@ -103,6 +105,8 @@ def nonequilibrium_reason(log: Log) -> str:
     scene, properties = log.scene, log.scene.properties
     if properties.varies:
         return "values change in time"
+    if properties.vibrates:
+        return "a side vibrates"
     if len(properties.temperatures) > 1:
         sources = "walls" if properties.bath is None else "walls and heat bath"
         return f"{sources} have {len(properties.temperatures)} temperatures"

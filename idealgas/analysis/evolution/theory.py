@@ -85,7 +85,7 @@ def expected_law(log: Log, time: np.ndarray) -> Law | None:
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
     if single and alone and not properties.fixed_walls:
-        if log.scene.piston.mass and properties.varies:
+        if properties.vibrates or (log.scene.piston.mass and properties.varies):
             return None
         return _at_rest(log, one) if log.scene.piston and log.scene.piston.mass else _adiabat(log, time)
     if any(log.gravity):

@@ -8,8 +8,9 @@ from idealgas.jit import inline
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
-from idealgas.physics.periodic import boundary_crossings_along
+from idealgas.physics.periodic import boundary_crossings_along, is_periodic
 from idealgas.physics.piston import is_piston_side
+from idealgas.physics.vibration import is_vibrating, vibrating_contact
 
 U = np.uintp
 
@@ -77,7 +78,7 @@ def crossing_along(disc, along_y, cell, size, cells_across, length, boundary_cro
 def axis_crossing(disc, along_y, cells, own, now, effects):
     """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
 
-    The time is NEVER at the piston's side, where contacts belong to the piston.
+    The time is NEVER at the piston's side, where contacts belong to the piston, and at a vibrating side.
     """
     cell = np.int64(disc.row) if along_y else np.int64(disc.column)
     size = cells.height if along_y else cells.width
@@ -87,7 +88,8 @@ def axis_crossing(disc, along_y, cells, own, now, effects):
     time, forward, at_side = crossing_along(
         disc, along_y, cell, size, across, length, boundary_crossings, is_periodic, now, effects.gravity
     )
-    if at_side and is_piston_side((2 if along_y else 0) + (1 if forward else 0), effects.piston):
+    side = (2 if along_y else 0) + (1 if forward else 0)
+    if at_side and (is_piston_side(side, effects.piston) or is_vibrating(effects.vibration, side)):
         time = NEVER
     return time, forward, at_side
 
@@ -106,7 +108,22 @@ def predict_crossing(record, ids, state, i, now, effects):
     prediction = state.prediction[U(i)]
     prediction.crossing = min(x_time, y_time)
     prediction.crossing_code = y_code if along_y else x_code
+    keep_vibrating_contact_if_earlier(prediction, disc, own, state.cells, effects.vibration, effects)
     keep_thermostat_collision_if_earlier(prediction, own, effects.thermostat)
+
+
+@inline
+def keep_vibrating_contact_if_earlier(prediction, disc, own, cells, vibration, effects):
+    """Store a disc's next contact with a vibrating side in its prediction if it precedes its crossing."""
+    if vibration is not None:
+        for side in range(4):
+            if is_vibrating(vibration, side) and not is_periodic(effects.periodic, side >= 2):
+                length = cells.Ly if side >= 2 else cells.Lx
+                time = vibrating_contact(disc, vibration[U(side)], side, length, effects.gravity)
+                code = SIDE_OF_BOX + side
+                if (time < prediction.crossing) | ((time == prediction.crossing) & (code < prediction.crossing_code)):
+                    prediction.crossing = time
+                    prediction.crossing_code = code
 
 
 @inline

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
-from idealgas.columns import SIDES, opposite
+from idealgas.columns import SIDES, opposite, sides_across
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.schedule import description, steps_of
+from idealgas.effects.vibration import reach
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     for name, allowed in ((piston.side, "reflecting"), (_facing(piston), "reflecting or thermal")):
         side = getattr(scene.box, name)
         if side == PERIODIC or (name == piston.side and side != "reflecting"):
-            got = "periodic" if side == PERIODIC else "thermal"
+            got = side if isinstance(side, str) else side.action.split(",")[0]
             keys: tuple[Key, ...] = (("piston", "side"), ("box", name))
             yield Issue(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
     length = scene.box.size[piston.axis]
@@ -75,9 +76,10 @@ def _depth(scene: Document, piston: Piston, position: float) -> float:
     return position if piston.outward > 0 else scene.box.size[piston.axis] - position
 
 
-def _least_depth(scene: Document, piston: Piston) -> float:
-    """Smallest distance of a piston from the opposite side, with all discs in between."""
-    return max(scene.covered_area / CLOSE_PACKING / scene.box.size[1 - piston.axis], 2 * scene.largest_radius)
+def least_depth(scene: Document, axis: int) -> float:
+    """Smallest distance of two sides, or of a piston and a side, with all discs in between."""
+    heights = sum(reach(scene.box.sides[side]) for side in sides_across(axis))
+    return heights + max(scene.covered_area / CLOSE_PACKING / scene.box.size[1 - axis], 2 * scene.largest_radius)
 
 
 def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
@@ -91,7 +93,7 @@ def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
         what = "crushes the gas sooner or later" if inward else "leaves the box sooner or later"
         yield Issue(keys, what, "a run without until", "a run with until")
         return
-    places, length, least = _places(scene, piston), scene.box.size[piston.axis], _least_depth(scene, piston)
+    places, length, least = _places(scene, piston), scene.box.size[piston.axis], least_depth(scene, piston.axis)
     nearest, farthest = sorted(places, key=lambda place: place[0] * piston.outward)[:: len(places) - 1]
     depth = _depth(scene, piston, nearest[0])
     if depth < least and nearest[1]:
@@ -127,7 +129,7 @@ def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
 def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Check walls that the piston may reach."""
     if piston.mass is not None:
-        depth = _least_depth(scene, piston)
+        depth = least_depth(scene, piston.axis)
     else:
         depth = min(_depth(scene, piston, place) for place, _ in _places(scene, piston))
     for i, wall in enumerate(scene.wall):

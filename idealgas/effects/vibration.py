@@ -1,0 +1,70 @@
+"""Vibrating sides of the box."""
+
+import numpy as np
+from pydantic import Field
+
+from idealgas.columns import SIDES
+from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.properties import Properties
+from idealgas.jit import aligned
+from idealgas.physics import vibration as law
+from idealgas.toml.table import Positive, Table
+
+
+class Vibration(Table):
+    """Motion of a vibrating side, between the side of the box and twice the amplitude inside it."""
+
+    amplitude: Positive = Field(description="length > 0: half of the way between its extreme places")
+    frequency: Positive = Field(description="periods per time > 0, 1/time")
+
+
+class VibratingSide(Table):
+    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that moves on parabolas; at rest at time 0."""
+
+    vibrating: Vibration = Field(description="amplitude and frequency")
+
+    @property
+    def action(self) -> str:
+        """Short description for output."""
+        return f"vibrating, amplitude {self.vibrating.amplitude:g}, frequency {self.vibrating.frequency:g}"
+
+
+def reach(side: object) -> float:
+    """Largest height of a side inside the box, length."""
+    return 2 * side.vibrating.amplitude if isinstance(side, VibratingSide) else 0.0
+
+
+def _properties(tables: Tables) -> Properties | None:
+    if not any(map(reach, tables.sides)):
+        return None
+    return Properties(
+        uniform=False,
+        fixed_walls=False,
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        is_scalable=False,
+        vibrates=True,
+        drives_discs=True,
+    )
+
+
+def _make(tables: Tables, _: Start) -> np.recarray:
+    vibration = aligned(len(SIDES), law.VIBRATION)
+    for record, side in zip(vibration, tables.sides, strict=True):
+        if isinstance(side, VibratingSide):
+            record.amplitude, record.half = side.vibrating.amplitude, 0.5 / side.vibrating.frequency
+            record.acceleration = 8 * record.amplitude / record.half**2
+    return vibration
+
+
+EFFECT = EffectSpec(
+    name="vibrating sides",
+    field="vibration",
+    side=VibratingSide,
+    side_text="{ vibrating = { amplitude = A, frequency = f } }",
+    properties=_properties,
+    make=_make,
+    gives_energy=lambda vibration: True,
+    begin_epoch=law.begin_epoch,
+    samples=(Sample(box=lambda side: "bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }\n"),),
+)

@@ -1,0 +1,65 @@
+"""Gases between vibrating sides: the same by all methods, and the balances of a granular gas on a vibrating floor."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers.log_compare import differences
+from helpers.support import ROOT
+
+from idealgas import load_scene, open_log, resume, simulate, temperature
+
+GOLDEN = ROOT / "tests" / "cases" / "golden" / "vibrating.toml"
+
+
+def test_the_same_by_brute_force_and_resumed(tmp_path):
+    whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
+    summary = simulate(load_scene(GOLDEN), whole)
+    simulate(load_scene(GOLDEN, ["run.method=brute_force"]), oracle)
+    simulate(load_scene(GOLDEN, ["run.until=2.7"]), resumed)
+    resume(resumed, ["run.until=8"])
+    assert differences(resumed, whole) == []
+    with open_log(whole) as log, open_log(oracle) as other:
+        assert len(log) > 800
+        columns = list(zip(log.chunks(), other.chunks(), strict=True))
+        assert all(np.array_equal(getattr(a, name), getattr(b, name)) for a, b in columns for name in log.columns)
+    assert abs(summary.energy_drift) < 1e-12
+    assert summary.deepest_overlap < 1e-14
+
+
+@pytest.fixture(scope="module")
+def vibrated(tmp_path_factory):
+    path = tmp_path_factory.mktemp("vibrated") / "run.h5"
+    simulate(load_scene(ROOT / "configs" / "vibrated-granular.toml", ["log.pressure=true"]), path)
+    with open_log(path) as log:
+        yield log
+
+
+def rate(log, name, entry, start):
+    """Mean rate of a sum in samples after a time, and its standard error, from 16 blocks."""
+    time, values = log.observables[name]
+    edges = np.linspace(start, log.end_time, 17)
+    rates = np.diff(np.interp(edges, time, values[:, entry])) / np.diff(edges)
+    return rates.mean(), rates.std(ddof=1) / math.sqrt(len(rates))
+
+
+def test_a_steady_state_is_recognised(vibrated):
+    found = temperature(vibrated)
+    assert found.window.state == "steady state"
+    assert found.window.start < 100
+
+
+def test_the_floor_gives_what_collisions_take(vibrated):
+    """In the steady state, within 3 standard errors of either."""
+    (given, error), (lost, other) = rate(vibrated, "wall_energy", 2, 50), rate(vibrated, "dissipated_energy", 0, 50)
+    assert abs(given - lost) < 3 * math.hypot(error, other)
+    assert error < 0.03 * given > 0
+    _, walls = vibrated.observables["wall_energy"]
+    assert not walls[:, [0, 1, 3]].any()  # those at rest
+
+
+def test_the_floor_carries_the_weight(vibrated):
+    """The mean force on it is N m g = 150, within 3 standard errors."""
+    force, error = rate(vibrated, "face_normal_impulse", 2, 50)
+    assert abs(abs(force) - 150) < 3 * error
+    assert error < 3
