@@ -11,7 +11,7 @@ from idealgas.analysis import registry
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
-from ._options import FILE, force_option, json_option, plot_option, quiet_option
+from ._options import FILE, force_option, json_option, plot_errors_option, plot_option, quiet_option
 from ._progress import progress_bar
 from ._tables import print_tables
 from ._terminal import data, echo, written
@@ -111,6 +111,7 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
         words = f"{where} of the window, in simulated time.  [default: {default}]"
         yield click.option(name, variable, type=float, metavar="T", help=words)
     yield plot_option
+    yield plot_errors_option
     yield force_option
     yield json_option
     yield quiet_option
@@ -127,6 +128,7 @@ def _analyse(
     start: float | None,
     end: float | None,
     plot: str | None,
+    plot_errors: str | None,
     force: bool,
     as_json: bool,
     as_csv: bool,
@@ -136,14 +138,16 @@ def _analyse(
     """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
         raise UserError("--csv and --json cannot be combined")
-    if plot:
-        check_output(plot, Path(plot).suffix.lower(), force, paths)
+    drawn = (plot, analysis.titled_figure), (plot_errors, analysis.error_figure)
+    figures = {path: draw for path, draw in drawn if path}
+    for path in figures:
+        check_output(path, Path(path).suffix.lower(), force, paths)
     try:
         with progress_bar(f"reading {analysis.reads}") as progress:
             results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
         result = analysis.combined(results)
     except NotApplicableError as error:
-        if not check or plot or as_csv:
+        if not check or figures or as_csv:
             raise
         from idealgas.analysis.core.check import CheckResult
 
@@ -154,10 +158,10 @@ def _analyse(
             echo(f"{inapplicable}", err=True)
         return
     checked = result.check() if check else None
-    if plot:
+    for path, draw in figures.items():
         from idealgas.analysis.core.style import save
 
-        save(analysis.titled_figure(result), plot, force)
+        save(draw(result), path, force)
     if as_json:
         unasked = {"agrees": None} if analysis.is_checked() else {}
         print_json(result.as_dict() | (checked.as_dict() if checked else unasked))
@@ -176,8 +180,8 @@ def _analyse(
         if checked:
             print_tables(checked.tables())
             echo(f"{checked}", err=checked.agrees is None)
-    if plot:
-        written(plot, err=as_json or as_csv)
+    for path in figures:
+        written(path, err=as_json or as_csv)
     if checked and checked.agrees is False:
         raise SystemExit(1)
 

@@ -75,3 +75,8 @@ def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> s
 plot_option = click.option(
     "--plot", type=FILE, metavar="FILE.png", callback=_check_ending, help="Write a figure (.png, .pdf or .svg)."
 )
+
+plot_errors_option = click.option(
+    "--plot-errors", type=FILE, metavar="FILE.png", callback=_check_ending,
+    help="Write a figure of each error against the length of blocks of time, which shows slow fluctuations.",
+)  # fmt: skip

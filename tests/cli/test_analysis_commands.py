@@ -68,6 +68,16 @@ def test_pictures(command, path, tmp_path):
     assert line == "picture.png: already exists (use --force to overwrite)\n"
 
 
+def test_errors_against_the_length_of_blocks(folder, path, tmp_path):
+    output_of("pressure", path, "--plot-errors", "errors.png", "--plot", "picture.svg", folder=tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["errors.png", "picture.svg"]
+    assert (tmp_path / "errors.png").read_bytes().startswith(b"\x89PNG")
+    refused = error_of("pressure", path, "--plot-errors", "errors.png", folder=tmp_path)
+    assert refused == "errors.png: already exists (use --force to overwrite)\n"
+    line = error_of("relaxation", path, "--plot-errors", "others.png", folder=tmp_path)
+    assert line == "relaxation: no error here is from blocks of time\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

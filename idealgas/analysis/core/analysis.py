@@ -262,6 +262,22 @@ class Analysis:
 
         return add_title(cls.figure(combined), f"{combined.title}: {cls.key}")
 
+    @classmethod
+    def error_figure(cls, combined: Any) -> "Figure":
+        """Picture of the error of each estimate of a combined result against the length of blocks (`block_figure`)."""
+        from idealgas.analysis.core.style import add_title, block_figure
+
+        found: dict[tuple[tuple[float, float], ...], str] = {}
+        for table in cls.shown_tables(combined):
+            for row, one in zip(table.rows, table.found, strict=False):
+                found.setdefault(one.blocks, str(row[0]))
+        found.pop((), None)
+        if not found:
+            raise UserError(f"{cls.key}: no error here is from blocks of time")
+        window = getattr(combined, "window", None)
+        figure = block_figure(found, *((window.duration, "time") if window else (1.0, "share of the window")))
+        return add_title(figure, f"{combined.title}: {cls.key}")
+
 
 @contextmanager
 def _arithmetic(what: str) -> Iterator[None]:

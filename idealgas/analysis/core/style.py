@@ -2,12 +2,13 @@
 
 import io
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
 from typing import Any, cast
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
@@ -167,3 +168,20 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
         ax.spines[["bottom", "left"]].set_in_layout(False)  # numbers of the axes reach farther
         ax.yaxis.set_label_coords(0, 0)  # of no label, whose place would be sought again and again
     return figure, axes
+
+
+def block_figure(found: Mapping[tuple[tuple[float, float], ...], str], length: float, unit: str) -> Figure:
+    """Picture of errors by blocks over the stated error; where they still rise, slower fluctuations are unseen.
+
+    found: names of estimates by their `Estimate.blocks`. length: of the series they are shares of, and its unit.
+    """
+    figure, axes = panels(-(-len(found) // 2), min(len(found), 2))
+    for ax, (blocks, name) in zip(axes, found.items(), strict=False):
+        share, error = np.array(blocks).T
+        ax.axhline(1, color=COLOURS[1])
+        ax.errorbar(share * length, error, error * np.sqrt(share / 2), color=COLOURS[0], fmt="o-", capsize=3)
+        ax.set(xscale="log", xlabel=f"length of blocks ({unit})", ylabel=f"{name}: error / stated error")
+        ax.set_ylim(bottom=0)
+    for ax in axes[len(found) :]:
+        ax.set_axis_off()
+    return figure

@@ -43,6 +43,7 @@ class Table:
 
     title: heading of the table. heads: headings of the columns; the first column names the rows. rows: cells, row by
     row. notes: lines printed before the rows. most: largest number of rows that are shown, evenly chosen from all rows.
+    found: estimates of the rows, if rows are estimates.
     """
 
     title: str
@@ -50,6 +51,7 @@ class Table:
     rows: Sequence[Sequence[Cell]]
     notes: Sequence[str] = ()
     most: int | None = None
+    found: Sequence["Estimate"] = ()
 
     @property
     def shown(self) -> list[list[str]]:
@@ -109,7 +111,7 @@ def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequenc
         return name, value, spread._replace(instead=said), samples, *theory, Number(found.deviation, "+.2f")
 
     heads = (*ESTIMATE_HEADS[:-1], *[THEORY_ERROR] * rough, ESTIMATE_HEADS[-1])
-    return Table(title, heads, [cells(*row) for row in rows], notes)
+    return Table(title, heads, [cells(*row) for row in rows], notes, found=[found for _, found in rows])
 
 
 def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath]") -> list[Table]:

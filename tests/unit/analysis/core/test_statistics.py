@@ -129,3 +129,19 @@ def test_statistics_import_little_of_scipy():
         "assert not {'scipy.stats', 'scipy.optimize'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_errors_by_blocks_rise_to_the_stated_one():
+    """The mean of AR(1) with a = 0.9 has √((1 + a)/(1 - a)) = 4.4 times the error of independent samples."""
+    n, a = 2**16, 0.9
+    found = statistics.mean(autoregressive(np.random.default_rng(1), n, a)[:, 0])
+    share, error = np.array(found.blocks).T
+    assert share.tolist() == [2.0**k / n for k in range(14)]  # 8 blocks and more
+    assert np.all(np.diff(error[:6]) > 0)
+    error *= found.standard_error * math.sqrt(n)
+    assert error[0] == pytest.approx(1, rel=0.05)
+    long = (share * n > 10 / (1 - a)) & (share < 1 / 32)
+    exact = math.sqrt((1 + a) / (1 - a))
+    assert np.all(np.abs(error[long] / exact - 1) < 4 * np.sqrt(share[long] / 2) + 0.05)  # blocks are 5 % short
+    assert found.times(-3.0).blocks == found.blocks
+    assert statistics.mean(np.ones(64)).blocks == ()

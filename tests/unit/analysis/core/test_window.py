@@ -1,5 +1,7 @@
 """One log has one start of equilibrium, whatever analysis asks; some gases have none."""
 
+import math
+
 import pytest
 
 from idealgas import analyse, open_log, parse_scene, simulate
@@ -99,6 +101,18 @@ def test_a_gate_that_opens_near_the_end_leaves_no_equilibrium(log_of):
 
 def test_steady_gas_is_kept(log_of):
     assert starts(log_of(BOX + GAS + RUN), "pressure", "profile") == {0.0}
+
+
+def test_a_dense_mixture_in_equilibrium_is_kept(log_of):
+    """Of 20 discs at φ = 0.45, whose places change slowly; at most one of 12 short runs loses more than a tenth."""
+    radius = (2 * 0.45 / (20 * math.pi * (1 + 1.6**2))) ** 0.5
+    each = '[[species]]\nname = "{}"\ncount = 10\nradius = {!r}\nmass = {}\ntemperature = 1\n'
+    discs = each.format("light", radius, 1) + each.format("heavy", 1.6 * radius, 3)
+    run, lost = "[run]\ncollisions_per_disc = 300\n", 0
+    for seed in range(12):
+        log = log_of(f"scene.seed = {seed}\n{BOX}{discs}{run}")
+        lost += starts(log, "temperature").pop() > 0.1 * log.end_time
+    assert lost <= 1
 
 
 @pytest.mark.parametrize("name", NEVER)
