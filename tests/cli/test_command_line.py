@@ -159,6 +159,24 @@ def test_help_imports_nothing_heavy():
     assert (result.returncode, result.stderr) == (0, "")
 
 
+@pytest.mark.parametrize(
+    ("command", "unused"),
+    [
+        ("info run.h5", ("numba", "scipy", "matplotlib", "pandas")),
+        ("check scene.toml", ("scipy.stats", "matplotlib", "pandas")),
+        ("histogram run.h5", ("scipy.stats", "scipy.optimize", "matplotlib", "pandas")),
+    ],
+)
+def test_a_command_imports_only_what_it_needs(log, command, unused):
+    program = (
+        "import sys\nfrom idealgas_cli.main import main\n"
+        f"try: main({command.split()})\nexcept SystemExit: pass\n"
+        f"print(*(name for name in {unused} if name in sys.modules), file=sys.stderr, end='')"
+    )
+    done = subprocess.run([sys.executable, "-c", program], cwd=log.parent, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_every_command_has_help():
     context = click.Context(main)
     for name in main.list_commands(context):

@@ -5,14 +5,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from scipy import special
-
 from idealgas.analysis.core.fields import Key, as_dict, reported
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Number, Table
 from idealgas.errors import UserError
 
-FALSE_ALARM = 2 * special.ndtr(-4.0)
+FALSE_ALARM = math.erfc(4.0 / math.sqrt(2.0))
 """Chance that a row of a correct gas fails a check, 6.3e-5: that of four standard errors of a normal distribution."""
 
 POWER = 0.95
@@ -45,6 +43,8 @@ class Comparison:
         The root of the sum of two squares, by Student's t for the standard error and normal for the error of theory:
         exact for either alone, and exceeded less often in between.
         """
+        from scipy import special
+
         return math.hypot(self._by_student, special.ndtri(1 - FALSE_ALARM / 2) * self.estimate.theory_error)
 
     @property
@@ -54,6 +54,8 @@ class Comparison:
 
         By the normal approximation of noncentral t: Johnson & Welch, Biometrika 31, 362 (1940).
         """
+        from scipy import special
+
         found = self.estimate
         of_allowed = self._by_student / math.sqrt(2 * self._freedom)
         spread = math.hypot(found.standard_error, found.theory_error, of_allowed)
@@ -65,6 +67,8 @@ class Comparison:
 
     @property
     def _by_student(self) -> float:
+        from scipy import special
+
         return float(special.stdtrit(self._freedom, 1 - FALSE_ALARM / 2)) * self.estimate.standard_error
 
 

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import special
 
 from idealgas.analysis.core.statistics import mean
 from idealgas.analysis.theory import conserved
@@ -122,6 +121,8 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
     (B, 1, 2), over all discs. Velocities are relative to the gas as a whole where nothing stops that.
     """
     ensemble, gas = known_ensemble(log), composition(log.discs)
+    from scipy import special
+
     if ensemble is None or not conserved.is_ergodic(log.scene, log.discs):
         return ""
     if len(log.discs) == 1 and ensemble.dof < math.inf:  # it has no other to share with

@@ -15,7 +15,6 @@ from typing import Annotated, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy import special
 
 from idealgas.analysis.core.autoregression import error_of_mean, is_constant, process_of, variance_of_mean
 from idealgas.analysis.core.ensemble import (
@@ -168,6 +167,8 @@ class _Series(NamedTuple):
         steady series disagrees with the probability `level`: half of it in one block, a quarter in two, and so on. The
         variance of a difference is at least `floor`.
         """
+        from scipy import special
+
         n, known = len(self.sums) - 1, len(self.variance)
         middle = (start + n) // 2
         lengths = 2 ** np.arange((middle - start).bit_length())

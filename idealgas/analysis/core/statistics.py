@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 import numpy as np
-from scipy import special
 
 from idealgas.analysis.core.autoregression import changes, error_of_mean, inefficiency
 from idealgas.analysis.core.fields import OMITTED, as_dict, reported
@@ -71,6 +70,8 @@ class Estimate:
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval at a level (0 to 1), by Student's t with independent_samples - 1 degrees of freedom."""
+        from scipy import special
+
         half = special.stdtrit(max(self.independent_samples - 1, 1), 0.5 + level / 2) * self.standard_error
         return self.value - half, self.value + half
 
@@ -205,10 +206,23 @@ def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float
 def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:
     """Kolmogorov-Smirnov distance: largest difference between the distribution function of samples and that of a law.
 
-    samples: (n,), values. cdf: distribution function of the law. `scipy.stats.kstest` gives the p-value as well.
+    samples: (n,), values. cdf: distribution function of the law.
     """
     law, steps = cdf(np.sort(samples)), np.arange(len(samples) + 1) / len(samples)
     return float(max((steps[1:] - law).max(), (law - steps[:-1]).max()))
+
+
+def ks_p_value(distance: float, samples: int) -> float:
+    """Probability of a Kolmogorov-Smirnov distance of at least this one for so many independent samples of the law.
+
+    Vrbik's correction of the limit, Pioneer J. Theor. Appl. Stat. 15, 15 (2018): off by 0.0025 for 10 samples, 0.0003
+    for 50 and less for more. The exact one of SciPy takes half a second to load.
+    """
+    from scipy import special
+
+    root = math.sqrt(samples)
+    scaled = distance * root
+    return float(special.kolmogorov(scaled + 1 / (6 * root) + (scaled - 1) / (4 * samples)))
 
 
 def bootstrap(

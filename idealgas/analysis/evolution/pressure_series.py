@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.stats import chi2
+from scipy import special
 
 from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import ratio
@@ -131,7 +131,7 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
     if not known.any():
         return 1.0
     off, told, free = off[known], told[known], GROUP - 2
-    calm = off / told <= np.median(off / told) * chi2.ppf(FAR, free) / chi2.median(free)
+    calm = off / told <= np.median(off / told) * special.chdtri(free, 1 - FAR) / special.chdtri(free, 0.5)
     return math.sqrt(off[calm].sum() / told[calm].sum() * GROUP / free)
 
 

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from scipy import stats
 
 from idealgas.analysis.core.fields import OMITTED, Key, reported
-from idealgas.analysis.core.statistics import Estimate, ks_distance, ratio
+from idealgas.analysis.core.statistics import Estimate, ks_distance, ks_p_value, ratio
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
 
@@ -81,7 +80,7 @@ def distribution_of(
     tests = []
     for law_name, law in possible.items():
         distance = ks_distance(samples, law.cdf)
-        p_value = float(stats.kstwo.sf(max(distance - law_error, 0.0), len(samples)))
+        p_value = ks_p_value(max(distance - law_error, 0.0), len(samples))
         tests.append(Test(law_name, law, distance, law_error, p_value))
     width, number = np.diff(edges), len(samples)
     return Distribution(name, edges, share / width, error / width, average, number, correlation_time, tuple(tests))

@@ -13,7 +13,6 @@ from functools import cache, cached_property
 from typing import Protocol
 
 import numpy as np
-from scipy import special
 
 from idealgas.analysis.theory.hard_discs import mean_speed
 
@@ -132,6 +131,8 @@ class ComponentLaw:
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         """Probability density of the velocity components x, time/length."""
+        from scipy import special
+
         z = np.asarray(x) * math.sqrt(self.mass / self.temperature)
         if math.isinf(self.dof):
             return np.exp(-(z**2) / 2) * math.sqrt(self.mass / (2 * math.pi * self.temperature))
@@ -140,6 +141,8 @@ class ComponentLaw:
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
         """Probability of a velocity component of at most x."""
+        from scipy import special
+
         z = np.asarray(x) * math.sqrt(self.mass / self.temperature)
         if math.isinf(self.dof):
             return special.ndtr(z)
@@ -152,6 +155,8 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
 
     √(πT/2m) e^(-x/2) [(1 + x) I₀(x/2) + x I₁(x/2)], x = m v²/2T: the mean of a Rice distribution.
     """
+    from scipy import special
+
     x = mass * np.asarray(speed) ** 2 / (2 * temperature)
     bessel = (1 + x) * special.i0e(x / 2) + x * special.i1e(x / 2)
     return mean_speed(temperature, mass) * bessel

@@ -4,9 +4,10 @@ import sys
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from idealgas.analysis.core import statistics
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, ks_p_value
 
 
 def autoregressive(rng, length, memory, runs=1):
@@ -145,3 +146,11 @@ def test_errors_by_blocks_rise_to_the_stated_one():
     assert np.all(np.abs(error[long] / exact - 1) < 4 * np.sqrt(share[long] / 2) + 0.05)  # blocks are 5 % short
     assert found.times(-3.0).blocks == found.blocks
     assert statistics.mean(np.ones(64)).blocks == ()
+
+
+@pytest.mark.parametrize(("samples", "off"), [(10, 0.0025), (50, 0.0003), (1000, 3e-5)])
+def test_p_values_of_kolmogorov_and_smirnov(samples, off):
+    """The exact distribution of SciPy: Simard & L'Ecuyer, J. Stat. Softw. 39, 11 (2011)."""
+    distances = np.linspace(0.3, 2.5, 200) / math.sqrt(samples)
+    exact = stats.kstwo.sf(distances, samples)
+    assert np.abs(exact - [ks_p_value(one, samples) for one in distances]).max() < off
