@@ -3,6 +3,7 @@
 What never changes is drawn once; a frame restores it and draws only discs, walls, panel and title over it.
 """
 
+import math
 from collections.abc import Sequence
 from itertools import compress
 from typing import Any, Literal, NamedTuple, TypedDict
@@ -37,15 +38,16 @@ COLOUR_MAP = "cividis"
 """Colour map of speeds, readable for colour-blind viewers: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
 
 DPI = 100
-USUAL, LEAST_ZOOM = (960, 540), 0.5
-"""Frame size in pixels at which text and margins have their usual size, and smallest factor of that size."""
+USUAL, NARROWEST, LEAST_ZOOM = (960, 540), 400, 0.5
+"""Frame size in pixels at which text and margins have their usual size, width or height below which they are smaller,
+and smallest factor of that size."""
 
 SHADES = 64
 PALEST, DARKEST = 0.93, 0.3
 """Parts of the colour map that are used: up to the first on white, from the second on on black."""
 
-EDGE = 0.55
-"""Brightness of the edge of a disc on white, relative to the disc: fast discs are seen as well."""
+EDGE, EDGED = 0.55, 8.0
+"""Brightness of the edge of a disc on white, relative to the disc, and diameter in pixels above which it has one."""
 
 PAPER, INK = "#14161a", "#e6e6e6"
 DARK: dict[Any, Any] = {
@@ -56,7 +58,7 @@ DARK: dict[Any, Any] = {
 }
 """Settings of matplotlib for pictures on a dark background."""
 
-SMALLEST = 3.0
+SMALLEST = 4.0
 """Smallest diameter in pixels with which a disc is drawn."""
 
 CROSSING = 5.0
@@ -179,7 +181,7 @@ class Painter:
         """
         if unknown := [disc for disc in trails if not 0 <= disc < len(gas)]:
             raise UserError(f"trail: no disc {unknown[0]} (allowed 0 to {len(gas) - 1})")
-        self._ink, self._line, self._edge = (INK, INK, 1.0) if dark else ("black", COLOURS[0], EDGE)
+        self._ink, self._line, self._dark = (INK, INK, dark) if dark else ("black", COLOURS[0], dark)
         self._flow = centre_of_mass_velocity(scene, gas)
         self._scene, self._inside, self._gas, self._piston = scene, walls_inside(scene), gas, piston
         self._colouring, self._shows = colouring, panel
@@ -197,12 +199,15 @@ class Painter:
     def _draw_still(self, rms_speed: float, times: tuple[float, float], some: Sequence[LogState]) -> None:
         """Draw what is the same in all frames, and prepare the parts that are drawn over it."""
         size = self.size
-        zoom = max(min(size[0] / USUAL[0], size[1] / USUAL[1]), LEAST_ZOOM)
+        usual = math.sqrt(size[0] * size[1] / math.prod(USUAL)), min(size) / NARROWEST
+        zoom = max(min(usual), LEAST_ZOOM)
         page = size[0] / zoom, size[1] / zoom
         self._figure = Figure(figsize=(page[0] / DPI, page[1] / DPI), dpi=DPI * zoom)
         self._canvas = FigureCanvasAgg(self._figure)
         place = layout(page, _lengths(self._view), self._shows != "none")
         self._diameter = np.maximum(2 * self._gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
+        has_edge = self._diameter * place.scale * zoom > EDGED
+        self._edge = np.where(has_edge & (not self._dark), EDGE, 1.0)[:, None]
         self._figure.text(LEFT / page[0], 1 - 0.4 * TOP / page[1], self._scene.scene.title, weight="bold")
         self._title = self._figure.text(LEFT / page[0], 1 - 0.85 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
@@ -311,7 +316,9 @@ class Painter:
                 which = np.concatenate((which, which[reach]))
         diameter = self._diameter[which]
         self._discs.set(widths=diameter, heights=diameter, angles=np.zeros(len(which)), offsets=position)
-        self._discs.set(facecolors=colours[which], edgecolors=colours[which] * (*[self._edge] * 3, 1.0))
+        edges = colours[which]
+        edges[:, :3] *= self._edge[which]
+        self._discs.set(facecolors=colours[which], edgecolors=edges)
 
     def _trails_to(self, position: np.ndarray) -> list[Line2D]:
         """Paths of the chosen discs up to now, with gaps where they cross periodic sides."""
