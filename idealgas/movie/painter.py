@@ -181,7 +181,8 @@ class Painter:
         """
         if unknown := [disc for disc in trails if not 0 <= disc < len(gas)]:
             raise UserError(f"trail: no disc {unknown[0]} (allowed 0 to {len(gas) - 1})")
-        self._ink, self._line, self._dark = (INK, INK, dark) if dark else ("black", COLOURS[0], dark)
+        self._ink, self._line = (INK, INK) if dark else ("black", COLOURS[0])
+        self._dark = dark
         self._flow = centre_of_mass_velocity(scene, gas)
         self._scene, self._inside, self._gas, self._piston = scene, walls_inside(scene), gas, piston
         self._colouring, self._shows = colouring, panel
