@@ -76,13 +76,23 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
             of the file is read on demand.
     """
     for _ in range(ATTEMPTS):
+        before = _last_change(path)
         try:
             return Log(LogFile(Path(path)))
         except LogError:
-            if not is_locked(Path(path)):
+            if not is_locked(Path(path)) and _last_change(path) == before:
                 raise
-            sleep(PAUSE)  # a run that resumes the log may just have removed rows
+            sleep(PAUSE)  # a run that resumes the log may just have removed rows, or a run has ended meanwhile
     return Log(LogFile(Path(path)))
+
+
+def _last_change(path: str | os.PathLike[str]) -> tuple[int, ...]:
+    """Which file has a path, its size, and when it was last written; nothing of a missing one."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return ()
+    return found.st_ino, found.st_size, found.st_mtime_ns
 
 
 class Log(LogHistory):

@@ -244,3 +244,18 @@ def test_print_of_an_odd_title_is_three_lines(tmp_path):
     with open_log(path) as log:
         assert len(str(log).splitlines()) == 3
         assert "\x1b" not in str(log)
+
+
+def test_a_log_whose_run_ends_while_it_is_opened(tmp_path, monkeypatch):
+    """Half of it is there when it is read first; by the time of the error the run has written the rest, and is over."""
+    path = write_log(tmp_path / "run.h5", 300)
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+
+    def is_locked(path):
+        path.write_bytes(data)
+        return False
+
+    monkeypatch.setattr("idealgas.log.reader.is_locked", is_locked)
+    with open_log(path) as log:
+        assert len(log) == 300
