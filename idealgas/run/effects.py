@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects import EFFECTS
-from idealgas.effects.bundle import Effects, energy_parts, inner_energy, present
+from idealgas.effects.bundle import Effects, inner_energy, present
 from idealgas.effects.effect import Start
 from idealgas.engine.epoch import driving_energy, driving_speed, encounters_per_length
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
@@ -67,7 +67,7 @@ def with_sums(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
         bath_energy=None if scene.properties.bath is None else make_sums([energy]),
-        step_energy=make_sums([energy]) if effects.schedule and energy_parts(effects, gas) else None,
+        step_energy=make_sums([energy]) if any(EFFECTS[k].energy for _, k, *_ in effects.schedule or ()) else None,
         flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
     )
 

@@ -36,6 +36,7 @@ def finished(tmp_path_factory):
 @contextmanager
 def started(*arguments, **options):
     """A command that prints the address of its page, and the address."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and their children
     child = subprocess.Popen([IDEALGAS, *map(str, arguments)], stderr=subprocess.PIPE, text=True, **options)
     try:
         lines = iter(child.stderr.readline, "")
@@ -43,6 +44,7 @@ def started(*arguments, **options):
     finally:
         child.kill()
         child.wait()
+        child.stderr.close()
 
 
 @contextmanager

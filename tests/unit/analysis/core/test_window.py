@@ -95,7 +95,7 @@ def test_start_is_after_a_gas_has_filled_its_box(log_of):
 
 def test_a_gate_that_opens_near_the_end_leaves_no_equilibrium(log_of):
     log = log_of(EXPANSION.replace("opens_at = 3", "opens_at = 59.9"))
-    with pytest.raises(NotApplicableError, match=r"a gate opens or closes at t = 59\.9, with too little"):
+    with pytest.raises(NotApplicableError, match=r"the scene changes at t = 59\.9, with too little"):
         analyse(log, "profile")
 
 
