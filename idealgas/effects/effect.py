@@ -24,7 +24,7 @@ class Tables(NamedTuple):
         own: its table, None if absent; for an effect with an array of tables a tuple, with None for invalid ones.
         size: width and height of the box, length.
         sides: what the left, right, bottom and top side are; empty while the table of the box is invalid.
-        walls: wall segments, None for invalid ones.
+        walls: wall segments, None for invalid ones, then fixed discs.
     """
 
     own: Any
@@ -149,7 +149,8 @@ class EffectSpec(Generic[State]):
         """The keys that turn the effect on and what it changes; None if the scene does not have it."""
         keys: tuple[Key, ...]
         if self.many:
-            keys = tuple((self.key, i) for i, table in enumerate(tables.own) if table is not None)
+            tables_and_keys = ((table, (self.key, i)) for i, table in enumerate(tables.own) if table is not None)
+            keys = tuple(getattr(table, "place", key) for table, key in tables_and_keys)
         elif self.key:
             keys = ((self.key,),) if tables.own is not None else ()
         else:

@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise, zip_longest
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
@@ -38,6 +39,7 @@ class Wall(SteppedTable):
     """
 
     in_steps = ("temperature",)
+    radius: ClassVar[float] = 0.0
 
     start: Vector = Field(alias="from", description="[x, y] of one end, length")
     end: Vector = Field(alias="to", description="[x, y] of the other end, length")
@@ -77,6 +79,41 @@ class Wall(SteppedTable):
         return not any(opens <= time < closes for opens, closes in self.absences)
 
 
+@dataclass(frozen=True)
+class FixedDisc:
+    """A fixed disc: a wall around a point. number: of its table `[[disc]]`; start: its centre; radius: length."""
+
+    number: int
+    start: tuple[float, float]
+    radius: float
+    temperature = None
+    absences = ()
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """Its centre."""
+        return self.start
+
+    @property
+    def place(self) -> Key:
+        """Key that makes it fixed."""
+        return ("disc", self.number, "fixed")
+
+    @property
+    def name(self) -> str:
+        """Name for the log."""
+        return f"disc {self.number}"
+
+    @property
+    def action(self) -> str:
+        """Short description for output."""
+        return f"fixed disc, radius {self.radius:g}"
+
+    def is_there(self, _: float) -> bool:
+        """Whether it is present at a time."""
+        return True
+
+
 def _as_tuple(times: Any) -> tuple[float, ...]:
     return () if times is None else times if isinstance(times, tuple) else (times,)
 
@@ -105,6 +142,12 @@ def _check(tables: Tables) -> Iterator[Issue]:
     first: dict[str, int] = {}
     for i, wall in enumerate(tables.own):
         if wall is None:
+            continue
+        if isinstance(wall, FixedDisc):
+            if not all(0 <= x <= length for x, length in zip(wall.start, tables.size, strict=True)):
+                allowed = f"0 <= x <= {tables.size[0]} and 0 <= y <= {tables.size[1]}"
+                keys: tuple[Key, ...] = (("disc", wall.number, "position"), ("box", "size"))
+                yield Issue(keys, "fixed disc not in the box", str(list(wall.start)), allowed)
             continue
         yield from wall_issues(tables.size, i, wall)
         if wall.name in SIDES:
@@ -135,19 +178,24 @@ def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue
         yield Issue(keys, wrong, str(closes[0]) if single else f"{list(closes)} after {list(opens)}", allowed)
 
 
-def make_segments(start: np.ndarray, end: np.ndarray, active: np.ndarray | bool = True) -> np.recarray:
-    """(S,) SEGMENT. start, end: (S, 2). active: whether each is present."""
+def make_segments(
+    start: np.ndarray, end: np.ndarray, active: np.ndarray | bool = True, radius: np.ndarray | float = 0.0
+) -> np.recarray:
+    """(S,) SEGMENT. start, end: (S, 2). active: whether each is present. radius: of fixed discs, of no length."""
     segments = aligned(len(start), law.SEGMENT)
     segments.x, segments.y = start.T
     segments.length = np.hypot(*(end - start).T)
-    segments.tx, segments.ty = ((end - start) / segments.length[:, None]).T
-    segments.active = active
+    round_ones = segments.length == 0
+    segments.tx, segments.ty = ((end - start) / np.where(round_ones, 1.0, segments.length)[:, None]).T
+    segments.tx[round_ones] = 1.0
+    segments.active, segments.radius = active, radius
     return segments
 
 
 def _make(tables: Tables, _: Start) -> np.recarray:
     start, end = (np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end"))
-    return make_segments(start, end, np.array([wall.is_there(0.0) for wall in tables.own]))
+    active, radius = [wall.is_there(0.0) for wall in tables.own], [wall.radius for wall in tables.own]
+    return make_segments(start, end, np.array(active), np.array(radius))
 
 
 def _schedule(tables: Tables, _: Start) -> Iterator[Change]:

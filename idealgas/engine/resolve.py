@@ -138,9 +138,10 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
         wall = segments[U(segment)]
         nx, ny, at_end = segment_normal(disc, wall, effects.periodic, images)
         px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
-        left = 1.0 if wall.tx * ny - wall.ty * nx >= 0.0 else -1.0
+        tx, ty = (ny, -nx) if wall.length == 0.0 else (wall.tx, wall.ty)  # a fixed disc has one face
+        left = 1.0 if tx * ny - ty * nx >= 0.0 else -1.0
         face = FIRST_SEGMENT + 2 * segment + (0 if left > 0.0 else 1)
-        record_hit(effects.flow, disc, face, -left * wall.ty, left * wall.tx, wall.tx, wall.ty, px, py)
+        record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
         return at_end
     return False
 

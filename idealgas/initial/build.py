@@ -117,7 +117,7 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
     box, periodic = scene.box, scene.properties.periodic
     space = scene.room
-    walls = np.array([(*w.start, *w.end) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 4)
+    walls = np.array([(*w.start, *w.end, w.radius) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 5)
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     grid = placement.make_grid(box.size, radius, periodic, walls)
     random = rng(scene.scene.seed, "placement")

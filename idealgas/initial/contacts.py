@@ -41,9 +41,9 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
         for k, wall in enumerate(walls_inside(scene)):
             if wall.is_there(0.0):
                 start, along = np.array(wall.start), np.array(wall.end) - wall.start
-                share = np.clip((gas.position - start) @ along / (along @ along), 0.0, 1.0)
+                share = np.clip((gas.position - start) @ along / (along @ along or 1.0), 0.0, 1.0)
                 normal = gas.position - start - share[:, None] * along
-                touches = (normal**2).sum(axis=1) <= gas.radius**2
+                touches = (normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2
                 yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:
         piston = scene.piston

@@ -21,8 +21,8 @@ MIN_REFUSALS = 3_000_000
 """Number of refused positions, of all discs together, before which random placement never fails."""
 
 
-WALL = np.dtype([("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8")], align=True)
-"""Start of a wall, and the way from there to its end, length."""
+WALL = np.dtype([("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8"), ("radius", "f8")], align=True)
+"""Start of a wall, the way from there to its end, and the radius of a fixed disc, length."""
 
 
 class Grid(NamedTuple):
@@ -60,39 +60,40 @@ def make_grid(
     """Empty grid with about one disc per cell.
 
     box: width and height, length. radius: (N,), length. periodic: whether the sides along x and along y are periodic.
-    walls: (W, 4), x, y of the start and x, y of the end of each wall, length.
+    walls: (W, 5), x, y of the start and x, y of the end of each wall, and the radius of a fixed disc, length.
     """
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
     shape = [max(int(length / side), 1) for length in box]
     size, period = np.array(box) / shape, np.where(periodic, box, 0.0)
-    images = _images(np.empty((0, 4)) if walls is None else walls, period)
+    images = _images(np.empty((0, 5)) if walls is None else walls, period)
     near = [_cells_near(wall, shape, size, largest) for wall in images]
     cell = np.concatenate([*near, np.empty(0, np.int64)])
     item = np.repeat(np.arange(len(images)), [len(cells) for cells in near])
     order = np.argsort(cell, kind="stable")
     start = np.searchsorted(cell[order], np.arange(shape[0] * shape[1] + 1))
     first, behind = np.full(shape, -1, np.int32), np.full(len(radius), -1, np.int32)
-    made = np.hstack((images[:, :2], images[:, 2:] - images[:, :2])).view(WALL).reshape(-1).view(np.recarray)
+    columns = np.hstack((images[:, :2], images[:, 2:4] - images[:, :2], images[:, 4:]))
+    made = columns.view(WALL).reshape(-1).view(np.recarray)
     (width, height), (period_x, period_y) = size.tolist(), period.tolist()
     return Grid(first, behind, width, height, period_x, period_y, made, start, item[order])
 
 
 def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
-    """Walls (W, 4) and their images next to the box along periodic axes."""
+    """Walls (W, 5) and their images next to the box along periodic axes."""
     shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
-    return np.concatenate([walls + np.array((dx, dy, dx, dy)) for dx in shifts[0] for dy in shifts[1]])
+    return np.concatenate([walls + np.array((dx, dy, dx, dy, 0.0)) for dx in shifts[0] for dy in shifts[1]])
 
 
 def _cells_near(wall: np.ndarray, shape: list[int], size: np.ndarray, reach: float) -> np.ndarray:
     """Indices of the cells of which a point may be within reach (length) of a wall."""
-    ends = wall.reshape(2, 2)
+    ends, reach = wall[:4].reshape(2, 2), reach + wall[4]
     along = ends[1] - ends[0]
     low, high = ends.min(axis=0) - reach, ends.max(axis=0) + reach
     ranges = [np.arange(*np.clip((low[a] // size[a], high[a] // size[a] + 1), 0, shape[a]).astype(int)) for a in (0, 1)]
     column, row = (axis.ravel() for axis in np.meshgrid(*ranges))
     centre = (np.column_stack((column, row)) + 0.5) * size - ends[0]
-    foot = np.clip(centre @ along / (along @ along), 0.0, 1.0)[:, None] * along
+    foot = np.clip(centre @ along / (along @ along or 1.0), 0.0, 1.0)[:, None] * along
     near = np.hypot(*(centre - foot).T) <= (reach + np.hypot(*size) / 2) * (1 + 1e-9)
     return (column * shape[1] + row)[near]
 
@@ -157,10 +158,12 @@ def _is_clear(grid, cell, x, y, reach):
         dx = x - wall.x
         dy = y - wall.y
         along = dx * wall.along_x + dy * wall.along_y
-        share = min(max(along / (wall.along_x * wall.along_x + wall.along_y * wall.along_y), 0.0), 1.0)
+        squared = wall.along_x * wall.along_x + wall.along_y * wall.along_y
+        share = min(max(along / squared, 0.0), 1.0) if squared > 0.0 else 0.0
         dx -= share * wall.along_x
         dy -= share * wall.along_y
-        if dx * dx + dy * dy < reach * reach:
+        contact = reach + wall.radius
+        if dx * dx + dy * dy < contact * contact:
             return False
     return True
 

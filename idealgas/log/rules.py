@@ -293,7 +293,7 @@ def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:
             raise ValueError(f"not the sides of a box of {box[0]:g} by {box[1]:g} (got {wall.start} to {wall.end})")
     for wall in walls[len(SIDES) :]:
         inside = all(0 <= end[axis] <= box[axis] for end in (wall.start, wall.end) for axis in range(2))
-        if not inside or wall.start == wall.end:
+        if not inside:
             raise ValueError(f"not a segment in the box ({wall.start} to {wall.end})")
 
 

@@ -45,7 +45,7 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         "angular_velocity": spin,
         "species": [discs.species_names[k] for k in discs.species.tolist()],
     }
-    walls = [wall for wall in scene.wall if wall.is_there(time)]
+    walls = [wall for wall in scene.walls if wall.is_there(time)]
     return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
 
 
@@ -62,7 +62,7 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
     numbers = dict(zip(log.discs.species_names, np.bincount(log.discs.species).tolist(), strict=False))
     update: dict[str, Any] = {
         "start": Start(log=source, time=time),
-        "disc": (),
+        "disc": tuple(disc for disc in scene.disc if disc.fixed),
         "box": scene.box.after(time),
         "species": tuple(s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species),
         "wall": tuple(later for wall in scene.wall if (later := wall.later(time)) is not None),

@@ -17,6 +17,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 from matplotlib.patheffects import Normal, Stroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
@@ -252,6 +253,10 @@ class Painter:
         self._walls: list[Artist] = []
         self._names: list[Artist] = []
         for wall in self._inside:
+            if wall.radius:
+                self._walls.append(axes.add_patch(Circle(wall.start, wall.radius, color=self._ink, animated=True)))
+                self._names.append(self._name(axes, "", wall.start))
+                continue
             (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color=self._ink, linewidth=1.5, animated=True)
             self._walls.append(line)
             self._names.append(self._name(axes, wall.name, max(wall.start, wall.end, key=lambda end: end[1])))

@@ -1,5 +1,7 @@
 """Contact of a disc with a straight wall segment: with its body or with one of its two end points.
 
+A fixed disc is a segment of no length whose end points have a radius.
+
 In coordinates of the segment, d and s are the disc's normal and tangential position (length) from the start point, vn
 and vt its velocity (length/time), an and at its acceleration (length/time²).
 """
@@ -20,6 +22,7 @@ SEGMENT = np.dtype(
         ("x", "f8"), ("y", "f8"),  # start point, length
         ("tx", "f8"), ("ty", "f8"),  # unit tangent
         ("length", "f8"),  # distance of the two end points
+        ("radius", "f8"),  # of the end points: that of a fixed disc, else 0
         ("active", "?"),  # whether it is present in this epoch
     ],
     align=True,
@@ -82,9 +85,9 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
 
 
 @inline
-def straight_end_delay(x, y, disc):
-    """Time until a disc in straight flight, at (x, y) from an end of a segment, touches that end; else NEVER."""
-    meets, delay = collision_delay(x, y, disc.vx, disc.vy, disc.r)
+def straight_end_delay(x, y, disc, reach):
+    """Time until a disc in straight flight, at (x, y) from an end of a segment, is within reach of it; else NEVER."""
+    meets, delay = collision_delay(x, y, disc.vx, disc.vy, reach)
     return delay if meets else NEVER
 
 
@@ -107,17 +110,17 @@ def moves_off(delay, far, d, s, vn, vt, an, at, length):
 
 
 @inline
-def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, gravity):
+def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, reach, gravity):
     """Time until a disc, at (x, y) from an end of a segment, touches that end; NEVER if it does not.
 
-    far: whether the end is that at arc length `length`.
+    far: whether the end is that at arc length `length`. reach: distance at which they touch, length.
     """
     delay = -1.0
     for _ in range(2):  # on a parabola a disc approaches a point at most twice
         if gravity is not None:
-            delay = first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, disc.r, delay)
+            delay = first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, delay)
         else:
-            delay = straight_end_delay(x, y, disc)
+            delay = straight_end_delay(x, y, disc, reach)
         if delay == NEVER or not moves_off(delay, far, d, s, vn, vt, an, at, length):
             return delay
     return NEVER
@@ -156,9 +159,10 @@ def misses_segment(disc, segment, gravity, periodic, images):
     if gravity is not None:
         return False
     half = 0.5 * segment.length
+    reach = half + disc.r + segment.radius
     x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     meets, _, gap, _ = collision_discriminant(
-        x - half * segment.tx, y - half * segment.ty, disc.vx, disc.vy, (half + disc.r) * (1.0 + 1e-6)
+        x - half * segment.tx, y - half * segment.ty, disc.vx, disc.vy, reach * (1.0 + 1e-6)
     )
     return (gap > 0.0) & (not meets)
 
@@ -187,7 +191,8 @@ def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
     for far in range(2):
         end_x, end_y = x - far * length * tx, y - far * length * ty
-        delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, gravity))
+        reach = disc.r + segment.radius
+        delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, reach, gravity))
     if gravity is None and delay == 0.0:
         nx, ny, _ = segment_normal(disc, segment, periodic, images)
         if not reflection_changes(disc, own, nx, ny, restitution):

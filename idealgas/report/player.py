@@ -23,7 +23,7 @@ from idealgas.movie.order_colours import order_colours
 from idealgas.movie.painter import COLOUR_MAP, CROSSING, PALEST
 from idealgas.movie.panels import BRIGHTEST, FASTEST
 from idealgas.movie.piston_track import piston_track
-from idealgas.scene.walls import walls_inside
+from idealgas.scene.walls import NumberedWall, walls_inside
 
 MOST_ROWS = 600_000
 """Largest number of event rows in a page, about 19 MB."""
@@ -92,7 +92,7 @@ def player(log: Log, start: float | None = None, rows: int = MOST_ROWS, order: b
             for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
         ],
         "walls": [
-            {"name": w.name, "from": w.start, "to": w.end, "absent": np.minimum(w.absences, 2 * last + 1).tolist()}
+            {"name": w.name, "from": w.start, "to": w.end, "radius": w.radius, "absent": _absences(w, last)}
             for w in walls_inside(log.scene)
         ],
         "piston": _piston(log, first, last),
@@ -112,6 +112,11 @@ def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
 def _rms_speed(velocity: np.ndarray) -> float:
     """Root-mean-square speed of velocities (N, 2), 1 if nothing moves."""
     return float(np.sqrt((velocity**2).sum(axis=1).mean())) or 1.0
+
+
+def _absences(wall: NumberedWall, last: float) -> list[list[float]]:
+    """Times from and until which a wall is absent, finite ones."""
+    return [[opens, min(closes, 2 * last + 1)] for opens, closes in wall.absences]
 
 
 def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:

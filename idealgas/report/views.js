@@ -83,6 +83,13 @@ class DiscView {
     pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
     pen.lineWidth = 2;
     for (const wall of head.walls) {
+      if (wall.radius > 0) {
+        pen.beginPath();
+        pen.arc(inset + wall.from[0] * scale, height - wall.from[1] * scale, wall.radius * scale, 0, 2 * Math.PI);
+        pen.fillStyle = theme.ink;
+        pen.fill();
+        continue;
+      }
       const open = wall.absent.some(([opens, closes]) => gas.time >= opens && gas.time < closes);
       pen.strokeStyle = open ? theme.soft : theme.ink;
       pen.lineWidth = open ? 1 : 2;

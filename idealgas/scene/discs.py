@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.effects.wall import FixedDisc
+
 EXPLICIT = "disc"
 """Species of given discs that name none."""
 
@@ -89,12 +91,17 @@ def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[in
 
 
 def discs_of_tables(tables: Sequence[Any]) -> Discs:
-    """Discs of the valid tables [[disc]]; None marks the others."""
-    items = [(i, d) for i, d in enumerate(tables) if d is not None]
+    """Discs of the valid tables [[disc]] that are not fixed; None marks invalid ones."""
+    items = [(i, d) for i, d in enumerate(tables) if d is not None and not d.fixed]
     keys = ("position", "velocity", "radius", "mass")
     columns = {key: [getattr(d, key) for _, d in items] for key in keys}
     columns["angular_velocity"] = [d.angular_velocity or 0.0 for _, d in items]
     return make_discs(columns, [d.species or EXPLICIT for _, d in items], [i for i, _ in items])
+
+
+def fixed_discs(tables: Sequence[Any]) -> tuple[FixedDisc, ...]:
+    """Fixed discs of the valid tables [[disc]]."""
+    return tuple(FixedDisc(i, d.position, d.radius) for i, d in enumerate(tables) if d is not None and d.fixed)
 
 
 NO_DISCS = discs_of_tables(())
@@ -108,11 +115,14 @@ class Given:
         discs: the discs.
         update: keys of the table [start] that follow from its state.
         tables: tables [[disc]] from which they were made; None for those of a start.
+        walls: fixed discs of the tables `walls_of`.
     """
 
     discs: Discs = NO_DISCS
     update: Mapping[str, Any] = field(default_factory=dict)
     tables: Sequence[Any] | None = None
+    walls: Sequence[FixedDisc] = ()
+    walls_of: Sequence[Any] = ()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Given)

@@ -15,7 +15,7 @@ from idealgas.effects.properties import ActiveEffect, Properties, combine, lacki
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
 from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
-from idealgas.scene.discs import Discs, Given, discs_of_tables
+from idealgas.scene.discs import Discs, Given, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
 from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
@@ -76,6 +76,13 @@ class Document(_DiscsAndEffects):
         return self._given.discs
 
     @property
+    def walls(self) -> tuple[Any, ...]:
+        """Tables [[wall]], None for invalid ones, then the fixed discs."""
+        if self._given.walls_of is not self.disc:
+            self._given.walls, self._given.walls_of = fixed_discs(self.disc), self.disc
+        return (*self.wall, *self._given.walls)
+
+    @property
     def placed(self) -> list[tuple[int, Species]]:
         """Valid tables [[species]] with their indices, and the number of their discs that are not given as count."""
         given = self.given
@@ -107,8 +114,9 @@ class Document(_DiscsAndEffects):
     def tables_of(self, effect: EffectSpec[Any]) -> Tables:
         """Part of the scene for an effect; while a scene is checked, its box may be missing."""
         own = getattr(self, effect.key) if effect.key else None
+        own = self.walls if effect.key == "wall" else own
         size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())
-        return Tables(own, size, sides, self.wall)
+        return Tables(own, size, sides, self.walls)
 
     @property
     def active_effects(self) -> tuple[ActiveEffect, ...]:

@@ -101,7 +101,8 @@ def gas_digest(scene: Scene) -> str:
     left_out = ("scene", "run", "log", "species", "disc", "start")
     rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
     box = {side: "thermal" if "thermal" in value else value for side, value in rest["box"].items()}
-    return _digest([sorted(_discs(scene).items()), rest | {"box": box}])
+    fixed = [[*wall.start, wall.radius] for wall in scene.walls if wall.radius]
+    return _digest([sorted(_discs(scene).items()), rest | {"box": box}, *fixed])
 
 
 def gas_kind(scene: Scene) -> str:

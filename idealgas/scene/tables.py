@@ -101,7 +101,7 @@ class Species(Table):
 
 
 class Disc(Table):
-    """`[[disc]]`: one disc."""
+    """`[[disc]]`: one disc. A fixed one is a wall, not a disc of the gas: only its position and radius count."""
 
     position: Vector = Field(description="[x, y] of the centre, length")
     velocity: Vector = Field(default=(0.0, 0.0), description="[vx, vy], length/time")
@@ -111,6 +111,7 @@ class Disc(Table):
     species: Word | None = Field(
         default=None, description='its species, one of [[species]] or another; if absent "disc"'
     )
+    fixed: bool | None = Field(default=None, description="whether it never moves: a scatterer")
 
 
 Instant = Annotated[

@@ -11,13 +11,17 @@ if TYPE_CHECKING:
 
 
 class NumberedWall(NamedTuple):
-    """Wall with name, ends (length), description of its action, and times from and until which it is absent."""
+    """Wall with name, ends (length), description of its action, and times from and until which it is absent.
+
+    radius: of a fixed disc, whose ends are its centre, length; 0 for others.
+    """
 
     name: str
     start: Point
     end: Point
     action: str
     absences: tuple[tuple[float, float], ...] = ()
+    radius: float = 0.0
 
     @property
     def is_gate(self) -> bool:
@@ -37,8 +41,9 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         if scene.piston and scene.piston.side == name:
             action = scene.piston.action
         walls.append(NumberedWall(name, *ends, action))
-    for k, wall in enumerate(scene.wall, FIRST_SEGMENT):
-        walls.append(NumberedWall(wall.name or f"wall {k}", wall.start, wall.end, wall.action, wall.absences))
+    for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
+        name = wall.name or f"wall {k}"
+        walls.append(NumberedWall(name, wall.start, wall.end, wall.action, wall.absences, wall.radius))
     return walls
 
 

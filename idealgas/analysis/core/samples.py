@@ -63,6 +63,7 @@ def face_directions(log: Log) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors (F, 2) into every face and along it, in the directions in which push and drag count."""
     ends = np.array([(wall.start, wall.end) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2, 2)
     way = ends[:, 1] - ends[:, 0]
+    way[~way.any(axis=1), 0] = 1.0  # fixed discs
     tangent = way / np.hypot(*way.T)[:, None]
     right = np.column_stack((tangent[:, 1], -tangent[:, 0]))  # into the face on the left
     into = np.concatenate((OUTWARD, np.stack((right, -right), axis=1).reshape(-1, 2)))

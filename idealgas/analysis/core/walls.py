@@ -39,6 +39,7 @@ class WallImpulses:
     def __init__(self, log: Log) -> None:
         """Take the walls of a log."""
         along = np.array([np.subtract(wall.end, wall.start) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2)
+        along[~along.any(axis=1), 0] = 1.0  # fixed discs
         along /= np.hypot(*along.T)[:, None]
         self.normals = np.concatenate((-np.array(OUTWARD), np.column_stack((-along[:, 1], along[:, 0]))))
 
@@ -144,7 +145,7 @@ class WallGauge:
         """Faces of sides that are not periodic and of wall segments; edges: (B + 1,), times between the blocks."""
         found = []
         for k, wall in enumerate(number_walls(self._log.scene)):
-            if k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]:
+            if wall.radius or (k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]):
                 continue
             exposed = self._exposed(k, wall.start, wall.end, wall.absences, edges)
             if not exposed.any():

@@ -245,7 +245,8 @@ def _chambers(log: Log, window: Window) -> tuple[str, ...]:
         places = [(wall.start[axis_of(k)], wall.end[axis_of(k)]) for k in range(len(SIDES))]
         meets = [k for k, ends in enumerate(places) if log.box[axis_of(k)] * (k % 2) in ends]
         met = [SIDES[k] for k in meets if chambers.divided_gas(k, wall.start[1 - axis_of(k)])]
-        if met and not any(opens <= window.start < window.end <= closes for opens, closes in wall.absences):
+        absent = any(opens <= window.start < window.end <= closes for opens, closes in wall.absences)
+        if met and not absent and not wall.radius:
             found.append(
                 f"{wall.name} meets the {' and the '.join(met)} wall: the pressure there is a mean over both its sides."
             )

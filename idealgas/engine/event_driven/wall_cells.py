@@ -54,6 +54,7 @@ def images_to_item(walls, entry, own, periodic):
 
 def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
     """Indices of the cells that may have a point within reach (length) of an image of a segment."""
+    reach += segment.radius
     start = np.array([segment.x + image[0] * cells.Lx, segment.y + image[1] * cells.Ly])
     tangent = np.array([segment.tx, segment.ty])
     length = segment.length

@@ -38,10 +38,14 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from found  # before anything that takes long for so many
         return
     box = None if "box" in invalid else scene.box
-    if not scene.species and not scene.disc and scene.start is None:
+    mobile = [i for i, disc in enumerate(scene.disc) if disc is None or not disc.fixed]
+    if not scene.species and not mobile and scene.start is None:
         yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]], or [start]")
-    if scene.disc and scene.start is not None:
-        yield Issue((("disc", 0), ("start",)), "discs of their own beside a start", "[[disc]]", "[start] alone")
+    for i, disc in _valid(scene.disc):
+        if disc.fixed and any(disc.velocity):
+            yield Issue((("disc", i, "velocity"), ("disc", i, "fixed")), "fixed", str(list(disc.velocity)), "[0, 0]")
+    if mobile and scene.start is not None:
+        yield Issue((("disc", mobile[0]), ("start",)), "discs of their own beside a start", "[[disc]]", "[start] alone")
     yield from species_issues(scene)
     yield from overlap_issues(scene, box)
     if "rotation" not in invalid:
@@ -80,7 +84,7 @@ def _size_issues(scene: Document) -> Iterator[Issue]:
     names = {s.name for s in scene.species if s is not None} | set(scene.given.names)
     for key, what, number, most in (
         ("species", "species", len(names), MOST_SPECIES),
-        ("wall", "walls", len(scene.wall), MOST_WALLS),
+        ("wall", "walls", len(scene.walls), MOST_WALLS),
         ("species", "discs", scene.number_of_discs, MOST_DISCS),
     ):
         if number > most:

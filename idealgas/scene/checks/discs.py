@@ -210,7 +210,7 @@ def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> It
     key: Key = ("species", i, "placement")
     others = [f"species.{k}.placement = {s.placement}" for k, s in kinds if s.placement != "compressed"]
     others += ["[start]" if scene.start else "[[disc]]"] if len(scene.given) else []
-    others += ["[[wall]]"] if scene.wall else []
+    others += ["[[wall]]"] if scene.walls else []
     if others:
         allowed = "compressed for all species, and no [[disc]], [start] or [[wall]]"
         yield Issue((key,), "compressed beside what is not", ", ".join(others), allowed)

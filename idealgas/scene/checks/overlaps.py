@@ -178,7 +178,8 @@ def wall_overlaps(
     along, largest = centre[order, 0], float(discs.radius.max(initial=0.0))
     for i, wall in walls.items():
         ends = sorted((wall.start[0], wall.end[0]))
-        near = order[along.searchsorted(ends[0] - largest) : along.searchsorted(ends[1] + largest, "right")]
+        reach = largest + wall.radius
+        near = order[along.searchsorted(ends[0] - reach) : along.searchsorted(ends[1] + reach, "right")]
         distance = distance_to_wall(centre[near], wall)
         for k in np.flatnonzero(distance < (discs.radius - slack)[owner[near]]).tolist():
             yield int(owner[near[k]]), i, float(distance[k])
@@ -187,22 +188,23 @@ def wall_overlaps(
 def discs_in_walls(scene: Document) -> Iterator[Issue]:
     """Check given discs that overlap a wall present at the start, at most MOST_OVERLAPS."""
     found: dict[tuple[int, int], float] = {}
-    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.wall) if wall is not None and wall.is_there(0.0)}
-    walls = {i: wall for i, wall in walls.items() if not list(wall_issues(box.size, i, wall))}
+    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_there(0.0)}
+    walls = {i: wall for i, wall in walls.items() if wall.radius or not list(wall_issues(box.size, i, wall))}
     for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
         found[k, i] = min(distance, found.get((k, i), math.inf))
         if len(found) == MOST_OVERLAPS:
             break
     for (k, i), distance in sorted(found.items()):
         number, radius = int(scene.given.index[k]), scene.given.radius[k]
-        keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), ("wall", i))
-        wrong = f"{label(scene, number)}overlaps wall {i}"
+        place: Key = getattr(walls[i], "place", ("wall", i))
+        keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
+        wrong = f"{label(scene, number)}overlaps {walls[i].name if walls[i].radius else f'wall {i}'}"
         yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
 
 
 def distance_to_wall(points: np.ndarray, wall: Wall) -> np.ndarray:
-    """Distances of points (M, 2) from a wall."""
+    """Distances of points (M, 2) from a wall, from the rim of a fixed disc."""
     start = np.array(wall.start)
     along = np.array(wall.end) - start
-    share = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
-    return np.hypot(*(points - start - share[:, None] * along).T)
+    share = np.clip((points - start) @ along / (along @ along or 1.0), 0.0, 1.0)
+    return np.hypot(*(points - start - share[:, None] * along).T) - wall.radius

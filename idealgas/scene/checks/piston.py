@@ -132,10 +132,11 @@ def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
         depth = least_depth(scene, piston.axis)
     else:
         depth = min(_depth(scene, piston, place) for place, _ in _places(scene, piston))
-    for i, wall in enumerate(scene.wall):
-        reach = max(_depth(scene, piston, wall.start[piston.axis]), _depth(scene, piston, wall.end[piston.axis]))
+    for i, wall in enumerate(scene.walls):
+        reach = wall.radius + max(_depth(scene, piston, end[piston.axis]) for end in (wall.start, wall.end))
         if reach > depth:
-            keys: tuple[Key, ...] = (("wall", i), ("piston", "position"), ("piston", "velocity"), ("run", "until"))
+            place: Key = getattr(wall, "place", ("wall", i))
+            keys: tuple[Key, ...] = (place, ("piston", "position"), ("piston", "velocity"), ("run", "until"))
             why = ", where it cannot come" if piston.mass is None else WAY
             allowed = f"no farther than {depth:.6g}{why}"
             yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {_facing(piston)} side", allowed)

@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:.*enco
 def segment(start, end) -> SimpleNamespace:
     (x, y), across = start, np.subtract(end, start)
     length = math.hypot(*across)
-    return SimpleNamespace(x=x, y=y, tx=across[0] / length, ty=across[1] / length, length=length)
+    return SimpleNamespace(x=x, y=y, tx=across[0] / length, ty=across[1] / length, length=length, radius=0.0)
 
 
 def test_straight_flight_to_the_body():
@@ -177,7 +177,7 @@ def test_straight_flight_to_an_end():
         for x, y, vx, vy in draw.normal(size=(400, 4)):
             if math.hypot(x, y) < 0.3:
                 continue
-            found = straight_end_delay(x, y, body(vx=vx, vy=vy, r=0.3))
+            found = straight_end_delay(x, y, body(vx=vx, vy=vy, r=0.3), 0.3)
             a, b, p, q, r = map(exact, (x, y, vx, vy, 0.3))
             square, approach = p * p + q * q, a * p + b * q
             D = square * r * r - (p * b - q * a) ** 2
@@ -189,15 +189,40 @@ def test_straight_flight_to_an_end():
             largest = abs(a) + abs(b) + r
             assert abs(found - delay) <= 4 * U * (largest * condition + delay)
             if x < 0:  # beyond the end of a wall that goes on along x
-                assert end_delay(x, y, 0, y, x, vy, vx, 0.0, 0.0, 9.0, body(vx=vx, vy=vy, r=0.3), None) == found
+                assert end_delay(x, y, 0, y, x, vy, vx, 0.0, 0.0, 9.0, body(vx=vx, vy=vy, r=0.3), 0.3, None) == found
     assert met > 30
 
 
 def test_an_end_is_met_from_outside_only():
     """Of a disc that a gate closed over: it comes out of reach of the end, and back, before it counts."""
     inside = body(vx=-1.0, vy=0.0, r=0.5)
-    assert straight_end_delay(0.4, 0.0, inside) == 0.0
-    assert end_delay(0.4, 0.0, 0, 0.0, 0.4, 0.0, -1.0, 0.0, 0.0, 2.0, inside, None) == NEVER
+    assert straight_end_delay(0.4, 0.0, inside, inside.r) == 0.0
+    assert end_delay(0.4, 0.0, 0, 0.0, 0.4, 0.0, -1.0, 0.0, 0.0, 2.0, inside, inside.r, None) == NEVER
+
+
+@pytest.mark.parametrize("gravity", [None, Gravity(0.3, -0.7)])
+def test_a_fixed_disc_is_met_as_a_disc_that_stays(gravity):
+    """A segment of no length, with a radius: at the contact the centres are R + r apart, to the rounding of a place."""
+    draw = np.random.default_rng(8)
+    fixed = SimpleNamespace(x=0.5, y=-0.25, tx=1.0, ty=0.0, length=0.0, radius=0.8)
+    met = 0
+    for x, y, vx, vy in draw.normal(size=(300, 4)) * (2, 2, 1, 1):
+        disc = body(x=float(x), y=float(y), vx=float(vx), vy=float(vy), r=0.3, t=0.0)
+        away = math.hypot(x - fixed.x, y - fixed.y)
+        time = segment_contact(disc, 0, fixed, gravity, None, None, NO_IMAGES)
+        if gravity is None and away > 1.1:
+            assert time == straight_end_delay(x - 0.5, y + 0.25, disc, 0.3 + 0.8)
+            assert time < NEVER or misses_segment(disc, fixed, None, None, NO_IMAGES)
+        if away > 1.1 and time < NEVER:
+            met += 1
+            g = gravity or Gravity(0.0, 0.0)
+            there = SimpleNamespace(x=x + vx * time + g.x * time**2 / 2, y=y + vy * time + g.y * time**2 / 2)
+            away = math.hypot(there.x - fixed.x, there.y - fixed.y)
+            assert away == pytest.approx(1.1, abs=20 * U * (4 + time * math.hypot(vx, vy) + time**2))
+            nx, ny, at_end = segment_normal(there, fixed, None, NO_IMAGES)
+            assert at_end
+            assert (nx, ny) == pytest.approx(((there.x - 0.5) / away, (there.y + 0.25) / away), abs=4 * U)
+    assert met > 20
 
 
 def test_normals():
