@@ -20,7 +20,7 @@ def info(log: Log) -> dict[str, Any]:
         "file": {
             "path": str(log.path),
             "bytes": os.path.getsize(log.path),
-            **log.attributes,
+            **{name: value for name, value in log.attributes.items() if name != "seed"},
             "command": log.command,
             "state": log.run_state,
         },

@@ -181,7 +181,6 @@ def temperature_figure(result: Temperature) -> "Figure":
         ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
     ax.time_axis()
     ax.set_ylabel("temperature (energy, k_B = 1)")
-    ax.ticklabel_format(useOffset=False)
     low, high = ax.get_ylim()
     middle, reach = (low + high) / 2, max(high - low, LEAST_RANGE * (low + high)) / 2
     ax.set_ylim(middle - reach, middle + reach)

@@ -23,6 +23,8 @@ SHORTEST = 1e-6
 """Shortest shared edge of two neighbours that are counted, in mean distances: shorter ones come from rounding, where
 four discs or more stand on a circle."""
 
+SAME = "neighbours cannot be found: two discs have the same position"
+
 ROUNDING = 1e-9
 """How far outside the box a position may be, in box lengths."""
 
@@ -52,15 +54,21 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
     if (np.abs(position / box - 0.5) > 0.5 + ROUNDING).any():
         raise UserError("neighbours cannot be found: a disc is outside the box")
     number, spacing = len(position), math.sqrt(box[0] * box[1] / len(position))
+    open_sides = np.array(periodic)
+    low, high = np.where(open_sides, -np.inf, 0.0), np.where(open_sides, np.inf, box)
     margin = MARGIN * spacing
     while True:
-        points, real = _with_images(position, box, periodic, margin)
-        pairs, edges, far = _edges(points, number)
-        covered = [margin if wrapped or margin < size else np.inf for wrapped, size in zip(periodic, box, strict=True)]
-        if far is not None and (far[:, 0] >= -np.array(covered)).all() and (far[:, 1] <= box + np.array(covered)).all():
+        points = _with_images(position, box, periodic, margin)
+        pairs, ends = _edges(points, number, 3 * (np.array(box) + 2 * margin))
+        ends, inside = _clipped(ends, low, high)
+        pairs = pairs[inside]
+        radius = np.hypot(*np.moveaxis(ends - points[pairs[:, :1]], 2, 0))[..., None]
+        known = (ends - radius >= -margin) & (ends + radius <= np.array(box) + margin)  # circles that hide no image
+        if known[..., open_sides].all():
             break
         margin *= 2
-    shared = real[pairs].all(axis=1) & (edges > SHORTEST * spacing)
+    edges = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    shared = edges > SHORTEST * spacing
     pairs, edges = pairs[shared], edges[shared]
     bond = points[pairs[:, 1]] - points[pairs[:, 0]]
     turns = edges * np.exp(1j * FOLD * np.arctan2(bond[:, 1], bond[:, 0]))
@@ -75,40 +83,45 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
 
 def _with_images(
     position: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool], margin: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (M, 2), first those of the discs, and whether a disc is there (M,): not at mirror images in a side.
-
-    Images reach as far as `margin` (length) beyond the box. A side is the edge between a disc and its mirror image.
-    """
-    points, real = position, np.ones(len(position), bool)
+) -> np.ndarray:
+    """Positions (M, 2) of the discs, then of their images up to `margin` (length) beyond periodic sides."""
+    points = position
     for axis, (size, wrapped) in enumerate(zip(box, periodic, strict=True)):
-        unit = np.arange(2) == axis
         if wrapped:
             copies = math.ceil(margin / size)
-            images = [points + n * size * unit for n in range(-copies, copies + 1) if n]
-        else:
-            images = [np.where(unit, 2 * side - points, points) for side in (0.0, size)]
-        beyond, there = np.concatenate(images), np.tile(real & wrapped, len(images))
-        near = (beyond[:, axis] >= -margin) & (beyond[:, axis] <= size + margin)
-        points, real = np.concatenate((points, beyond[near])), np.concatenate((real, there[near]))
-    return points, real
+            images = [points + n * size * (np.arange(2) == axis) for n in range(-copies, copies + 1) if n]
+            beyond = np.concatenate(images)
+            near = (beyond[:, axis] >= -margin) & (beyond[:, axis] <= size + margin)
+            points = np.concatenate((points, beyond[near]))
+    return points
 
 
-def _edges(points: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-    """Pairs (E, 2) of points that share an edge, one of them among the first `number`, and the edges' lengths (E,).
+def _edges(points: np.ndarray, number: int, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs (E, 2) of points that share an edge, one of them among the first `number`, and the edges' ends (E, 2, 2).
 
-    Third, the lowest and highest coordinates of the circle around each corner of these cells that is free of points,
-    (C, 2, 2): where the points are not all known, such a circle may hide one. None if a cell is open.
+    Four more points, further `away` (2,) from the first one than any place in the box is from a disc, close all cells.
     """
+    frame = points[0] + away * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
     try:
-        diagram = Voronoi(points)
+        diagram = Voronoi(np.concatenate((points, frame)))
     except (QhullError, ValueError):
-        raise UserError("neighbours cannot be found: two discs have the same position") from None
-    own = (diagram.ridge_points < number).any(axis=1)
-    pairs, ends = diagram.ridge_points[own], np.array(diagram.ridge_vertices)[own]
-    if (ends < 0).any():
-        return pairs, np.zeros(len(pairs)), None
-    corners = diagram.vertices[ends]
-    radius = np.hypot(*np.moveaxis(corners - points[pairs[:, :1]], 2, 0))[..., None]
-    far = np.stack((corners - radius, corners + radius), axis=2).reshape(-1, 2, 2)
-    return pairs, np.hypot(*(corners[:, 1] - corners[:, 0]).T), far
+        raise UserError(SAME) from None
+    pairs = diagram.ridge_points
+    if len(np.unique(pairs)) < len(points) + len(frame):  # a point without a cell
+        raise UserError(SAME)
+    own = (pairs < number).any(axis=1) & (pairs < len(points)).all(axis=1)
+    return pairs[own], diagram.vertices[np.array(diagram.ridge_vertices)[own]]
+
+
+def _clipped(ends: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Ends (K, 2, 2) of the parts of edges between coordinates `low` and `high` (2,), and which edges have one (E,)."""
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = np.stack(((low - start) / along, (high - start) / along))
+    still = along == 0
+    at[0][still], at[1][still] = -np.inf, np.inf
+    outside = (still & ((start < low) | (start > high))).any(axis=1)
+    first, last = np.maximum(at.min(axis=0).max(axis=1), 0.0), np.minimum(at.max(axis=0).min(axis=1), 1.0)
+    inside = (first < last) & ~outside
+    share = np.stack((first, last), axis=1)[inside, :, None]
+    return start[inside, None] + share * along[inside, None], inside

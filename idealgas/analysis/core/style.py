@@ -163,6 +163,7 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
     axes = [cast(Panel, figure.add_subplot(rows, columns, k + 1, axes_class=Panel)) for k in range(rows * columns)]
     for ax in axes:
         ax.grid(color=GRID, linewidth=0.6)
+        ax.ticklabel_format(useOffset=False)
         ax.set_axisbelow(True)
         ax.spines[["top", "right"]].set_visible(False)
         ax.spines[["bottom", "left"]].set_in_layout(False)  # numbers of the axes reach farther

@@ -26,6 +26,9 @@ POINTS = 256
 """Number of points of the track of a piston."""
 
 MOST_BINS = 64
+STATES = 16
+"""Largest number of pressures that are drawn against the area."""
+
 HITS = 32
 """Mean number of hits of walls in a bin, at least, if there is more than one bin."""
 
@@ -137,9 +140,12 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
 
 def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
     """Draw pressure against time, and the external pressure on a piston, or the adiabat of a piston that is moved."""
-    from idealgas.analysis.core.style import BLACK
+    from idealgas.analysis.core.style import BLACK, COLOURS
 
-    _draw_walls(ax, series, series.middles, fmt="o")
+    for name, colour in zip(series.shown, COLOURS, strict=False):
+        p, error = series.pressure[name], series.error[name]
+        ax.errorbar(series.middles, p, error, fmt="o", ms=3, color=colour, elinewidth=0.8, label=f"P on {name}")
+    ax.set_ylabel("pressure (energy/length²)")
     if law and law.pressure:
         ax.axhline(law.pressure, ls="--", color=BLACK, label="theory: external pressure")
     elif law and series.lines and series.lines.adiabat is not None:
@@ -148,25 +154,22 @@ def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
 
 
 def draw_state(ax: "Panel", series: PressureSeries) -> None:
-    """Draw pressure against area, in order of time, with isotherm and adiabat."""
-    from idealgas.analysis.core.style import GREY
+    """Draw pressure against area, with arrows in the order of time, and with isotherm and adiabat."""
+    from idealgas.analysis.core.style import COLOURS, GREY
 
-    _draw_walls(ax, series, series.area, fmt="o-", lw=0.5)
+    for name, colour in zip(series.shown, COLOURS, strict=False):
+        groups = np.array_split(np.arange(len(series.area)), min(len(series.area), STATES))
+        area, pressure = (
+            np.array([values[k].mean() for k in groups]) for values in (series.area, series.pressure[name])
+        )
+        error = [math.hypot(*series.error[name][k]) / len(k) for k in groups]
+        ax.errorbar(area, pressure, error, fmt="o", ms=3, color=colour, elinewidth=0.8, label=f"P on {name}, in time")
+        along: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.003, "headwidth": 6}
+        ax.quiver(area[:-1], pressure[:-1], np.diff(area), np.diff(pressure), color=colour, alpha=0.5, **along)
     if lines := series.lines:
         middle = series.area.mean()
         near = np.abs(lines.area - middle) <= WIDER * np.abs(series.area - middle).max()
         ax.plot(lines.area[near], lines.isotherm[near], "--", color=GREY, label="isotherm through the start")
         if lines.adiabat is not None:
             ax.plot(lines.area[near], lines.adiabat[near], "-", color=GREY, label="adiabat through the start")
-    ax.in_time = False
-    ax.set_xlabel("area of the gas (length²)")
-
-
-def _draw_walls(ax: "Panel", series: PressureSeries, x: np.ndarray, **style: Any) -> None:
-    """Draw the pressure on the walls with its error bars against x (B,)."""
-    from idealgas.analysis.core.style import COLOURS
-
-    for name, colour in zip(series.shown, COLOURS, strict=False):
-        p, error = series.pressure[name], series.error[name]
-        ax.errorbar(x, p, error, ms=3, color=colour, elinewidth=0.8, label=f"P on {name}", **style)
-    ax.set_ylabel("pressure (energy/length²)")
+    ax.set(xlabel="area of the gas (length²)", ylabel="pressure (energy/length²)")

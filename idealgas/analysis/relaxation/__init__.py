@@ -310,7 +310,7 @@ def _draw(axes: "Sequence[Panel]", found: Relaxations, in_time: bool) -> None:
             model = target + (start - target) * np.exp(-(x - x[0]) / fit.value)
             kurtosis.plot(x, model, color=colour, linewidth=2.5, alpha=0.35, label="fitted exponential")
         distance.plot(x, result.distance, line, color=colour, linewidth=1.2, label=name)
-        beyond = "1 in 20 gases is beyond it"
+        beyond = "exceeded in 5 % of equilibrium gases"
         distance.axhline(result.critical_distance, color=colour, linestyle=":", linewidth=1, label=beyond)
         entropy.plot(x, result.entropy, line, color=colour, linewidth=1.2, label=name)
         for ax in axes:
@@ -323,6 +323,6 @@ def _draw(axes: "Sequence[Panel]", found: Relaxations, in_time: bool) -> None:
     distance.yaxis.set_major_formatter("{x:g}")
     distance.yaxis.set_minor_locator(NullLocator())
     entropy.axhline(0, color=BLACK, linestyle="--", label="equilibrium")
-    entropy.set_ylabel("H less that of equilibrium, per disc (no unit)")
+    entropy.set_ylabel("H − H in equilibrium, per disc (no unit)")
     for ax in axes:
         ax.legend()

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import time
 
 import numpy as np
 import pytest
@@ -103,6 +104,21 @@ def test_100_states_of_a_fluid_have_no_common_direction():
     assert gas.packing_fraction == pytest.approx(0.3, abs=1e-6)
     assert np.mean(found) < 4
     assert np.mean(found) > 0.3  # and they have an order, each of its own
+
+
+def test_an_uneven_gas_takes_as_long_as_an_even_one():
+    """Cells that sides cut off need no mirror images: 0.2 s for this state with them, 0.009 s without."""
+    rng = np.random.default_rng(1)
+    heights = np.minimum(rng.exponential(5.0, 1000), 60.0)
+    uneven = np.column_stack((rng.uniform(0, 10, 1000), heights))
+    even = rng.random((1000, 2)) * (10.0, 60.0)
+
+    def seconds(position):
+        started = time.process_time()
+        bond_order(position, (10.0, 60.0), (False, False))
+        return time.process_time() - started
+
+    assert min(seconds(uneven) for _ in range(5)) < 2 * min(seconds(even) for _ in range(5))
 
 
 def test_discs_at_one_place_are_refused():

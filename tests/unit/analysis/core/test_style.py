@@ -18,3 +18,11 @@ def test_a_legend_has_each_label_once_and_leaves_room_for_the_panel():
     assert names == [*(f"gas {k}" for k in range(2 * LEGEND_ROWS - 1)), f"and {50 - 2 * LEGEND_ROWS + 1} more"]
     figure.draw_without_rendering()
     assert ax.get_position().height > 0.2
+
+
+def test_numbers_of_an_axis_are_whole():
+    """Not what has to be added to a number in a corner."""
+    figure, (ax,) = panels(1)
+    ax.plot([0, 1], [1.00001, 1.00002])
+    figure.draw_without_rendering()
+    assert ax.yaxis.get_offset_text().get_text() == ""
