@@ -5,7 +5,7 @@ What never changes is drawn once; a frame restores it and draws only discs, wall
 
 import math
 from collections.abc import Sequence
-from itertools import compress
+from itertools import compress, product
 from typing import Any, Literal, NamedTuple, TypedDict
 
 import numpy as np
@@ -13,7 +13,7 @@ from matplotlib import colormaps, rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import EllipseCollection
+from matplotlib.collections import EllipseCollection, PatchCollection
 from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -254,7 +254,11 @@ class Painter:
         self._names: list[Artist] = []
         for wall in self._inside:
             if wall.radius:
-                self._walls.append(axes.add_patch(Circle(wall.start, wall.radius, color=self._ink, animated=True)))
+                shifts = ((-1, 0, 1) if periodic else (0,) for periodic in self._periodic)
+                (x, y), (width, height) = wall.start, self._gas.box
+                images = [Circle((x + i * width, y + j * height), wall.radius) for i, j in product(*shifts)]
+                discs = PatchCollection(images, facecolor=self._ink, edgecolor="none", animated=True)
+                self._walls.append(axes.add_collection(discs))
                 self._names.append(self._name(axes, "", wall.start))
                 continue
             (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color=self._ink, linewidth=1.5, animated=True)

@@ -77,19 +77,23 @@ class DiscView {
       pen.fillStyle = shades[s];
       pen.fill();
     }
+    pen.fillStyle = theme.ink;
+    for (const wall of head.walls.filter(wall => wall.radius > 0)) { // fixed discs
+      for (const x of head.periodic[0] ? [-boxX, 0, boxX] : [0]) {
+        for (const y of head.periodic[1] ? [-boxY, 0, boxY] : [0]) {
+          pen.beginPath();
+          pen.arc(inset + (wall.from[0] + x) * scale, height - (wall.from[1] + y) * scale, wall.radius * scale, 0, 7);
+          pen.fill();
+        }
+      }
+    }
     if (this.chosen !== null) this.drawFlight(pen, theme, inset, height, scale);
     pen.restore();
     pen.strokeStyle = theme.ink;
     pen.strokeRect(inset + 0.5, 0.5, width - 2 * inset - 1, height - 1);
     pen.lineWidth = 2;
     for (const wall of head.walls) {
-      if (wall.radius > 0) {
-        pen.beginPath();
-        pen.arc(inset + wall.from[0] * scale, height - wall.from[1] * scale, wall.radius * scale, 0, 2 * Math.PI);
-        pen.fillStyle = theme.ink;
-        pen.fill();
-        continue;
-      }
+      if (wall.radius > 0) continue;
       const open = wall.absent.some(([opens, closes]) => gas.time >= opens && gas.time < closes);
       pen.strokeStyle = open ? theme.soft : theme.ink;
       pen.lineWidth = open ? 1 : 2;

@@ -31,6 +31,7 @@ EFFECTS = (
     "piston",
     "thermostat",
     "vibration",
+    "fixed",
 )
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
@@ -173,6 +174,8 @@ def tables_of(draw) -> dict[str, Any]:
         | ({"angular_velocity": random.normal() / radius[k]} if spins else {})
         for k in range(n)
     ]
+    for k in range(1, n, 3) if "fixed" in called else ():
+        discs[k] = {"position": discs[k]["position"], "radius": radius[k], "fixed": True}
     tables = {"box": {"size": list(size)}, "disc": discs, "run": {"until": pick(draw, 3.0, 0.3, 30.0)}}
     tables["run"]["events"] = pick(draw, 10, 30, 30, 100)
     for axis in range(2):

@@ -50,7 +50,7 @@ class InvariantChecker:
         self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
-        self.gates = scene.wall
+        self.gates, self.fixed = scene.wall, scene.walls[len(scene.wall) :]
         self.piston = scene.piston
         self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
         self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
@@ -173,6 +173,9 @@ class InvariantChecker:
         path = self.path(disc, np.concatenate((times, tops[(tops > 0) & (tops < duration)])))
         inside = (path >= radius - self.known) & (path <= self.size - radius + self.known)
         assert (inside | self.periodic).all(), "out of the box"
+        for wall in self.fixed:
+            away = np.hypot(*self.wrapped(path - wall.start).T)
+            assert (away >= radius + wall.radius - self.known - self.sunk[disc]).all(), "in a fixed disc"
         if not len(self.walls):
             return
         low, high = (np.floor(edge / self.size) for edge in (path.min(axis=0) - radius, path.max(axis=0) + radius))
@@ -291,6 +294,13 @@ class InvariantChecker:
             if kind == Kind.PISTON:
                 edge, stand = simulation.effects.piston[0].x, simulation.effects.piston[0].v
             distance = abs(place[axis] - edge)
+        elif wall - 4 >= len(self.gates):
+            fixed = self.fixed[wall - 4 - len(self.gates)]
+            away = place + self.shifts - np.array(fixed.start)
+            distances = np.hypot(*away.T)
+            nearest = np.abs(distances - fixed.radius - radius).argmin()
+            normal, distance = away[nearest] / distances[nearest], distances[nearest] - fixed.radius
+            assert kind == Kind.WALL_END
         else:
             gate = self.gates[wall - 4]
             assert gate.is_there(time), "an open gate"

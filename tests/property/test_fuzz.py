@@ -66,7 +66,7 @@ def watchdog(text: str) -> Iterator[None]:
 
 def fresh_effects(scene: Scene, gas: Gas) -> Effects:
     """All effects but gravity, those not called for without any effect."""
-    n, walls = len(gas), len(scene.wall)
+    n, walls = len(gas), len(scene.walls)
     called = make_effects(scene, gas)
     beyond = aligned(1, PISTON)
     beyond[0].x = beyond[0].stop = math.inf
