@@ -10,7 +10,7 @@ from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along, is_periodic
 from idealgas.physics.piston import is_piston_side
-from idealgas.physics.vibration import is_vibrating, vibrating_contact
+from idealgas.physics.vibration import is_vibrating, misses_side_until, vibrating_contact
 
 U = np.uintp
 
@@ -119,6 +119,8 @@ def keep_vibrating_contact_if_earlier(prediction, disc, own, cells, vibration, e
         for side in range(4):
             if is_vibrating(vibration, side) and not is_periodic(effects.periodic, side >= 2):
                 length = cells.Ly if side >= 2 else cells.Lx
+                if misses_side_until(disc, vibration[U(side)], side, length, effects.gravity, prediction.crossing):
+                    continue
                 time = vibrating_contact(disc, vibration[U(side)], side, length, effects.gravity)
                 code = SIDE_OF_BOX + side
                 if (time < prediction.crossing) | ((time == prediction.crossing) & (code < prediction.crossing_code)):
