@@ -23,6 +23,7 @@ from scipy import stats
 
 from helpers.calibration_cases import CASES, Case
 from idealgas import open_log, parse_scene, simulate
+from idealgas.analysis.core.caveats import of_window
 from idealgas.analysis.core.equilibration import measure as read_window
 from idealgas.errors import NotApplicableError
 
@@ -30,13 +31,16 @@ PART = 50
 """Number of seeds that are stored together."""
 
 KEPT = "share kept"
-"""Name of the share of a log that is used from detected equilibrium on."""
+"""Name of the share of a log that is used from detected equilibrium on, and whether its results have a caveat."""
 
 Found = dict[str, np.ndarray]
 
 
 class Row(NamedTuple):
-    """One row of the table: name of an estimate, number of runs, rms deviation, and share of intervals that hold."""
+    """One row of the table: name of an estimate, number of runs, rms deviation, and share of intervals that hold.
+
+    caveats: share of the runs whose results have a caveat; nan where that is not looked at.
+    """
 
     case: str
     run: str
@@ -44,10 +48,11 @@ class Row(NamedTuple):
     runs: int
     rms: float
     coverage: float
+    caveats: float = math.nan
 
 
 def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
-    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4); of KEPT only the value is known.
+    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4); of KEPT share and caveat.
 
     A log in which chance looks like no equilibrium has no estimates, and a share of 0.
     """
@@ -58,14 +63,16 @@ def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
         with open_log(path) as log:
             try:
                 estimates = list(case.measured(log))
-                share = read_window(log, []).duration / (log.end_time - log.start_time) if case.steady else None
+                window = read_window(log, []) if case.steady else None
+                share = window.duration / (log.end_time - log.start_time) if window else None
+                said = float(bool(window and (of_window(window) or case.caveats(log))))
             except NotApplicableError:
-                estimates, share = [], 0.0
+                estimates, share, said = [], 0.0, 1.0
         for name, one in estimates:
             exact = one.theory if one.theory is not None and one.theory_error == 0 else math.nan
             found.setdefault(name, []).append((one.value, one.standard_error, one.independent_samples, exact))
         if share is not None:
-            found.setdefault(KEPT, []).append((share, math.nan, math.nan, math.nan))
+            found.setdefault(KEPT, []).append((share, said, math.nan, math.nan))
     return {name: np.array(rows) for name, rows in found.items()}
 
 
@@ -119,7 +126,7 @@ def collect(folder: Path, seeds: int, seconds: float = math.inf, only: str = "")
 def rows_of(collected: dict[tuple[str, str], Found]) -> list[Row]:
     """Rows of the table."""
     return [
-        row_of(title, run, name, rows)
+        row_of(title, run, name, rows)._replace(caveats=float(found[KEPT][:, 1].mean()) if KEPT in found else math.nan)
         for (title, run), found in collected.items()
         for name, rows in found.items()
         if name != KEPT
@@ -132,16 +139,21 @@ def kept(collected: dict[tuple[str, str], Found]) -> np.ndarray:
 
 
 def table(rows: list[Row]) -> str:
-    """Table in CSV: for each estimate the rms deviation and the coverage, in short and in long runs."""
+    """Table in CSV: for each estimate rms deviation, coverage and share with a caveat, in short and in long runs."""
     found: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         found.setdefault((row.case, row.name), []).append(row)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("gas", "estimate", "runs", "rms_short", "coverage_short", "rms_long", "coverage_long"))
+    columns = (f"{figure}_{run}" for run in ("short", "long") for figure in ("rms", "coverage", "caveats"))
+    writer.writerow(("gas", "estimate", "runs", *columns))
     for (case, name), entries in found.items():
-        figures = [figure for entry in entries for figure in (f"{entry.rms:.2f}", f"{entry.coverage:.3f}")]
-        figures += [""] * (4 - len(figures))
+        figures = [
+            figure
+            for entry in entries
+            for figure in (f"{entry.rms:.2f}", f"{entry.coverage:.3f}", f"{entry.caveats:.2f}".replace("nan", ""))
+        ]
+        figures += [""] * (6 - len(figures))
         writer.writerow((case, name, min(entry.runs for entry in entries), *figures))
     return text.getvalue()
 

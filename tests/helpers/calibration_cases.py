@@ -1,7 +1,7 @@
 """Gases of the calibration of error bars, and the estimates that are taken of each."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from idealgas import Log, cooling, effusion, heat_capacity, histogram, order, profile, relaxation, sound
@@ -19,8 +19,8 @@ Named = Iterator[tuple[str, Estimate]]
 class Case(NamedTuple):
     """Gas of a calibration: text of its scene, run lengths as text for [run], and what is measured of a log.
 
-    more: text for [log]. steady: whether the gas is in equilibrium from early on. slow: whether its structure
-    relaxes too slowly for right errors, so that results have a caveat.
+    more: text for [log]. steady: whether the gas is in equilibrium from early on. caveats: caveats of results besides
+    that of a window that is short for the slow fluctuations of the gas.
     """
 
     scene: str
@@ -28,7 +28,7 @@ class Case(NamedTuple):
     measured: Callable[[Log], Named]
     more: str = ""
     steady: bool = True
-    slow: bool = False
+    caveats: Callable[[Log], Sequence[str]] = lambda _: ()
 
 
 def box(log: Log) -> Named:
@@ -193,6 +193,20 @@ def equal_speeds(log: Log) -> Named:
     yield from (("relaxation time", found.in_time), ("relaxation, collisions per disc", found.in_collisions))
 
 
+def currents(log: Log) -> Named:
+    """Viscosities and thermal conductivity."""
+    found = transport(log).collective
+    assert found is not None
+    for name, one in found.coefficients.items():
+        yield name.replace("_", " "), one.value
+
+
+def steady_state(log: Log) -> Named:
+    """Pressure of the walls and temperature of a gas that exchanges its kinetic energy."""
+    yield from gauges(log)
+    yield "mean temperature", temperature(log).species[-1].both
+
+
 FIFTY = f"count = 50\nradius = {math.sqrt(0.2 / (50 * math.pi))!r}\n"
 GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "temperature = 1\n"
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
@@ -207,6 +221,9 @@ SLOW = ("collisions_per_disc = 3000", "collisions_per_disc = 6000")
 
 CURRENTS = ("collisions_per_disc = 4000", "collisions_per_disc = 8000")
 """Runs for the spread of currents: the shorter ones have 200 times the longest lag."""
+
+FEW_LAGS = ("collisions_per_disc = 1500", "collisions_per_disc = 3000")
+"""Runs of 75 and 150 times the longest lag of the currents."""
 
 STRUCTURE = ("collisions_per_disc = 300", "collisions_per_disc = 2000")
 """Runs of small dense gases; at packing fraction 0.45 two sizes of discs mix in some 300 collisions per disc."""
@@ -252,14 +269,24 @@ CASES = {
         SLOW,
         mixture,
     ),
-    "small mixture": Case(two_sizes(20, 0.45), STRUCTURE, fluid, slow=True),
-    "mixture of 40": Case(two_sizes(40, 0.45), STRUCTURE, fluid, slow=True),
-    "mixture of 100": Case(two_sizes(100, 0.45), STRUCTURE, fluid, slow=True),
-    "small mixture, 0.3": Case(two_sizes(20, 0.3), STRUCTURE, fluid, slow=True),
-    "mixture of 40, 0.3": Case(two_sizes(40, 0.3), STRUCTURE, fluid, slow=True),
-    "dense box": Case(equal(30, 0.6), STRUCTURE, fluid, slow=True),
+    "small mixture": Case(two_sizes(20, 0.45), STRUCTURE, fluid),
+    "mixture of 40": Case(two_sizes(40, 0.45), STRUCTURE, fluid),
+    "mixture of 100": Case(two_sizes(100, 0.45), STRUCTURE, fluid),
+    "small mixture, 0.3": Case(two_sizes(20, 0.3), STRUCTURE, fluid),
+    "mixture of 40, 0.3": Case(two_sizes(40, 0.3), STRUCTURE, fluid),
+    "dense box": Case(equal(30, 0.6), STRUCTURE, fluid),
     "thermal walls": Case(equal(40, 0.2, THERMAL), STRUCTURE, fluid),
     "small periodic box": Case(equal(64, 0.3, PERIODIC), STRUCTURE, fluid),
+    "small periodic box, currents": Case(
+        equal(64, 0.3, PERIODIC), FEW_LAGS, currents, caveats=lambda log: transport(log).caveats
+    ),
+    "column": Case(
+        equal(40, 0.2).replace("temperature = 1", "speed = 1.5\nplacement = 'lattice'")
+        + "[gravity]\nacceleration = [0, -2]\n",
+        STRUCTURE,
+        steady_state,
+    ),
+    "driven grains": Case(equal(40, 0.2, THERMAL) + "[restitution]\nnormal = 0.9\n", STRUCTURE, gauges),
     "two chambers": Case(
         "[box]\nsize = [2, 1]\n[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n"
         "[[wall]]\nname = 'gate'\nfrom = [1, 0.47]\nto = [1, 0.53]\nopens_at = 1\n[[species]]\nname = 'gas'\n"

@@ -1,8 +1,8 @@
 """P-values of right laws are uniform, and bars of bins as large as deviations: `helpers.p_values` has the gases.
 
-`tests/helpers/p_values.csv` is from 400 seeds:
+`tests/helpers/p_values.csv` is from 200 other seeds:
 
-    PYTHONPATH=tests python -m helpers.p_values --seeds 400
+    PYTHONPATH=tests python -m helpers.p_values --first 1000 --seeds 200
 """
 
 import math

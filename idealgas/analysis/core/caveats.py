@@ -21,7 +21,7 @@ NAMED = 3
 """Largest number of logs that one sentence names."""
 
 RELAXATIONS = 20.0
-"""Length of a window in relaxation times of the structure from which on errors are right (measured to 10 %)."""
+"""Length of a window in relaxation times of its gas from which on errors are right (measured to 10 %)."""
 
 WIDE, WIDE_PERIODIC = 20.0, 5.0
 """Diameters of the discs by which a box is wide between walls, which take a twentieth of it, and if it is periodic."""
@@ -33,13 +33,13 @@ def of_log(log: Log) -> tuple[str, ...]:
 
 
 def of_window(window: Window) -> tuple[str, ...]:
-    """Caveat of a window that is too short for the slow structure of its gas."""
+    """Caveat of a window that is too short for the slow fluctuations of its gas."""
     if window.duration >= RELAXATIONS * window.relaxation:
         return ()
     return (
-        f"The structure of this gas relaxes slowly, in t = {window.relaxation:.2g}; the window is only "
-        f"{window.duration / window.relaxation:.2g} times as long. Standard errors, above all of collision rates and "
-        f"free paths, may be up to 3 times too small; from {RELAXATIONS:g} times on they are right.",
+        f"This gas relaxes slowly, in t = {window.relaxation:.2g}; the window is only "
+        f"{window.duration / window.relaxation:.2g} times as long. Standard errors may be too small, those of "
+        f"collision rates in dense mixtures up to 3 times; from {RELAXATIONS:g} times on they are right.",
     )
 
 

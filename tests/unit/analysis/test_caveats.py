@@ -266,7 +266,7 @@ def test_tests_of_laws_take_samples(made):
 
 def test_diffusion_takes_time(made):
     log = made(PERIODIC, "species.gas.radius=0.3", "run.collisions_per_disc=400")
-    assert registry.analyse(log, "transport").caveats == ()
+    assert silent(registry.analyse(log, "transport"), "gas is followed for")
     short = registry.analyse(log, "transport", start=0.0, end=log.end_time / 40)
     only(short, "The window is short: gas is followed for")
 
@@ -291,7 +291,7 @@ def test_laws_of_dilute_gases_take_one(made):
     found = registry.analyse(made(*column, "species.gas.radius=0.2"), "profile", bins=4, start=0.0)
     only(found, "The theory is that of a dilute gas; here the packing fraction of a strip reaches 0.")
     dilute = ("species.gas.radius=0.02", "run.collisions_per_disc=5")
-    assert registry.analyse(made(*column, *dilute), "profile", bins=4, start=0.0).caveats == ()
+    assert silent(registry.analyse(made(*column, *dilute), "profile", bins=4, start=0.0), "dilute gas")
 
 
 def test_the_adiabat_takes_a_slow_piston(made):

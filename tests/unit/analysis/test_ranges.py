@@ -154,7 +154,7 @@ def test_currents_and_heavy_discs_take_long_lags(made):
     log = made(PERIODIC, "species.gas.radius=0.3", "run.collisions_per_disc=400")
     short = registry.analyse(log, "transport", start=0.0, end=log.end_time / 40)
     only(short, "currents are followed for")
-    assert registry.analyse(log, "transport").caveats == ()
+    assert silent(registry.analyse(log, "transport"), "currents are followed for")
     light, heavy = (
         "{name='a', count=36, radius=0.3, temperature=1}",
         "{name='b', count=4, radius=0.3, mass=50, temperature=1}",

@@ -120,11 +120,15 @@ def test_a_species_of_one_disc_has_no_pair_with_itself(tmp_path):
     assert json.dumps(found.as_dict(), allow_nan=False)
 
 
-@pytest.mark.parametrize(("collisions", "too_short"), [(120, True), (480, False)])
-def test_a_window_of_few_lags_is_said(tmp_path, collisions, too_short):
+@pytest.mark.parametrize(
+    ("collisions", "caveat"), [(120, "(16 needed)"), (480, "up to 1.3 times too small"), (4400, "")]
+)
+def test_a_window_of_few_lags_is_said(tmp_path, collisions, caveat):
+    """One of 20 mean free times each; `calibration.csv` has the errors with 75 and 200 of them."""
     scene = SCENE.format(x="periodic", y="periodic")
     simulate(parse_scene(scene, overrides=[f"run.collisions_per_disc={collisions}"]), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         found = transport(log, start=0.0)
-    said = [sentence for sentence in found.caveats if "times as long as currents are followed (16 needed)" in sentence]
-    assert len(said) == too_short
+    said = [sentence for sentence in found.caveats if "times as long as currents are followed" in sentence]
+    assert len(said) == bool(caveat)
+    assert all(caveat in sentence for sentence in said)
