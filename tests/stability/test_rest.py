@@ -5,6 +5,7 @@ import pytest
 from helpers.support import called
 
 from idealgas import open_log, parse_scene, simulate
+from idealgas.errors import UserError
 
 FIVE = """
 scene.seed = 1
@@ -91,3 +92,14 @@ def test_a_disc_that_sticks_ends_the_run_with_one_line(wall, tmp_path):
     assert "is stuck at" in done.stderr.splitlines()[-1]
     with open_log(tmp_path / "run.h5") as log:
         assert not log.complete
+
+
+def test_an_arch_between_walls_ends_the_run_with_one_line(tmp_path):
+    """30 discs in a box five diameters wide, some wedged: else millions of collisions per disc and time."""
+    pile = ["box.size=[4, 40]", "species.gas.count=30", "species.gas.radius=0.4", "species.gas.region="]
+    losses = ["scene.seed=0", "restitution={ normal = 0.7, wall = 0.7 }", "run.until=200", "log.compression='none'"]
+    with pytest.raises(UserError, match=r"is stuck at t = .*: more than 1000 collisions per contact duration"):
+        run(tmp_path / "run.h5", *pile, *losses)
+    with open_log(tmp_path / "run.h5") as log:
+        assert not log.complete
+        assert len(log) < 10_000_000
