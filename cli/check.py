@@ -111,16 +111,20 @@ def _number(value: float | None, digits: str = ".5g", rough: str = "") -> "Numbe
 def _species_table(expected: "Forecast") -> "Table":
     from idealgas.analysis.core.tables import Cell, Number, Table
 
+    spread = any(s.polydispersity for s in expected.species)
     rows: list[Sequence[Cell]] = [
         [
             s.name,
             Number(s.number, "d"),
-            *map(_number, (s.radius, s.mass, s.packing_fraction, s.temperature)),
+            _number(s.radius),
+            *([_number(s.polydispersity)] if spread else []),
+            *map(_number, (s.mass, s.packing_fraction, s.temperature)),
             _number(s.collision_rate, rough=expected.rough),
         ]
         for s in expected.species
     ]
-    heads = ("species", "N", "radius", "mass", "φ", "temperature", "collisions per disc and time")
+    radius = ("mean radius", "s.d./mean") if spread else ("radius",)
+    heads = ("species", "N", *radius, "mass", "φ", "temperature", "collisions per disc and time")
     return Table("Discs at the start", heads, rows)
 
 

@@ -108,6 +108,7 @@ class CoolingAnalysis(Analysis):
 
     position = 30
     headline = "loss"
+    takes_unlike_discs = False
     results = (Cooling,)
     sections = (
         Section(

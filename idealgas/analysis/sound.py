@@ -101,6 +101,7 @@ class SoundAnalysis(Analysis):
 
     position = 90
     headline = "waves.*.speed"
+    takes_unlike_discs = False
     results = (Sound,)
     sections = (Section("Sound", "Correlation in time of the longest waves of density, hydrodynamics dashed"),)
     reads = "frames"

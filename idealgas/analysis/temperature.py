@@ -194,7 +194,6 @@ class TemperatureAnalysis(Analysis):
     position = 10
     headline = "species.*.both"
     results = (Temperature,)
-    takes_unlike_discs = True  # a mean of m v² depends on the mean mass only
     sections = (Section("Temperature", "Kinetic temperature of each species against time"),)
 
     measure = staticmethod(temperature)

@@ -25,7 +25,6 @@ from matplotlib.ticker import MaxNLocator
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
 from idealgas.analysis.theory.conserved import centre_of_mass_velocity
-from idealgas.analysis.theory.ensemble import composition
 from idealgas.errors import UserError
 from idealgas.log import LogState
 from idealgas.movie.order_colours import order_colours
@@ -192,7 +191,7 @@ class Painter:
         self.size = size or _size(self._view, panel != "none")
         self._paths: dict[int, list[np.ndarray]] = {disc: [] for disc in trails}
         self._periodic = np.array(scene.properties.periodic)
-        self._species, self._kinds = composition(gas), np.array(COLOURS)[gas.species % len(COLOURS)]
+        self._kinds = np.array(COLOURS)[gas.species % len(COLOURS)]
         self._shades = colormaps[COLOUR_MAP](np.linspace(DARKEST if dark else 0, 1 if dark else PALEST, SHADES))
         self._brightest = BRIGHTEST * rms_speed or BRIGHTEST / FASTEST
         with rc_context(DARK if dark else {"grid.color": GRID}):
@@ -298,7 +297,7 @@ class Painter:
     def _key(self) -> list[tuple[str, Any]]:
         """What colours stand for, where the axis of speeds does not tell it."""
         if self._colouring == "species":
-            return list(zip(self._species.name, np.resize(COLOURS, len(self._species.name)), strict=True))
+            return list(zip(self._gas.species_names, np.resize(COLOURS, len(self._gas.species_names)), strict=True))
         if self._colouring == "order":
             angles = {"ψ₆ at 0°": 1, "ψ₆ at 120°": np.exp(2j * np.pi / 3), "ψ₆ at 240°": np.exp(-2j * np.pi / 3)}
             return list(zip([*angles, "no order"], order_colours(np.array([*angles.values(), 0])), strict=True))

@@ -11,7 +11,7 @@ from matplotlib.patches import StepPatch
 
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.theory.distributions import SpeedLaw
-from idealgas.analysis.theory.ensemble import composition
+from idealgas.analysis.theory.ensemble import classes
 from idealgas.log import LogState
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
@@ -39,7 +39,7 @@ class SpeedPanel:
 
     def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str, shades: np.ndarray | None) -> None:
         """Draw the axes. line: colour of the curve. shades: (n, 4), colours of the discs along the axis of speeds."""
-        self._gas, self._species = gas, composition(gas)
+        self._gas, self._classes = gas, classes(gas)
         top = FASTEST * rms_speed or 1.0
         self._edges, self._speeds = np.linspace(0, top, BINS + 1), np.linspace(0, top, 200)
         highest = 1.8 * self._density((top / FASTEST) ** 2 * float(gas.mass.mean()) / 2).max()
@@ -65,8 +65,8 @@ class SpeedPanel:
         """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""
         if not temperature > 0:
             return np.zeros_like(self._speeds)
-        shares = self._species.number / self._species.number.sum()
-        kinds = zip(shares, self._species.mass.tolist(), strict=True)
+        shares = self._classes.number / self._classes.number.sum()
+        kinds = zip(shares, self._classes.mass.tolist(), strict=True)
         return sum((share * SpeedLaw(temperature, mass).pdf(self._speeds) for share, mass in kinds), np.zeros(1))
 
 

@@ -15,7 +15,7 @@ from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
-from idealgas.analysis.theory.ensemble import composition
+from idealgas.analysis.theory.ensemble import classes
 from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -67,7 +67,7 @@ def player(log: Log, start: float | None = None, rows: int = MOST_ROWS, order: b
     state = log.state_at(first)
     flow = centre_of_mass_velocity(log)
     thermal = _rms_speed(state.velocity - flow)
-    species = composition(gas)
+    kinds = classes(gas)
     shades = colormaps[COLOUR_MAP]
     head = {
         "box": gas.box,
@@ -81,7 +81,7 @@ def player(log: Log, start: float | None = None, rows: int = MOST_ROWS, order: b
         "flow": flow.tolist(),
         "fastest": FASTEST * thermal,
         "brightest": BRIGHTEST * thermal,
-        "colours": {"order": _hex(_order_shades()), "species": COLOURS[: len(species.name)]},
+        "colours": {"order": _hex(_order_shades()), "species": COLOURS[: len(gas.species_names)]},
         "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
         "dark": _hex(shades(np.linspace(0.3, 1, SHADES))),
         "bars": COLOURS[5],
@@ -89,7 +89,7 @@ def player(log: Log, start: float | None = None, rows: int = MOST_ROWS, order: b
         "pistonColour": COLOURS[1],
         "kinds": [
             {"share": share, "mass": mass}
-            for share, mass in zip((species.number / len(gas)).tolist(), species.mass.tolist(), strict=True)
+            for share, mass in zip((kinds.number / len(gas)).tolist(), kinds.mass.tolist(), strict=True)
         ],
         "walls": [
             {"name": w.name, "from": w.start, "to": w.end, "radius": w.radius, "absent": _absences(w, last)}

@@ -133,7 +133,7 @@ class Analysis:
     combine: ClassVar[Callable[..., Any] | None] = None
     """Function combine(results): one result of several logs, for tables and figure; None for a single log only."""
 
-    takes_unlike_discs: ClassVar[bool] = False
+    takes_unlike_discs: ClassVar[bool] = True
     """Whether the analysis applies to species whose discs differ in radius or mass."""
 
     restore: ClassVar[Callable[..., Any] | None] = None
@@ -190,7 +190,7 @@ class Analysis:
     ) -> Any:
         if not cls.takes_unlike_discs and (unlike := log.discs.unlike):
             differ = f"discs of one species that differ in radius or mass ({', '.join(unlike)})"
-            raise NotApplicableError(f"{log.path}: not applicable to {differ}; `disc.species` gives them several")
+            raise NotApplicableError(f"{log.path}: not applicable to {differ}")
         with _arithmetic(f"{log.path}: {cls.key}"):
             found = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow = caveats.of_window(found.window) if hasattr(found, "window") else ()

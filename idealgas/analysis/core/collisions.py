@@ -11,7 +11,7 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.theory import conserved, hard_discs
-from idealgas.analysis.theory.ensemble import Composition, Ensemble
+from idealgas.analysis.theory.ensemble import Composition, Ensemble, classes
 from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
 from idealgas.log import Log
 
@@ -43,10 +43,13 @@ class ExpectedRates(NamedTuple):
     """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, with their errors.
 
     rate: (S, S), 1/time; nan if theory has no value. relative_error: (S, S), relative standard deviation of its error.
+    discs: kinds of discs, see `classes`. of_kinds: the same rates and errors (2, K, K) between kinds.
     """
 
     rate: np.ndarray
     relative_error: np.ndarray
+    discs: Composition
+    of_kinds: np.ndarray
 
     def between(self, i: int, j: int) -> Theory | None:
         """Rate Γ_ij in 1/time; None if theory has no value."""
@@ -61,31 +64,35 @@ class ExpectedRates(NamedTuple):
         return Theory(float(rate), float(error), "kinetic theory") if np.isfinite(rate) else None
 
 
-def theory_of(log: Log, discs: Composition) -> BoxTheory:
-    """Theory of the pressure and of the contacts of a uniform gas, the one of a log."""
+def theory_of(log: Log) -> BoxTheory:
+    """Theory of the pressure of a uniform gas, the one of a log, and of the contacts of its kinds of discs."""
+    discs = classes(log.discs)
     return box_theory(
         discs.radius, discs.number, log.box, log.periodic, ergodic=conserved.is_ergodic(log.scene, log.discs)
     )
 
 
-def expected_rates(
-    discs: Composition, box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None
-) -> ExpectedRates:
+def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None) -> ExpectedRates:
     """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, in 1/time.
 
     The product of the contacts per relative speed, from which the pressure follows as well, and of the mean relative
     speed, which is a little larger at fixed total energy than by Maxwell-Boltzmann's law.
 
     Args:
-        discs: the S species of the gas.
         box: width and height of the box, length.
         equilibrium: the ensemble that the gas belongs to.
         theory: contacts of the gas from `theory_of`; None for a method whose discs have no positions.
     """
+    discs = equilibrium.discs
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
     if theory is None:
-        return ExpectedRates(hard_discs.contacts_without_positions(discs.radius, discs.number, box) * speed, 0 * speed)
-    return ExpectedRates(theory.contacts * speed, theory.rate_error)
+        contacts, error = hard_discs.contacts_without_positions(discs.radius, discs.number, box), 0 * speed
+    else:
+        contacts, error = theory.contacts, theory.rate_error
+    rate, off = (discs.shares @ rates @ discs.members.T for rates in (contacts * speed, error * contacts * speed))
+    with np.errstate(invalid="ignore"):
+        relative = np.where(rate > 0, off / rate, 0.0) if len(rate) < len(speed) else error
+    return ExpectedRates(rate, relative, discs, np.array((contacts * speed, error)))
 
 
 def collision_rates(

@@ -105,7 +105,6 @@ class EvolutionAnalysis(Analysis):
 
     position = 20
     headline = "rest"
-    takes_unlike_discs = True
     results = (Evolution,)
     sections = (
         Section(

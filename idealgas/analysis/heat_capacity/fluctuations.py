@@ -184,7 +184,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
     motion = degrees_of_freedom(log) / (2 * len(gas))
     per_disc = motion + (0.5 if scene.properties.spins else 0.0)
     pull = np.array(log.gravity)
-    mixture = len(gas.species_names) > 1
+    mixture = len(gas.species_names) > 1 or bool(gas.unlike)
     if pull.any():
         if not (scene.properties.fixed_walls and scene.properties.empty) or pull.all() or mixture:
             return None, None

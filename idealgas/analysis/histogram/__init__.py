@@ -30,7 +30,7 @@ from idealgas.analysis.histogram.laws import (
 )
 from idealgas.analysis.histogram.samples import independent_samples
 from idealgas.analysis.theory import distributions
-from idealgas.analysis.theory.ensemble import composition, ensemble_at
+from idealgas.analysis.theory.ensemble import classes, composition, ensemble_at
 from idealgas.log import Log
 
 if TYPE_CHECKING:
@@ -219,11 +219,14 @@ def _follows(result: Histogram, found: Distribution) -> str:
 
 def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
     gas, discs, known = log.discs, composition(log.discs), expectation(log, start, end)
-    thermal = np.sqrt(known.scale / discs.mass)
+    lightest = np.full(len(discs.mass), np.inf)
+    np.minimum.at(lightest, gas.species, gas.mass)
+    thermal = np.sqrt(known.scale / lightest)
     high = np.full(len(thermal), 12 * known.scale) if quantity == "energy" else 5 * thermal
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [np.flatnonzero(gas.species == s) for s in range(len(thermal))]
-    members = [ids[:: -(-len(ids) // SAMPLED)] for ids in members]
+    members = [ids[np.argsort(gas.mass[ids], kind="stable")] for ids in members]
+    members = [ids[:: -(-len(ids) // SAMPLED)] for ids in members]  # of all masses
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members), log.gravity)
     moments = [Moments(log.gravity)] if known.needs_temperature else []
     window = measure(log, [tally, *moments], start, end, progress)
@@ -254,9 +257,10 @@ def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bo
 
 
 def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    discs, path = composition(log.discs), quantity == "free-path"
+    discs, path = classes(log.discs), quantity == "free-path"
     temperature, rates, speed, why_not = free_flight_rates(log, discs, start, end)
-    rate = rates.sum(axis=1)
+    per_disc = rates.sum(axis=1)
+    rate = discs.shares @ per_disc
     average = speed / rate if path else 1 / rate
     high = 10 * average
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
@@ -266,8 +270,11 @@ def _flights(log: Log, quantity: str, start: float | None, end: float | None, pr
     finite = FINITE_NUMBER / len(log.discs)
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
     found = []
-    for s, name in enumerate(discs.name):
-        dilute = law(temperature, discs.mass[s], tuple(discs.mass), tuple(rates[s]))
+    for s, name in enumerate(log.discs.species_names):
+        kinds = np.flatnonzero(discs.species == s)
+        laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
+        flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more of them
+        dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
         possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
         found.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
     return window, found, why_not

@@ -107,9 +107,10 @@ def velocity_laws(
 def free_flight_rates(
     log: Log, discs: Composition, start: float | None, end: float | None
 ) -> tuple[float, np.ndarray, np.ndarray, str]:
-    """Temperature, collision rates (S, S) and mean speeds (S,) of free flights; why no law holds, empty if one does.
+    """Temperature, collision rates (K, K) and mean speeds (S,) of free flights; why no law holds, empty if one does.
 
-    Without a law they are means over the gas that only set the range of the histogram.
+    discs: the K kinds of discs of the S species. Without a law rates and speeds are means over the gas that only set
+    the range of the histogram.
     """
     known = expectation(log, start, end)
     why_not = known.why_not
@@ -121,8 +122,8 @@ def free_flight_rates(
         why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
     if known.ensemble and not why_not:
         gas = known.ensemble
-        theory = theory_of(log, discs) if log.has_positions else None
-        rates = expected_rates(discs, log.box, gas, theory).rate
+        theory = theory_of(log) if log.has_positions else None
+        rates = expected_rates(log.box, gas, theory).of_kinds[0]
         if (rates.sum(axis=1) > 0).all():
             return gas.temperature, rates, gas.mean_speed, ""
         why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
@@ -130,4 +131,5 @@ def free_flight_rates(
     if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
         raise UserError(f"{log.path}: too few collisions of discs for a distribution")
     rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
-    return known.scale, np.diag(np.full(len(discs.name), rate)), mean_speed(known.scale, discs.mass), why_not
+    speed = discs.shares @ mean_speed(known.scale, discs.mass)
+    return known.scale, np.diag(np.full(len(discs.name), rate)), speed, why_not

@@ -39,6 +39,7 @@ from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import Composition, composition
 from idealgas.analysis.theory.values import (
     FREEZING,
+    MIXTURE,
     SOLID,
     BoxTheory,
     NoTheoryError,
@@ -156,8 +157,8 @@ def pressure(
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     gas, discs = log.discs, composition(log.discs)
-    theory = theory_of(log, discs)
-    expected = expected_rates(discs, gas.box, equilibrium, theory)
+    theory = theory_of(log)
+    expected = expected_rates(gas.box, equilibrium, theory)
     impacts: Impacts | SampledImpacts
     if log.has_events:
         moments, events, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
@@ -177,7 +178,7 @@ def pressure(
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
         routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts, tensor),
-        known_theories=hard_disc_theories(discs, gas, theory),
+        known_theories=hard_disc_theories(equilibrium.discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
         tensor=tensor,
@@ -270,7 +271,8 @@ def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[
         return theories
     if np.ptp(discs.radius) > 0:
         z = hard_discs.mixture_compressibility_factor(discs.radius, discs.number, gas.area)
-        return theories | {"Jenkins & Mancini 1987": Theory(z, mixture_error(phi) * (z - 1), "Jenkins & Mancini 1987")}
+        error = mixture_error(phi, hard_discs.likeness(discs.radius, discs.number))
+        return theories | {MIXTURE: Theory(z, error * (z - 1), MIXTURE)}
     others = {
         "virial series to B10": float(hard_discs.virial_series(phi)),
         "Henderson 1975": float(hard_discs.henderson_compressibility_factor(phi)),

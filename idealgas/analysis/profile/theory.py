@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.ensemble import column_profiles, column_temperature, known_ensemble
 from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Composition, composition, ensemble_at
+from idealgas.analysis.theory.ensemble import Composition, classes, ensemble_at
 from idealgas.analysis.theory.values import Theory
 from idealgas.columns import sides_across
 from idealgas.log import Log
@@ -92,7 +92,7 @@ def natural_axis(log: Log) -> int:
 
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
     """Profiles by theory in the strips between edges (K + 1,), for a gas from time `start` on; None if unknown."""
-    properties, discs = log.scene.properties, composition(log.discs)
+    properties, discs = log.scene.properties, classes(log.discs)
     if start < properties.last_wall_removed_at or not properties.fixed_walls or log.gravity[1 - axis]:
         return None
     reach = discs.radius * (not log.periodic[axis])  # distance of the centres from the sides
@@ -113,7 +113,9 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
         phi = math.pi * discs.radius**2 @ (number / strips)[:, [0, -1]]
         z = hard_discs.compressibility_factor(np.minimum(phi, hard_discs.HIGHEST))
         layers = (1 - 1 / z) * min(float(discs.radius.max() / np.diff(edges).min()), 1.0)
-    return Expected(law, law != UNIFORM, number / strips, mean_temperature, share, error, layers)
+    if len(discs.members) < len(number):  # means over the kinds of a species
+        mean_temperature = discs.members @ (number * mean_temperature) / (discs.members @ number)
+    return Expected(law, law != UNIFORM, discs.members @ (number / strips), mean_temperature, share, error, layers)
 
 
 Curve = tuple[str, np.ndarray, np.ndarray, float]
@@ -159,7 +161,7 @@ def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, flo
     properties, gas = log.scene.properties, log.discs
     others = properties.bath is not None or any(properties.emits[side] is not None for side in sides_across(1 - axis))
     alike = properties.straight_flight and properties.lossless and not properties.spins
-    if others or not alike or len(gas.species_names) > 1:
+    if others or not alike or len(gas.species_names) > 1 or gas.unlike:
         return None
     found = conduct(*sides, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
     if found is None:

@@ -12,7 +12,7 @@ from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Cell, Number, Table, estimates
 from idealgas.analysis.theory import conserved, hard_discs
-from idealgas.analysis.theory.ensemble import composition
+from idealgas.analysis.theory.ensemble import classes
 from idealgas.log import Log
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
@@ -112,7 +112,7 @@ def _equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: flo
 
     It is √(π/2)/5 for equal discs if v_ref is 5 times the root-mean-square speed.
     """
-    discs = composition(log.discs)
+    discs = classes(log.discs)
     sigma = discs.radius[:, None] + discs.radius
     speed = hard_discs.mean_relative_speeds(temperature, discs.mass, dof)
     pairs = discs.number[:, None] * (discs.number - np.eye(len(discs.number)))

@@ -33,22 +33,26 @@ class Law(Protocol):
 
 @dataclass(frozen=True)
 class MeanLaw:
-    """Mean of several distributions of one quantity: one of them, by chance, holds for each value."""
+    """Mean of several distributions of one quantity: one of them, by chance, holds for each value.
+
+    weights: relative probability of each; None if they are equal.
+    """
 
     parts: tuple[Law, ...]
+    weights: tuple[float, ...] | None = None
 
     @property
     def mean(self) -> float:
         """Mean of the quantity, in its unit."""
-        return sum(part.mean for part in self.parts) / len(self.parts)
+        return float(np.average([part.mean for part in self.parts], weights=self.weights))
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         """Probability density at the values x."""
-        return np.mean([part.pdf(x) for part in self.parts], axis=0)
+        return np.average([part.pdf(x) for part in self.parts], axis=0, weights=self.weights)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
         """Probability of a value of at most x."""
-        return np.mean([part.cdf(x) for part in self.parts], axis=0)
+        return np.average([part.cdf(x) for part in self.parts], axis=0, weights=self.weights)
 
 
 @dataclass(frozen=True)

@@ -19,16 +19,33 @@ DIRECTIONS = 128
 """Number of directions over which speeds are averaged where the axes have different temperatures."""
 
 
-class Composition(NamedTuple):
-    """Names, radii (length), masses (mass) and numbers of discs of the S species of a gas.
+CLASSES = 32
+"""Number of classes of the discs of all species whose discs differ."""
 
-    name: S names. radius, mass, number: arrays of shape (S,), one entry for each species.
+
+class Composition(NamedTuple):
+    """Names, radii (length), masses (mass) and numbers of the S kinds of discs of a gas: species, or parts of them.
+
+    name: S names of the species. radius, mass, number: arrays of shape (S,), one entry for each kind. species: (S,),
+    index of its species.
     """
 
     name: tuple[str, ...]
     radius: np.ndarray
     mass: np.ndarray
     number: np.ndarray
+    species: np.ndarray
+
+    @property
+    def members(self) -> np.ndarray:
+        """Whether a kind belongs to a species: (species, S), 1 or 0."""
+        return (self.species == np.arange(self.species.max() + 1)[:, None]).astype(float)
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Part of the discs of a species (species, S) that are of a kind."""
+        numbers = self.members * self.number
+        return numbers / numbers.sum(axis=1, keepdims=True)
 
     def packing_fraction(self, density: np.ndarray) -> float:
         """Packing fraction φ of a gas whose species have the number densities `density` (S,), in 1/length²."""
@@ -48,12 +65,41 @@ class Composition(NamedTuple):
 
 
 def composition(gas: Gas) -> Composition:
-    """Composition of a gas, with the mean radius and the mean mass of a species whose discs differ."""
+    """Composition of a gas by species, with the mean radius and the mean mass of one whose discs differ."""
+    return _kinds(gas, 1, 1.0)
+
+
+def classes(gas: Gas) -> Composition:
+    """Composition of a gas with a species whose discs differ in classes of equal numbers, in order of their radii.
+
+    Its packing fraction and masses are those of the gas, and a mean over classes is that over discs up to a part 1/K²
+    of the square of the spread of radii, for K classes, whatever the number of discs.
+    """
+    return _kinds(gas, CLASSES, 2.0)
+
+
+def _kinds(gas: Gas, most: int, power: float) -> Composition:
+    """Composition of a gas with up to `most` kinds of discs that differ; their radius is (mean R^power)^(1/power)."""
     _, first, number = np.unique(gas.species, return_index=True, return_counts=True)
-    radius, mass = gas.radius[first], gas.mass[first]
-    if gas.unlike:
-        radius, mass = (np.bincount(gas.species, values) / number for values in (gas.radius, gas.mass))
-    return Composition(gas.species_names, radius, mass, number)
+    species, unlike = np.arange(len(first)), gas.unlike
+    if not unlike:
+        return Composition(gas.species_names, gas.radius[first], gas.mass[first], number, species)
+    order = np.split(np.lexsort((gas.mass, gas.radius, gas.species)), np.cumsum(number)[:-1])
+    pieces = [
+        min(max(most // len(unlike), 1), n) if name in unlike else 1
+        for name, n in zip(gas.species_names, number.tolist(), strict=True)
+    ]
+    parts = [part for ids, n in zip(order, pieces, strict=True) for part in np.array_split(ids, n)]
+    radius = [_mean(gas.radius[part], power) for part in parts]
+    mass = [_mean(gas.mass[part], 1.0) for part in parts]
+    species = np.repeat(species, pieces)
+    names = tuple(gas.species_names[k] for k in species)
+    return Composition(names, np.array(radius), np.array(mass), np.array([len(part) for part in parts]), species)
+
+
+def _mean(values: np.ndarray, power: float) -> float:
+    """Mean of a power of positive values, as one of them; exact for equal ones."""
+    return float(values[0] if np.ptp(values) == 0 else (values**power).mean() ** (1 / power))
 
 
 @dataclass(frozen=True)
@@ -62,7 +108,7 @@ class Ensemble:
 
     centre_of_mass_velocity: (2,), subtracted from all velocities, length/time; 0 along axes of no conserved momentum.
     dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
-    temperature: T = 2E/D, energy (k_B = 1). mass: (S,), of a disc of each species.
+    temperature: T = 2E/D, energy (k_B = 1). discs: kinds of discs, see `classes`.
     of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
     not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs. 0 for fixed discs
     (`conserved.are_fixed`), whose energy no run brings to its share.
@@ -71,7 +117,7 @@ class Ensemble:
     centre_of_mass_velocity: np.ndarray
     dof: float
     temperature: float
-    mass: np.ndarray
+    discs: Composition
     of_axes: np.ndarray
 
     @property
@@ -82,7 +128,12 @@ class Ensemble:
     @property
     def mean_speed(self) -> np.ndarray:
         """Mean speed (S,) of a disc of each species, length/time."""
-        return np.array([self.velocity_law("speed", s).mean for s in range(len(self.mass))])
+        return np.array([self.velocity_law("speed", s).mean for s in range(len(self.of_axes))])
+
+    @property
+    def inverse_mass(self) -> np.ndarray:
+        """Mean of 1/m (S,) over the discs of each species, 1/mass."""
+        return self.discs.shares @ (1 / self.discs.mass)
 
     def variances(self, number: np.ndarray) -> np.ndarray:
         """Variances (2, S) at an instant of Σ|v| (length²/time²) and Σ m v² (energy²) over the discs of each species.
@@ -91,7 +142,8 @@ class Ensemble:
         covariances with it over its own variance. number: (S,), of discs.
         """
         dof = number * self.of_axes.sum(axis=1) / self.temperature
-        speeds = number * self.temperature / self.mass * (2 - math.pi / 2 - math.pi / 8 * dof / self.dof)
+        alone, shared = self.inverse_mass, (self.discs.shares @ self.discs.mass**-0.5) ** 2
+        speeds = number * self.temperature * (alone * (2 - math.pi / 2) - shared * math.pi / 8 * dof / self.dof)
         return np.array([speeds, 2 * self.temperature**2 * dof * (1 - dof / self.dof)])
 
     def of_directions(self, species: int) -> np.ndarray:
@@ -110,14 +162,20 @@ class Ensemble:
 
         dof: D; by default that of the ensemble. Infinite for the Maxwell-Boltzmann distribution.
         """
-        dof, mass = self.dof if dof is None else dof, float(self.mass[species])
+        dof = self.dof if dof is None else dof
         if quantity in ("vx", "vy"):
-            return distributions.ComponentLaw(float(self.of_axes[species, "xy".index(quantity[1])]), mass, dof)
-        parts = tuple(
-            distributions.SpeedLaw(t, mass, dof) if quantity == "speed" else distributions.EnergyLaw(t, dof)
-            for t in self.of_directions(species).tolist()
-        )
-        return parts[0] if len(parts) == 1 else distributions.MeanLaw(parts)
+            temperatures = [float(self.of_axes[species, "xy".index(quantity[1])])]
+        else:
+            temperatures = self.of_directions(species).tolist()
+        laws: dict[distributions.Law, float] = {}
+        for k in np.flatnonzero(self.discs.species == species):
+            mass = float(self.discs.mass[k])
+            for t in temperatures:
+                law: distributions.Law = distributions.EnergyLaw(t, dof)
+                if quantity != "energy":
+                    law = (distributions.SpeedLaw if quantity == "speed" else distributions.ComponentLaw)(t, mass, dof)
+                laws[law] = laws.get(law, 0.0) + float(self.discs.number[k])
+        return next(iter(laws)) if len(laws) == 1 else distributions.MeanLaw(tuple(laws), tuple(laws.values()))
 
 
 def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
@@ -148,7 +206,7 @@ def ensemble_at(scene: Scene, gas: Gas, temperature: float, dof: float) -> Ensem
     others = discs.mass_share_of_others[:, None]
     share = np.where(kept, others, 1.0)
     share[fixed] = np.where(kept & (discs.number[fixed].sum() == 1), others[fixed], 0.0)  # a single one only recoils
-    return Ensemble(conserved.centre_of_mass_velocity(scene, gas), dof, temperature, discs.mass, temperature * share)
+    return Ensemble(conserved.centre_of_mass_velocity(scene, gas), dof, temperature, classes(gas), temperature * share)
 
 
 def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) -> float | None:
@@ -180,7 +238,7 @@ def _column(
     g, place = scene.properties.acceleration[axis], gas.position[:, axis]
     above = place if g < 0 else gas.box[axis] - place
     energy += abs(g) * float(gas.mass @ (above - gas.radius))
-    _, radius, mass, number = composition(gas)
+    _, radius, mass, number, _ = classes(gas)
     return energy, dof, mass, number, abs(g), gas.box[axis] - 2 * radius
 
 

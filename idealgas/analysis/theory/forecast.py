@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas.analysis.theory import conserved, hard_discs, time_steps
 from idealgas.analysis.theory.barometric import DENSEST, column_rates
-from idealgas.analysis.theory.ensemble import column_temperature, composition, equilibrium
+from idealgas.analysis.theory.ensemble import Composition, classes, column_temperature, equilibrium
 from idealgas.analysis.theory.values import box_theory
 from idealgas.columns import IMAGES, SPINS, event_columns
 from idealgas.physics.collision_rates import mean_trial_time
@@ -31,15 +31,16 @@ BYTES_A_SNAPSHOT, BYTES_A_DISC = 800, {"gzip": 31, "none": 36}
 class SpeciesForecast:
     """One species: its discs at the start, and its collision rate in equilibrium.
 
-    name: of the species. number: of its discs. radius: length. mass: mass. packing_fraction: area of its discs over the
-    area of the box. temperature: mean kinetic energy of its discs at the start, energy, without the motion of the gas
-    as a whole. collision_rate: collisions of one disc with other discs per time, 1/time; None if theory does not know
-    it.
+    name: of the species. number: of its discs. radius: mean radius, length. polydispersity: standard deviation of the
+    radius over its mean. mass: mean mass. packing_fraction: area of its discs over the area of the box. temperature:
+    mean kinetic energy of its discs at the start, energy, without the motion of the gas as a whole. collision_rate:
+    collisions of one disc with other discs per time, 1/time; None if theory does not know it.
     """
 
     name: str
     number: int
     radius: float
+    polydispersity: float
     mass: float
     packing_fraction: float
     temperature: float
@@ -124,9 +125,8 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     """
     heated = ("isolated",) if len(scene.properties.temperatures) > 1 else ()
     beyond, temperature = scene.lacking(*KNOWN, *heated), _temperature(scene, gas)
-    beyond = (*beyond, *(f"discs that differ within species {name}" for name in gas.unlike))
     rates = None
-    if temperature is not None and not gas.unlike:
+    if temperature is not None:
         rates = _column(scene, gas, temperature) if beyond else _rates(scene, gas, temperature)
     if rates is None and any(scene.properties.acceleration) and scene.properties.isolated:
         temperature = None  # the law of a dilute column does not hold
@@ -206,8 +206,9 @@ def _spin_energy(scene: Scene) -> float:
         return 0.0
     energy = 0.0
     for s in scene.species if scene.draws_velocities else [s for _, s in scene.placed]:
-        inertia = moment_of_inertia(factor, s.mass, s.radius)
-        energy += s.count * (s.spin_temperature or inertia * (s.angular_velocity or 0.0) ** 2) / 2
+        for size in s.sizes:
+            inertia = moment_of_inertia(factor, size.mass, size.radius)
+            energy += size.number * (s.spin_temperature or inertia * (s.angular_velocity or 0.0) ** 2) / 2
     given = scene.given
     if len(given) and not scene.draws_velocities:
         inertia = moment_of_inertia(factor, given.mass, given.radius)
@@ -229,9 +230,10 @@ def _temperature(scene: Scene, gas: Gas) -> float | None:
 
 def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     """Rates of a uniform gas; None if a disc has no room to move."""
-    _, radius, mass, number = composition(gas)
+    discs = classes(gas)
+    _, radius, mass, number, _ = discs
     if scene.run.method == "monte_carlo":
-        return _rates_without_positions(scene, gas, temperature, radius, mass, number)
+        return _rates_without_positions(scene, gas, temperature, discs)
     if not _has_room(gas, scene.properties.periodic):
         return None
     per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
@@ -239,7 +241,8 @@ def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
     rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
     thermostat = len(gas) * scene.properties.thermostat_rate
-    return _Rates(per_disc, float(number @ per_disc) / 2, hits, thermostat=thermostat, rough=rough)
+    pairs = float(number @ per_disc) / 2
+    return _Rates(discs.shares @ per_disc, pairs, hits, thermostat=thermostat, rough=rough)
 
 
 def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
@@ -248,13 +251,14 @@ def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     if any(properties.periodic) or not pull.any() or not temperature > 0 or not _has_room(gas, properties.periodic):
         return None
     axis = int(pull[1] > 0)
-    _, radius, mass, number = composition(gas)
+    discs = classes(gas)
+    _, radius, mass, number, _ = discs
     found = column_rates(temperature, mass, radius, number, float(pull[axis]), gas.box[axis], gas.box[1 - axis])
     if found.densest > DENSEST:
         return None
     rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {found.densest:.2g}"
     thermostat = len(gas) * properties.thermostat_rate
-    return _Rates(found.per_disc, found.pairs, found.hits, thermostat=thermostat, rough=rough)
+    return _Rates(discs.shares @ found.per_disc, found.pairs, found.hits, thermostat=thermostat, rough=rough)
 
 
 def _why_rough(
@@ -277,10 +281,9 @@ def _why_rough(
     return f"Enskog's theory is off by up to {relative:.0%} for this gas and box" if relative > ROUGH else ""
 
 
-def _rates_without_positions(
-    scene: Scene, gas: Gas, temperature: float, radius: np.ndarray, mass: np.ndarray, number: np.ndarray
-) -> _Rates:
+def _rates_without_positions(scene: Scene, gas: Gas, temperature: float, discs: Composition) -> _Rates:
     """Rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
+    _, radius, mass, number, _ = discs
     contacts = hard_discs.contacts_without_positions(radius, number, gas.box)
     per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
@@ -290,7 +293,7 @@ def _rates_without_positions(
     fastest = math.sqrt(2 * temperature * math.log(speeds) / mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
-    return _Rates(per_disc, float(number @ per_disc) / 2, 0.0, trials, rough=rough)
+    return _Rates(discs.shares @ per_disc, float(number @ per_disc) / 2, 0.0, trials, rough=rough)
 
 
 def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
@@ -301,6 +304,7 @@ def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) 
         name=gas.species_names[k],
         number=number,
         radius=float(radius[0] if (radius == radius[0]).all() else radius.mean()),
+        polydispersity=float(radius.std() / radius.mean()) if np.ptp(radius) > 0 else 0.0,
         mass=float(mass[0] if (mass == mass[0]).all() else mass.mean()),
         packing_fraction=float(np.pi * (radius**2).sum() / area),
         temperature=float((mass * (velocity**2).sum(axis=1)).sum() / (2 * number)),

@@ -5,6 +5,7 @@ freedom D (2N discs between reflecting walls; momentum is not conserved there).
 """
 
 import math
+from collections.abc import Callable
 from typing import overload
 
 import numpy as np
@@ -76,23 +77,36 @@ def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> fl
     return float((compressibility_factor(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
-def mixture_contact_value(radius: ArrayLike, number: ArrayLike, area: float) -> np.ndarray:
-    """Contact values χ_ij (S, S) of a mixture: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
+def mixture_contact_value(
+    radius: ArrayLike, number: ArrayLike, area: float, equal: Callable[[float], float] = contact_value
+) -> np.ndarray:
+    """Contact values χ_ij (S, S) of a mixture: Santos, Yuste & López de Haro, J. Chem. Phys. 117, 5785 (2002).
 
-    χ_ij = 1/(1 - φ) + (9/8) (R_i R_j/(R_i + R_j)) π Σ n_k R_k/(1 - φ)²; for one species it is Henderson's χ.
+    χ_ij = 1/(1 - φ) + [χ - 1/(1 - φ)] (⟨R⟩/⟨R²⟩) 2 R_i R_j/(R_i + R_j), with the contact value χ of equal discs,
+    `equal(φ)`. With Henderson's it is that of Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
     """
-    radius, density = np.asarray(radius, float), np.asarray(number, float) / area
-    phi = math.pi * (density * radius**2).sum()
-    reduced = radius[:, None] * radius / (radius[:, None] + radius)
-    return 1 / (1 - phi) + 9 / 8 * math.pi * (density * radius).sum() * reduced / (1 - phi) ** 2
+    radius, number = np.asarray(radius, float), np.asarray(number, float)
+    square = (number * radius**2).sum()
+    phi = math.pi * float(square) / area
+    reduced = 2 * radius[:, None] * radius / (radius[:, None] + radius)
+    return 1 / (1 - phi) + (equal(phi) - 1 / (1 - phi)) * (number * radius).sum() / square * reduced
 
 
 def mixture_compressibility_factor(radius: ArrayLike, number: ArrayLike, area: float) -> float:
-    """Compressibility factor Z = 1 + (π/2NA) Σ N_i N_j σ_ij² χ_ij of a mixture, with `mixture_contact_value`."""
+    """Compressibility factor Z = (1 - ξ)/(1 - φ) + ξ Z₁(φ) of a mixture of discs, with ξ = ⟨R⟩²/⟨R²⟩.
+
+    Z₁ is that of equal discs, `compressibility_factor`: Santos, Yuste & López de Haro, Mol. Phys. 96, 1 (1999). The
+    second virial coefficient is exact, and the contact values of `mixture_contact_value` give the same.
+    """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
-    sigma = radius[:, None] + radius
-    pairs = number[:, None] * number * sigma**2 * mixture_contact_value(radius, number, area)
-    return float(1 + math.pi / 2 * pairs.sum() / (number.sum() * area))
+    phi, alike = math.pi * float((number * radius**2).sum()) / area, likeness(radius, number)
+    return (1 - alike) / (1 - phi) + alike * float(compressibility_factor(phi))
+
+
+def likeness(radius: ArrayLike, number: ArrayLike) -> float:
+    """ξ = ⟨R⟩²/⟨R²⟩ of discs of some radii; 1 for equal discs."""
+    radius, number = np.asarray(radius, float), np.asarray(number, float)
+    return float((number @ radius) ** 2 / (number.sum() * (number @ radius**2)))
 
 
 # a closed box with reflecting walls
@@ -141,7 +155,8 @@ def box_contacts(
     """Collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of a disc of species i with species j, 1/length.
 
     A disc does not collide with itself, and walls confine the discs (`confinement`). Equal discs have the contact value
-    (Z - 1)/2φ of the resummed virial series, mixtures that of Jenkins & Mancini (1987). Not a number above φ = 0.62.
+    (Z - 1)/2φ of the resummed virial series for this number of discs, and mixtures those that follow from it by
+    `mixture_contact_value`. Not a number above φ = 0.62.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     area = box[0] * box[1]
@@ -150,10 +165,12 @@ def box_contacts(
         return np.full((len(radius), len(radius)), math.nan)
     sigma = radius[:, None] + radius
     if len(radius) == 1:
-        chi = fluid_contact_value(phi, number[0])
-        return 2 * sigma * number / area * chi * confinement(radius, box, periodic)
-    contacts = 2 * sigma * number / area * mixture_contact_value(radius, number, area)
-    return (contacts - np.diag(np.diag(contacts) / number)) * confinement(radius, box, periodic)
+        alone = fluid_contact_value(phi, number[0])
+        return 2 * sigma * number / area * alone * confinement(radius, box, periodic)
+    n = float(number.sum())
+    chi = mixture_contact_value(radius, number, area, lambda phi: fluid_contact_value(phi, n))
+    others = (number - np.eye(len(number))) * n / (n - 1)  # a disc does not meet itself
+    return 2 * sigma * others / area * chi * confinement(radius, box, periodic)
 
 
 def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:

@@ -119,11 +119,11 @@ def diffusion(
     window: Window,
     longest: float,
     limits: Sequence[Limits],
-    expected: tuple[Enskog | None, Sequence[Theory | None], np.ndarray],
+    expected: tuple[Enskog | None, Sequence[Theory | None], Ensemble],
 ) -> tuple[Diffusion, ...]:
     """Diffusion of each species up to the longest lag, time, or between walls up to the one that they allow.
 
-    expected: Enskog's theory, D and T of each species.
+    expected: Enskog's theory, D of each species, and the ensemble.
     """
     longest = min(longest, max(max(one.needed, one.reach**2 / (4 * one.friction_d)) for one in limits))
     segments = min(int(window.duration / longest), MOST_SEGMENTS)
@@ -140,10 +140,11 @@ def diffusion(
     places = places - lag[:, None, None] * centre_of_mass_velocity(log)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), limits, strict=True)
-    whole, coefficients, temperatures = expected
+    whole, coefficients, equilibrium = expected
+    square = equilibrium.of_species * equilibrium.inverse_mass  # ⟨vx²⟩
     return tuple(
-        _of_species(*part, lag, (whole, alone, float(mass / temperature)))
-        for part, alone, mass, temperature in zip(parts, coefficients, discs.mass, temperatures, strict=True)
+        _of_species(*part, lag, (whole, alone, float(1 / one)))
+        for part, alone, one in zip(parts, coefficients, square, strict=True)
     )
 
 

@@ -29,11 +29,12 @@ class Enskog:
     kinematic_viscosity: float
 
 
-def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: ExpectedRates) -> list[Theory | None]:
+def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> list[Theory | None]:
     """Diffusion coefficient of each species of a mixture, length²/time, in the first approximation of Enskog's theory.
 
-    Discs of species i lose their velocity at the rate γ_i = Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and
-    collision rates Γ_ij: the friction of a Brownian disc among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
+    That of a species whose discs differ is the mean over its discs. Discs of species i lose their velocity at the rate
+    γ_i = Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and collision rates Γ_ij: the friction of a Brownian disc
+    among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
 
     Along an axis whose momentum is conserved, with the mass M of all discs, m_i⟨v²⟩ is T(1 - m/M), and the others
     recoil with -m v/(M - m), so that the relative velocity decays at γ/(1 - m/M). That is exact at the start, as the
@@ -42,22 +43,25 @@ def self_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: E
     None where theory has no rates. The error is that of equal discs, that of the rates, that of the first
     approximation, the momentum that discs of the same species take up, and the recoil where walls stop it.
     """
-    found: list[Theory | None] = []
+    discs, (rate, off) = rates.discs, rates.of_kinds
+    found = np.empty((2, len(discs.mass)))  # value and error
     whole, walled = log.discs.mass.sum(), 1 - conserved_momentum(log).mean()
     error = enskog_error("diffusion", log.discs.packing_fraction)
     for i, (mass, others) in enumerate(zip(discs.mass, discs.mass_share_of_others, strict=True)):
         reduced = mass * discs.mass / (mass + discs.mass)
-        parts = 2 * reduced * rates.rate[i]
+        parts = 2 * reduced * rate[i]
         resistance = float(parts.sum())
         if not resistance > 0:
-            found.append(None)
+            found[:, i] = math.nan
             continue
         first = float(parts @ first_order_error(mass, discs.mass)) / resistance
-        shared = (discs.number[i] - 1) * (mass / whole / others) ** 2
-        relative = error + float(rates.relative_error[i].max()) + 2 * walled * mass / whole + shared + first
-        value = float((equilibrium.of_axes[i] ** 2).mean()) / equilibrium.temperature / resistance
-        found.append(Theory(value, relative * value, "Enskog") if math.isfinite(value) else None)
-    return found
+        alike = rates.discs.number[discs.species == discs.species[i]].sum()
+        shared = (alike - 1) * (mass / whole / others) ** 2
+        relative = error + float(off[i].max()) + 2 * walled * mass / whole + shared + first
+        value = float((equilibrium.of_axes[discs.species[i]] ** 2).mean()) / equilibrium.temperature / resistance
+        found[:, i] = value, relative * value
+    means = (discs.shares @ found.T).tolist()
+    return [Theory(value, error, "Enskog") if math.isfinite(value) else None for value, error in means]
 
 
 def first_order_error(mass: float, others: np.ndarray) -> np.ndarray:
@@ -75,9 +79,9 @@ def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates:
     In the first approximation velocities of the species relative to each other decay by collisions of unlike discs
     alone: D₁₂ = x₂ T/(2 μ Γ₁₂), with the share x₂, the reduced mass μ, and the rate Γ₁₂ at which a disc of the first
     species meets those of the second. For discs that differ by name only it is that of self-diffusion. None for other
-    numbers of species, or where theory has no rates.
+    numbers of species, for discs of one that differ, or where theory has no rates.
     """
-    if len(discs.name) != 2 or not rates.rate[0, 1] > 0:
+    if len(discs.name) != 2 or log.discs.unlike or not rates.rate[0, 1] > 0:
         return None
     reduced, share = discs.mass[0] * discs.mass[1] / discs.mass.sum(), discs.number[1] / discs.number.sum()
     value = float(share * equilibrium.temperature / (2 * reduced * rates.rate[0, 1]))
@@ -86,13 +90,13 @@ def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates:
 
 
 def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
-    """Enskog's coefficients of the gas of a log; None for several species, above φ = 0.62, and for one or two discs.
+    """Enskog's coefficients of the equal discs of a log; None for others, above φ = 0.62, and for one or two discs.
 
     They are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: in a dilute gas
     the mean square of Σ m v_x v_y by a part 2/N, that of Σ m v² v by 6/N. The errors have such a part.
     """
     gas = log.discs
-    if len(discs.name) > 1 or gas.packing_fraction > hard_discs.HIGHEST or len(gas) <= 2:
+    if len(discs.name) > 1 or gas.unlike or gas.packing_fraction > hard_discs.HIGHEST or len(gas) <= 2:
         return None
     density, mass, kept = len(gas) / gas.area, discs.mass[0], 1 - conserved_momentum(log).mean() / len(gas)
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)

@@ -100,11 +100,11 @@ def _draw_pairs(ax: Axes, result: Transport) -> None:
         ax.errorbar(middle, found.value, found.error, fmt=marker, ms=2, color=colour, label=label)
         for contact in result.contacts:
             if (contact.species, contact.other) == (found.species, found.other):
-                ax.plot(found.edges[0], contact.value.value, "D", color=colour, label=f"{label}: by collisions")
+                ax.plot(found.contact, contact.value.value, "D", color=colour, label=f"{label}: by collisions")
                 if contact.value.theory is not None:
-                    ax.plot(found.edges[0], contact.value.theory, "+", ms=12, color=GREY, label="theory at contact")
-        if len(result.pair_distributions) == 1 and result.packing_fraction <= THIN:
-            diameter = found.edges[0]
+                    ax.plot(found.contact, contact.value.theory, "+", ms=12, color=GREY, label="theory at contact")
+        diameter = found.edges[0]
+        if len(result.pair_distributions) == 1 and found.contact == diameter and result.packing_fraction <= THIN:
             density = 4 * result.packing_fraction / (math.pi * diameter**2)
             curve = hard_discs.thin_pair_distribution(middle, diameter, density)
             ax.plot(middle, curve, "--", color=GREY, linewidth=0.9, label="first order in φ")

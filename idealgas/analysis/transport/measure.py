@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
+
 from idealgas.analysis.core.collisions import (
     CollisionRate,
     FreePath,
@@ -105,14 +107,14 @@ def transport(
     moments, impacts, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
     window = measure(log, [moments, impacts, currents], start, end, progress, ("uniform", "conserves_motion"))
     gas, discs = log.discs, composition(log.discs)
-    box = theory_of(log, discs)
-    expected, enskogs = expected_rates(discs, gas.box, equilibrium, box), enskog(log, discs, equilibrium)
+    box = theory_of(log)
+    expected, enskogs = expected_rates(gas.box, equilibrium, box), enskog(log, discs, equilibrium)
     rates = collision_rates(discs, expected, window, impacts)
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    alone = [enskogs.diffusion] if enskogs else self_diffusion(log, discs, equilibrium, expected)
+    alone = [enskogs.diffusion] if enskogs else self_diffusion(log, equilibrium, expected)
     limits = diffusion_limits(log, discs, rates, equilibrium)
-    spreading = diffusion(log, discs, window, longest, limits, (enskogs, alone, equilibrium.of_species))
+    spreading = diffusion(log, discs, window, longest, limits, (enskogs, alone, equilibrium))
     whole = None
     if all(log.periodic):
         theories = enskogs, mutual_diffusion(log, discs, equilibrium, expected)
@@ -125,7 +127,7 @@ def transport(
         walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
-        contacts=_contacts(discs, gas.area, equilibrium, rates),
+        contacts=_contacts(gas.area, equilibrium, rates),
         diffusion=spreading,
         collective=whole,
         pressure=pressure_tensor(log, equilibrium, box, window.of(currents.flow)),
@@ -140,8 +142,8 @@ def transport(
 def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: float | None, lag: float) -> Transport:
     """Transport in a gas without events: what sums in its samples tell."""
     window, impacts = sampled(log, start, end, ("uniform", "conserves_motion"))
-    gas, discs, box = log.discs, composition(log.discs), theory_of(log, composition(log.discs))
-    rates = collision_rates(discs, expected_rates(discs, gas.box, equilibrium, box), window, impacts)
+    gas, discs, box = log.discs, composition(log.discs), theory_of(log)
+    rates = collision_rates(discs, expected_rates(gas.box, equilibrium, box), window, impacts)
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
     whole = None
@@ -156,7 +158,7 @@ def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: flo
         walled=not all(log.periodic),
         collision_rates=rates,
         free_paths=(),
-        contacts=_contacts(discs, gas.area, equilibrium, rates),
+        contacts=_contacts(gas.area, equilibrium, rates),
         diffusion=(),
         collective=whole,
         pressure=pressure_tensor(log, equilibrium, box, window.of(impacts.flow)),
@@ -184,19 +186,17 @@ def _short_currents(whole: Collective | None, free_times: float, lags: float) ->
         )
 
 
-def _contacts(
-    discs: Composition, area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]
-) -> tuple[Contact, ...]:
+def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]) -> tuple[Contact, ...]:
     """Contact values χ_ij: measured collision rates Γ_ij over those of discs at random positions."""
-    contacts = []
+    discs = equilibrium.discs
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
-    for k, found in enumerate(rates):
-        i, j = divmod(k, len(discs.name))
-        alone = 2 * (discs.radius[i] + discs.radius[j]) * (discs.number[j] - (i == j)) / area * speed[i, j]
-        if j < i or alone == 0:
-            continue
-        contacts.append(Contact(found.species, found.other, found.rate.times(1 / alone)))
-    return tuple(contacts)
+    others = discs.number - np.eye(len(discs.number))  # a disc does not meet itself
+    random = discs.shares @ (2 * (discs.radius[:, None] + discs.radius) * others / area * speed) @ discs.members.T
+    return tuple(
+        Contact(found.species, found.other, found.rate.times(1 / alone))
+        for k, (found, alone) in enumerate(zip(rates, random.ravel().tolist(), strict=True))
+        if k // len(random) <= k % len(random) and alone > 0
+    )
 
 
 def _free_time(discs: Composition, rates: tuple[CollisionRate, ...]) -> float:

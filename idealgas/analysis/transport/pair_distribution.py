@@ -18,12 +18,13 @@ REACH = 5.0  # largest distance, in units of the sum of the radii
 class PairDistribution:
     """Pair distribution g(r) of two species (no unit).
 
-    species, other: names of the species. edges: (bins + 1,), edges of the bins from contact on, length. value, error:
-    (bins,), g(r) and its standard error.
+    species, other: names of the species. contact: sum of their mean radii, length. edges: (bins + 1,), edges of the
+    bins from the smallest distance of contact on, length. value, error: (bins,), g(r) and its standard error.
     """
 
     species: str
     other: str
+    contact: float
     edges: np.ndarray
     value: np.ndarray
     error: np.ndarray
@@ -34,13 +35,14 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
 
     In a box with walls the numbers of pairs are divided by those of discs at random positions in the same box.
     """
-    sigma = discs.radius[:, None] + discs.radius
+    sigma, nearest = discs.radius[:, None] + discs.radius, _smallest(log)
     pairs = [(i, j) for i in range(len(discs.name)) for j in range(i, len(discs.name)) if i != j or discs.number[i] > 1]
     edges = {}
     for i, j in pairs:
         reach = min(REACH * sigma[i, j], min(log.box) / 2)
-        bins = max(int(BINS_A_DIAMETER * (reach / sigma[i, j] - 1)), 1)
-        edges[i, j] = np.linspace(sigma[i, j], max(reach, 1.01 * sigma[i, j]), bins + 1)
+        first = nearest[i] + nearest[j]
+        bins = max(int(BINS_A_DIAMETER * (reach - first) / sigma[i, j]), 1)
+        edges[i, j] = np.linspace(first, max(reach, 1.01 * sigma[i, j]), bins + 1)
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
     members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
     box = np.array(log.box)
@@ -54,6 +56,13 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
     return tuple(_normalised(log, discs, i, j, edges[i, j], np.array(counts[i, j], float)) for i, j in pairs)
 
 
+def _smallest(log: Log) -> np.ndarray:
+    """Smallest radius of each species, length."""
+    smallest = np.full(len(log.discs.species_names), np.inf)
+    np.minimum.at(smallest, log.discs.species, log.discs.radius)
+    return smallest
+
+
 def _normalised(
     log: Log, discs: Composition, i: int, j: int, edges: np.ndarray, counts: np.ndarray
 ) -> PairDistribution:
@@ -64,9 +73,8 @@ def _normalised(
     ]
     expected = discs.number[i] * (discs.number[j] - (i == j)) * np.diff(chance_within(edges, reach, log.periodic))
     g = counts / expected
-    return PairDistribution(
-        discs.name[i], discs.name[j], edges, g.mean(axis=0), g.std(axis=0, ddof=1) / math.sqrt(len(g))
-    )
+    contact, error = float(discs.radius[i] + discs.radius[j]), g.std(axis=0, ddof=1) / math.sqrt(len(g))
+    return PairDistribution(discs.name[i], discs.name[j], contact, edges, g.mean(axis=0), error)
 
 
 def chance_within(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:

@@ -8,7 +8,7 @@ import pytest
 from helpers.support import gas_of
 from scipy import stats
 
-from idealgas.analysis.theory.ensemble import Ensemble, composition, equilibrium
+from idealgas.analysis.theory.ensemble import Composition, Ensemble, classes, composition, equilibrium
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
@@ -89,6 +89,37 @@ def test_no_digits_are_lost_beside_a_heavy_disc(mass):
     assert composition(gas).mass_share_of_others == pytest.approx(exact, rel=1e-15)
 
 
+def discs_of(mass):
+    """Species of these masses, one disc of each."""
+    return Composition(("",) * len(mass), np.ones(len(mass)), mass, np.ones(len(mass)), np.arange(len(mass)))
+
+
+def test_classes_keep_the_area_and_the_masses_of_discs_that_differ():
+    radius = np.random.default_rng(1).uniform(0.3, 0.7, 5000)
+    gas = gas_of((900, 900), np.zeros((5000, 2)), 0.0, radius, mass=radius**2)
+    found = classes(gas)
+    assert len(found.radius) == 32
+    assert found.packing_fraction(found.number / gas.area) == pytest.approx(gas.packing_fraction, rel=1e-13)
+    assert found.number @ found.mass == pytest.approx(gas.mass.sum(), rel=1e-13)
+    assert found.number @ found.radius / 5000 == pytest.approx(radius.mean(), rel=1e-4)
+    assert found.shares @ found.mass**-0.5 == pytest.approx([(1 / radius).mean()], rel=1e-3)
+    assert [len(classes(gas_of((9, 9), np.zeros((n, 2)), 0.0, radius[:n])).radius) for n in (1, 3, 50)] == [1, 3, 32]
+
+
+def test_speeds_of_discs_of_several_masses_follow_the_mixture():
+    """KS of 40 000 at 0.001, and the variance of their sum."""
+    radius = np.random.default_rng(1).uniform(0.3, 0.7, 400)
+    gas = gas_of((900, 900), np.zeros((400, 2)), 0.0, radius, mass=9 * radius**2)
+    ensemble = Ensemble(np.zeros(2), math.inf, 1.0, classes(gas), np.ones((1, 2)))
+    velocity = np.random.default_rng(2).normal(size=(2500, 400, 2)) / np.sqrt(gas.mass)[:, None]
+    speed, law = np.hypot(*np.moveaxis(velocity, 2, 0)), ensemble.velocity_law("speed", 0)
+    assert stats.kstest(speed[:100].ravel(), law.cdf).pvalue > 0.001
+    assert ensemble.mean_speed[0] == pytest.approx(speed.mean(), abs=4 * speed.std() / 1000)
+    assert speed.sum(axis=1).var() == pytest.approx(
+        ensemble.variances(np.array([400]))[0, 0], rel=4 * (2 / 2500) ** 0.5
+    )
+
+
 @pytest.mark.parametrize("conserved", [(False, False), (True, False), (True, True)])
 @pytest.mark.parametrize("quantity", ["vx", "vy", "speed", "energy"])
 def test_velocities_are_those_of_points_on_the_energy_surface(conserved, quantity):
@@ -98,7 +129,7 @@ def test_velocities_are_those_of_points_on_the_energy_surface(conserved, quantit
     velocity -= np.array(conserved) * (mass @ velocity)[:, None] / mass.sum()
     velocity /= np.sqrt((mass @ velocity**2).sum(axis=1) / dof)[:, None, None]  # T = 2E/D = 1
     axes = np.where(conserved, 1 - mass[:2, None] / mass.sum(), 1.0)
-    ensemble = Ensemble(np.zeros(2), dof, 1.0, mass[:2], axes)
+    ensemble = Ensemble(np.zeros(2), dof, 1.0, discs_of(mass[:2]), axes)
     for s in range(2):
         x, y = velocity[:, s].T
         sample = {"vx": x, "vy": y, "speed": np.hypot(x, y), "energy": mass[s] * (x**2 + y**2) / 2}[quantity]
@@ -111,7 +142,7 @@ def test_velocities_are_those_of_points_on_the_energy_surface(conserved, quantit
 
 def test_speed_of_a_disc_that_moves_along_one_axis_only():
     """The mean over directions, at its worst: half a normal distribution, whose P(< v) is erf(v/√2)."""
-    law = Ensemble(np.zeros(2), math.inf, 1.0, np.ones(1), np.array([[0.0, 1.0]])).velocity_law("speed", 0)
+    law = Ensemble(np.zeros(2), math.inf, 1.0, discs_of(np.ones(1)), np.array([[0.0, 1.0]])).velocity_law("speed", 0)
     speed = np.linspace(0, 4, 100)
     assert np.abs(law.cdf(speed) - (2 * stats.norm.cdf(speed) - 1)).max() < 2e-3
     assert law.mean == pytest.approx(math.sqrt(2 / math.pi), rel=1e-4)
@@ -129,5 +160,5 @@ def test_variances_of_speeds_and_energies(dof):
         velocity, energy = velocity * np.sqrt(scale)[:, None, None], energy * scale[:, None]
     speed = np.hypot(velocity[:, :, 0], velocity[:, :, 1])
     sums = [np.add.reduceat(values, [0, 150], axis=1).var(axis=0) for values in (speed, energy)]
-    found = Ensemble(np.zeros(2), dof, 1.5, mass, np.full((2, 2), 1.5)).variances(number)
+    found = Ensemble(np.zeros(2), dof, 1.5, discs_of(mass), np.full((2, 2), 1.5)).variances(number)
     assert found == pytest.approx(np.array(sums), rel=4 * math.sqrt(2 / 4000) + 2 / 400)

@@ -57,10 +57,33 @@ def test_mixture_of_equals_is_one_species():
     one = hard_discs.mixture_compressibility_factor([0.5], [300], 1000.0)
     two = hard_discs.mixture_compressibility_factor([0.5, 0.5], [100, 200], 1000.0)
     assert two == pytest.approx(one, rel=1e-14)
-    assert one == pytest.approx(hard_discs.henderson_compressibility_factor(300 * math.pi * 0.25 / 1000), rel=1e-14)
+    assert one == pytest.approx(hard_discs.compressibility_factor(300 * math.pi * 0.25 / 1000), rel=1e-14)
     rates = hard_discs.mixture_collision_rate([0.5, 0.5], [2.0, 2.0], [100, 200], 1000.0, 1.5)
     alone = hard_discs.collision_rate(1.0, 0.3, 1.5, 2.0, 300 * math.pi * 0.25 / 1000)
     assert rates.sum(axis=1) == pytest.approx([alone, alone], rel=1e-14)
+
+
+def test_mixtures_have_the_exact_second_virial_coefficient_and_one_equation_of_state():
+    """B₂ = (π/4)(⟨σ²⟩ + ⟨σ⟩²); Z of the contact values is that of `mixture_compressibility_factor`."""
+    radius, number = np.array([0.5, 1.0, 3.0]), np.array([50, 30, 20])
+    square, mean = 4 * (number @ radius**2) / 100, 2 * (number @ radius) / 100
+    second = math.pi / 4 * (square + mean**2)
+    thin = [hard_discs.mixture_compressibility_factor(radius, number, area) - 1 for area in (1e8, 2e8)]
+    assert (4 * thin[1] - thin[0]) * 1e8 / 100 == pytest.approx(second, rel=1e-5)
+    chi = hard_discs.mixture_contact_value(radius, number, 900.0, hard_discs.fluid_contact_value)
+    sigma = radius[:, None] + radius
+    z = 1 + math.pi / 2 * (number[:, None] * number * sigma**2 * chi).sum() / (100 * 900)
+    assert z == pytest.approx(hard_discs.mixture_compressibility_factor(radius, number, 900.0), rel=1e-13)
+    assert np.diff(hard_discs.box_contacts([0.5, 0.5], [100, 200], (30.0, 30.0), (True, True)).sum(axis=1)) == 0
+
+
+def test_nearly_equal_discs_are_those_of_one_species():
+    """The limit of equal discs, of finite gases too: `box_contacts` and Z as of one radius."""
+    box, number = (30.0, 30.0), np.full(32, 10)
+    for periodic in ((True, True), (False, False)):
+        alone = hard_discs.box_compressibility_factor([0.5], [320], box, periodic)
+        spread = hard_discs.box_compressibility_factor(np.linspace(0.5, 0.5 + 1e-9, 32), number, box, periodic)
+        assert spread == pytest.approx(alone, rel=1e-8)
 
 
 def test_meetings_of_two_species_are_mutual():

@@ -1,0 +1,71 @@
+"""A gas of discs of all sizes against the theory of mixtures: pressure, rates, speeds, free flights at fixed seeds."""
+
+import math
+
+import pytest
+from helpers.against_theory import LEAST_P
+
+from idealgas import histogram
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.transport.measure import transport
+from idealgas.scene import parse_scene
+
+SPREAD = 0.2 * math.sqrt(3)
+"""Half the width of a uniform distribution of standard deviation 0.2."""
+
+
+def scene(fraction, number=1000, radius="{{ uniform = [{low!r}, {high!r}] }}", *, run, log=""):
+    side = math.sqrt(number * math.pi * 1.04 / fraction)
+    sides = "".join(f"{name} = 'periodic'\n" for name in ("left", "right", "bottom", "top"))
+    return parse_scene(f"""
+        [box]
+        size = [{side!r}, {side!r}]
+        {sides}
+        [[species]]
+        name = "gas"
+        count = {number}
+        radius = {radius.format(low=1 - SPREAD, high=1 + SPREAD)}
+        mass = {{ density = 0.3 }}
+        temperature = 1
+        [run]
+        {run}
+        [log]
+        {log}
+    """)
+
+
+@pytest.mark.parametrize("fraction", [0.1, 0.3, 0.5])
+def test_pressure_is_that_of_the_mixture(fraction, run):
+    """Z of Santos, Yuste & López de Haro (1999) within three standard errors, which are below 0.3 %."""
+    found = pressure(run(scene(fraction, run="events = 600_000", log="events = false\npressure = true")))
+    assert found.packing_fraction == pytest.approx(fraction, rel=1e-6)
+    z = found.routes[-1].compressibility_factor
+    assert z.standard_error < 0.003 * z.value
+    assert abs(z.value - z.theory) < 3 * z.standard_error
+    equal = float(hard_discs.compressibility_factor(fraction, 1000))
+    assert equal - z.value > 3 * z.standard_error  # equal discs of this packing fraction have more
+
+
+def test_rates_and_distributions_are_those_of_the_mixture(run):
+    """Rates and free paths within three standard errors, KS of speeds and free flights at 0.001."""
+    log = run("polydisperse", "run.collisions_per_disc=150")
+    found = transport(log)
+    (rate,), (paths,), (contact,) = found.collision_rates, found.free_paths, found.contacts
+    for one in (rate.rate, paths.path, paths.time, paths.speed, contact.value):
+        assert one.standard_error < 0.01 * one.value
+        assert abs(one.value - one.theory) < 3 * one.standard_error + 0.002 * one.value  # contact values are so good
+    for quantity in ("speed", "vx", "energy", "free-path", "free-time"):
+        (one,) = histogram(log, quantity=quantity).distributions
+        assert all(test.p_value > LEAST_P for test in one.tests), quantity
+    (g,) = found.pair_distributions
+    assert g.edges[0] == pytest.approx(2 * log.discs.radius.min())
+    assert g.contact == pytest.approx(2 * log.discs.radius.mean())
+
+
+def test_a_distribution_of_no_width_is_a_gas_of_equal_discs(run):
+    scenes = [scene(0.3, 100, radius, run="events = 20_000") for radius in ("1.0", "{{ uniform = [1, 1] }}")]
+    one, other = (pressure(run(each)).as_dict() for each in scenes)
+    for found in (one, other):
+        found.pop("origin", None)
+    assert one == other
