@@ -230,8 +230,7 @@ def _temperature(scene: Scene, gas: Gas) -> float | None:
 
 def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     """Rates of a uniform gas; None if a disc has no room to move."""
-    discs = classes(gas)
-    _, radius, mass, number, _ = discs
+    _, radius, mass, number, _ = discs = classes(gas)
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, discs)
     if not _has_room(gas, scene.properties.periodic):
@@ -251,8 +250,7 @@ def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     if any(properties.periodic) or not pull.any() or not temperature > 0 or not _has_room(gas, properties.periodic):
         return None
     axis = int(pull[1] > 0)
-    discs = classes(gas)
-    _, radius, mass, number, _ = discs
+    _, radius, mass, number, _ = discs = classes(gas)
     found = column_rates(temperature, mass, radius, number, float(pull[axis]), gas.box[axis], gas.box[1 - axis])
     if found.densest > DENSEST:
         return None

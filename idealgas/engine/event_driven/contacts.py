@@ -4,6 +4,7 @@ import numpy as np
 
 from idealgas.engine.diagnostics import overlap_of
 from idealgas.engine.event_driven.cells import cell_index, is_large, own_cells
+from idealgas.engine.event_driven.neighbours import neighbours, new_neighbours
 from idealgas.engine.event_driven.prediction import (
     NO_CONTACT,
     SIDE_OF_BOX,
@@ -13,7 +14,7 @@ from idealgas.engine.event_driven.prediction import (
     precedes,
     segment_partner,
 )
-from idealgas.engine.event_driven.state import copy_image, image_of, record_image
+from idealgas.engine.event_driven.state import copy_image, image_of
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, njit, noinline
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
@@ -21,139 +22,6 @@ from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.wall import misses_segment, segment_contact
 
 U = np.uintp
-
-
-@inline
-def wrapped_index(index, count, is_periodic):
-    """Column or row of a cell, wrapped along a periodic axis, and the image in which the cell is seen: -1, 0 or 1.
-
-    count: number of columns or rows, ring included.
-    """
-    if is_periodic:
-        if index < 1:
-            return index + count - 2, -1
-        if index > count - 2:
-            return index - (count - 2), 1
-    return index, 0
-
-
-@noinline
-def append_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
-    """Do the work of `append_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
-    for step in range(3):
-        c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
-        r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
-        j = cells.head[U(r * cells.columns + c)]
-        candidates[U(count)] = j
-        record_image(images, count, image_x, image_y)
-        count += 1 if j >= 0 else 0
-    return count
-
-
-@inline
-def is_inside(cells, column, row, along_y):
-    """Whether three cells in a row or column, from (column, row) on, are all in the box."""
-    last_column = column + (0 if along_y else 2)
-    last_row = row + (2 if along_y else 0)
-    return (column >= 1) & (row >= 1) & (last_column < cells.columns - 1) & (last_row < cells.rows - 1)
-
-
-@inline
-def append_line(state, count, column, row, along_y, periodic):
-    """Append the first discs of three cells in a row or column, from (column, row) on, to `count` candidates.
-
-    Returns the new number of candidates.
-    """
-    cells = state.cells
-    if periodic is not None and not is_inside(cells, column, row, along_y):
-        return append_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
-    stride = cells.columns if along_y else 1
-    cell = row * cells.columns + column
-    for _ in range(3):
-        j = cells.head[U(cell)]
-        state.candidates[U(count)] = j
-        record_image(state.images, count, 0, 0)
-        count += 1 if j >= 0 else 0
-        cell += stride
-    return count
-
-
-@inline
-def append_coarse(state, coarse, disc, crossing_code, periodic):
-    """Make the first discs near a large disc, or the first large ones near a small disc, the candidates.
-
-    crossing_code: direction in which the disc has just crossed into its cell: only those that came within reach then.
-    SIDE_OF_BOX for all. Returns their number, 0 without coarse cells.
-    """
-    if coarse is not None:
-        return append_coarse_cells(state, coarse, disc, crossing_code, periodic)
-    return 0
-
-
-@noinline
-def append_coarse_cells(state, coarse, disc, crossing_code, periodic):
-    """Do the work of `append_coarse`: small and large discs are near in adjacent coarse cells, large ones in two."""
-    column, row = np.int64(disc.column), np.int64(disc.row)
-    if is_large(coarse, disc):
-        count = append_coarse_block(state, coarse, 0, True, column, row, 1, crossing_code, periodic)
-        return append_coarse_block(state, coarse, count, False, column, row, 2, crossing_code, periodic)
-    if crossing_code < SIDE_OF_BOX:
-        edge = (row if crossing_code >= 2 else column) - (crossing_code & 1)
-        if edge % coarse.ratio != 0:
-            return 0  # it has crossed within a coarse cell
-    column, row = (column - 1) // coarse.ratio + 1, (row - 1) // coarse.ratio + 1
-    return append_coarse_block(state, coarse, 0, False, column, row, 1, crossing_code, periodic)
-
-
-@noinline
-def append_coarse_block(state, coarse, count, of_small, column, row, reach, crossing_code, periodic):
-    """Append the first small, or large, discs in the coarse cells that are up to `reach` from (column, row).
-
-    After a crossing only those in the direction of the crossing.
-    """
-    low_x, high_x, low_y, high_y = column - reach, column + reach, row - reach, row + reach
-    forward = reach if crossing_code & 1 else -reach
-    if crossing_code < 2:
-        low_x = high_x = column + forward
-    elif crossing_code < SIDE_OF_BOX:
-        low_y = high_y = row + forward
-    for x in range(low_x, high_x + 1):
-        for y in range(low_y, high_y + 1):
-            count = append_coarse_cell(state, coarse, count, of_small, x, y, periodic)
-    return count
-
-
-@inline
-def append_coarse_cell(state, coarse, count, of_small, x, y, periodic):
-    """Append the first small, or large, discs in a coarse cell, which may lie beyond a side of the box."""
-    image_x = image_y = 0
-    if periodic is not None:
-        x, image_x = wrapped_index(x, coarse.cells.columns, periodic.x)
-        y, image_y = wrapped_index(y, coarse.cells.rows, periodic.y)
-    if x < 1 or y < 1 or x > coarse.cells.columns - 2 or y > coarse.cells.rows - 2:
-        return count
-    cells = state.cells if of_small else coarse.cells
-    size = coarse.ratio if of_small else 1
-    for row in range((y - 1) * size + 1, y * size + 1):
-        for column in range((x - 1) * size + 1, x * size + 1):
-            j = cells.head[U(row * cells.columns + column)]
-            state.candidates[U(count)] = j
-            record_image(state.images, count, image_x, image_y)
-            count += 1 if j >= 0 else 0
-    return count
-
-
-@inline
-def neighbours(state, disc, periodic):
-    """Make the first discs of a disc's own cell and of the eight around it the candidates; return their number."""
-    count = append_coarse(state, state.coarse, disc, SIDE_OF_BOX, periodic)
-    if is_large(state.coarse, disc):
-        return count
-    column = np.int64(disc.column) - 1
-    row = np.int64(disc.row) - 1
-    count = append_line(state, count, column, row, False, periodic)
-    count = append_line(state, count, column, row + 1, False, periodic)
-    return append_line(state, count, column, row + 2, False, periodic)
 
 
 @inline
@@ -298,22 +166,6 @@ def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effec
             prediction.contact = time
             prediction.partner = partner
             store_images(prediction, images, effects.periodic)
-
-
-@inline
-def new_neighbours(state, disc, crossing_code, periodic):
-    """Make the first discs of the three cells that came within reach of a disc the candidates; return their number.
-
-    crossing_code: direction in which it crossed into its cell, see PREDICTION.
-    """
-    count = append_coarse(state, state.coarse, disc, crossing_code, periodic)
-    if is_large(state.coarse, disc):
-        return count
-    forward = 1 if crossing_code & 1 else -1
-    along_y = crossing_code >= 2
-    column = np.int64(disc.column) + (-1 if along_y else forward)
-    row = np.int64(disc.row) + (forward if along_y else -1)
-    return append_line(state, count, column, row, not along_y, periodic)
 
 
 @inline
