@@ -39,9 +39,7 @@ from idealgas.log import Log
 
 FEWEST_SEGMENTS = 8  # of the window, each as long as the longest lag
 LEAST_WINDOW = 16.0  # longest lags; in one of eight, coefficients of the whole gas are too small by up to a fourth
-SURE_WINDOW = (
-    200.0  # longest lags from which on errors are right; with 75 the rms of deviations is up to 1.25 errors
-)
+SURE_WINDOW = 200.0  # longest lags from which on errors are right; with 75 the rms of deviations is up to 1.25 errors
 
 
 @dataclass(frozen=True)
