@@ -105,8 +105,8 @@ def test_tables_json_csv_and_pictures(idealgas):
     table = idealgas("fastest-disc", "run.h5")
     assert "at the end\nOf one disc" in table
     assert f"{speed:.6g}" in table
-    (row,) = csv.DictReader(idealgas("fastest-disc", "run.h5", "--csv").splitlines())
-    assert (row["quantity"], float(row["value"])) == ("fastest_disc.speed", speed)
+    rows = csv.DictReader(idealgas("fastest-disc", "run.h5", "--csv").splitlines())
+    assert [float(row["value"]) for row in rows if row["quantity"] == "fastest_disc.speed"] == [speed]
     second = json.loads(idealgas("fastest-disc", "run.h5", "--rank", 2, "--json"))["speed"]["value"]
     assert 0 < second < speed
     idealgas("fastest-disc", "run.h5", "--plot", "speeds.png")
