@@ -14,7 +14,10 @@ GOLDEN = ROOT / "tests" / "cases" / "golden" / "fixed-discs.toml"
 LORENTZ = ROOT / "configs" / "lorentz.toml"
 
 
-@pytest.mark.parametrize("gravity", [(), ("gravity=", "restitution=")], ids=["falling", "straight"])
+@pytest.mark.parametrize(
+    "gravity",
+    [pytest.param((), marks=pytest.mark.slow, id="falling"), pytest.param(("gravity=", "restitution="), id="straight")],
+)
 def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
     whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
     summary = simulate(load_scene(GOLDEN, gravity), whole)

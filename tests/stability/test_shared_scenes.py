@@ -20,7 +20,8 @@ THREADS = (2, 3, 4, 7)
 
 def is_shared(scene) -> bool:
     """Whether several threads may run a scene at all."""
-    rows = scene.box.size[1] / (2.001 * max((kind.radius for kind in scene.species), default=scene.box.size[1]))
+    largest = max((kind.largest_radius for kind in scene.species), default=scene.box.size[1])
+    rows = scene.box.size[1] / (2.001 * largest)
     return scene.run.method == "event_driven" and scene.piston is None and rows >= 2 * MIN_ROWS
 
 

@@ -16,7 +16,9 @@ DRIVEN = "piston={ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8,
 DISC = "[[disc]]\nposition = {}\nvelocity = {}\nradius = 0.5\n"
 
 
-@pytest.mark.parametrize("piston", [(), (DRIVEN,)], ids=["pressed", "driven"])
+@pytest.mark.parametrize(
+    "piston", [pytest.param((), id="pressed"), pytest.param((DRIVEN,), marks=pytest.mark.slow, id="driven")]
+)
 def test_the_same_by_brute_force_and_resumed(tmp_path, piston):
     whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
     summary = simulate(load_scene(GOLDEN, piston), whole)

@@ -52,7 +52,7 @@ FAST = {  # 1.0
 
 
 @pytest.mark.parametrize("name", [*SLOW, *FAST])
-@pytest.mark.parametrize("start", [None, 0.5])
+@pytest.mark.parametrize("start", [None, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_slow_structure_is_said(name, start, tmp_path):
     discs, collisions = (SLOW | FAST)[name]
     scene = f"scene.seed = 1\n[box]\nsize = [1, 1]\n{discs}[run]\ncollisions_per_disc = {collisions}\n"

@@ -150,7 +150,7 @@ def test_pressure_in_bins_of_time(make):
     axes = [ax.get_ylabel() for ax in found.plot().axes]
     assert axes.count("pressure (energy/length²)") == 2
     labels = [text.get_text() for text in found.plot().axes[-1].get_legend().get_texts()]
-    assert labels == ["isotherm through the start", "adiabat through the start", "P on right wall"]
+    assert labels == ["isotherm through the start", "adiabat through the start", "P on right wall, in time"]
 
 
 def test_pressure_of_a_uniform_gas_is_that_of_all_sides(make):

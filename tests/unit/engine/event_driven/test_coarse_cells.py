@@ -44,6 +44,8 @@ SCENES = {
     "thermostat": BOX + SIDES + DISCS + "[thermostat]\ntemperature = 1\nrate = 1\n",
 }
 
+QUICK = ("reflecting", "periodic")
+
 
 def test_only_discs_that_are_far_larger_have_coarse_cells():
     radius = np.full(4001, 0.006)
@@ -67,7 +69,9 @@ def test_the_log_is_that_of_brute_force_whatever_the_cells(filling):
     assert same_rows(record(Simulation(gas, EventDriven(filling)), stop), record(Simulation(gas, BruteForce()), stop))
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SCENES]
+)
 def test_the_log_is_that_of_brute_force(name, tmp_path):
     found = []
     for method in ("event_driven", "brute_force"):
