@@ -51,16 +51,17 @@ class Player:
     end: float
 
 
-def player(log: Log, start: float | None = None, rows: int = MOST_ROWS, order: bool = True) -> Player | None:
-    """Data of the player from time `start`, by default the start of the log, for at most `rows` event rows.
+def player(log: Log, start: float | None = None, rows: int | None = None, order: bool = True) -> Player | None:
+    """Data of the player from time `start`, by default the start of the log, for some event rows.
 
-    order: whether the page knows the order ψ₆ of discs. None if the log has no events or more than MOST_DISCS discs.
+    rows: their largest number, by default MOST_ROWS. order: whether the page knows the order ψ₆ of discs. None if the
+    log has no events or more than MOST_DISCS discs.
     """
     gas = log.discs
     if not log.has_events or len(gas) > MOST_DISCS:
         return None
     first, last = span(log, start, None)
-    row = log.row_at(first, "right")
+    row, rows = log.row_at(first, "right"), rows or MOST_ROWS
     if len(log) - row > rows:
         (cut,) = log.chunks(("time",), row + rows, row + rows + 1)
         last = float(np.nextafter(cut.time[0], first))

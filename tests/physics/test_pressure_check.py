@@ -148,13 +148,17 @@ NO_THEORY = {
     "corner",
     "crystal",
     "effusion",
+    "lorentz",
     "melting",
     "novak-bortz",
+    "otto",
     "piston",
+    "quench",
     "rough-cooling",
     "separation",
     "sinai",
     "three-discs",
+    "vibrated-granular",
     "wedge",
 }
 """Shipped scenes of gases that are not uniform, not at a known temperature, without positions or of too few discs."""

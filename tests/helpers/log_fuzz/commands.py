@@ -21,13 +21,15 @@ NEEDED = {
 FURTHER = {"recover": ("-o whole.h5",), "pressure": ("--plot picture.png", "--csv")}
 """Further forms of a command, in addition to those of its own choices."""
 SLOW = ("report", "animate")
+ENDLESS = ("watch",)
+"""Commands that end with Ctrl-C."""
 
 
 def reading_commands() -> tuple[str, ...]:
     """Names of the commands whose argument is a log."""
     context = click.Context(main)
     found = {name: main.get_command(context, name) for name in main.list_commands(context)}
-    return tuple(name for name, command in found.items() if command and _reads(command))
+    return tuple(name for name, command in found.items() if command and _reads(command) and name not in ENDLESS)
 
 
 def forms(name: str) -> tuple[Form, ...]:

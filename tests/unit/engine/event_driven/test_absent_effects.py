@@ -18,6 +18,7 @@ MARKERS = {
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
     "thermal walls": {"thermal.uniform"},
+    "vibrating sides": {"vibration.vibrating_contact", "vibration.side_velocity"},
     "piston": {"piston.advance_piston", "piston.piston_contact", "piston.collide_with_piston"},
     "thermostat": {"thermostat.uniform", "thermostat.andersen_collision"},
 }
@@ -47,7 +48,7 @@ from idealgas.run.simulate import simulate
 
 if sys.argv[2] == "all":
     sys.setprofile(lambda frame, event, _: called.add((frame.f_globals.get("__name__"), frame.f_code.co_name)))
-simulate(effect_scene("all" if sys.argv[2] == "all" else None, 300), sys.argv[1])
+simulate(effect_scene("all", 2000) if sys.argv[2] == "all" else effect_scene(None, 300), sys.argv[1])
 sys.setprofile(None)
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
 signatures = advance_events.compiled.signatures if hasattr(advance_events, "compiled") else []
