@@ -12,6 +12,7 @@ from idealgas import load_scene, open_log, resume, simulate, temperature
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "vibrating.toml"
 
 
+@pytest.mark.slow
 def test_the_same_by_brute_force_and_resumed(tmp_path):
     whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
     summary = simulate(load_scene(GOLDEN), whole)

@@ -44,6 +44,7 @@ def test_without_events_it_has_the_samples(make):
     assert found.spin == pytest.approx(found.parts["spin"] * 2 / 40)
 
 
+@pytest.mark.slow
 def test_of_very_many_samples_some_are_read(make, tmp_path):
     """A small log may have millions of equal samples, as they are compressed; all at once would need much memory."""
     path, number = shutil.copyfile(make("box.left={thermal=1.5}").path, tmp_path / "many.h5"), 16 * MOST_SAMPLES + 1
