@@ -49,7 +49,7 @@ def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
     costs = []
     for point in sweep.points:
         if point.combination not in trials:
-            trials[point.combination] = _try(point.scene, sweep.analyses)
+            trials[point.combination] = _try(point.scene, sweep.analyses, first=not trials)
         costs.append(_cost(point.scene, trials[point.combination], len(sweep.analyses)))
     return tuple(costs)
 
@@ -72,12 +72,14 @@ def _cost(scene: Scene, trial: _Trial, analyses: int) -> Cost:
     return Cost(expected.number, expected.packing_fraction, events, size, seconds)
 
 
-def _try(scene: Scene, analyses: Sequence[str]) -> _Trial:
+def _try(scene: Scene, analyses: Sequence[str], first: bool) -> _Trial:
     run = scene.run.model_copy(update={"events": min(TRIAL_EVENTS, scene.run.events or TRIAL_EVENTS)})
     with tempfile.TemporaryDirectory(prefix="idealgas-sweep-") as folder:
         path = Path(folder) / "trial.h5"
         summary = simulate(scene.model_copy(update={"run": run}), path)
-        analysed = [_analyse(path, analyses) for _ in range(2)][1]  # the first one loads machine code
+        if first:
+            _analyse(path, analyses)  # loads machine code
+        analysed = _analyse(path, analyses)
     events = max(summary.events, 1)
     return _Trial(summary.rows / events, events / summary.seconds, events / max(summary.end_time, 1e-300), analysed)
 
