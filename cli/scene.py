@@ -39,5 +39,5 @@ def scene(path: str, time: float | Literal["end"], output: str, force: bool) -> 
     with open_log(path) as log:
         text = continued_scene(log, time, source)
     with replacing(target, force) as part:
-        part.write_text(f"#:schema scene.schema.json\n\n{text}", encoding="utf-8")
+        part.write_text(f"#:schema scene.schema.json\n\n{text}", encoding="utf-8", newline="\n")
     written(target)

@@ -217,6 +217,6 @@ def write_files(
         writer.writeheader()
         writer.writerows(rows)
     with written(numbers, ".json", force) as part:
-        part.write_text(json.dumps(result, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        part.write_text(json.dumps(result, indent=2, allow_nan=False) + "\n", encoding="utf-8", newline="\n")
     for figure, picture in zip(figures, pictures, strict=True):
         save(figure, picture, force)

@@ -76,7 +76,7 @@ def write_report(
     played = player(log, start)
     sections = make_sections(log, on_step)
     with written(path, kind, force) as part:
-        part.write_text(_page(log, played, sections), encoding="utf-8")
+        part.write_text(_page(log, played, sections), encoding="utf-8", newline="\n")
     return path
 
 

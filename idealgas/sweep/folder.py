@@ -108,7 +108,7 @@ def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
         raise _foreign_point(folder, found)
     check_outputs(folder, (p.index for p in points if not result_path(folder, p.index).exists()))
     with replacing(folder / PLAN) as part:
-        part.write_text(sweep.text, encoding="utf-8")
+        part.write_text(sweep.text, encoding="utf-8", newline="\n")
     return replace(sweep, points=tuple(points))
 
 

@@ -60,4 +60,4 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
     }
     text = json.dumps(found, indent=1, allow_nan=False)
     with replacing(done) as unfinished:
-        unfinished.write_text(text)
+        unfinished.write_text(text, encoding="utf-8", newline="\n")

@@ -89,6 +89,10 @@ def run_sweep(
     Raises:
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
     """
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'") from None
     folder = Path(folder).absolute()
     with hold_folder(folder):
         sweep = resume_numbering(sweep, folder)
@@ -151,13 +155,11 @@ def _reason(error: Any) -> str:
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
     """Yield a client of the scheduler at an address, or of a local cluster with `workers` processes."""
-    try:
-        import dask
-        from distributed import Client, LocalCluster
-        from distributed.comm import parse_address, parse_host_port
-        from distributed.utils import silence_logging_cmgr
-    except ImportError:
-        raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'") from None
+    import dask
+    from distributed import Client, LocalCluster
+    from distributed.comm import parse_address, parse_host_port
+    from distributed.utils import silence_logging_cmgr
+
     if scheduler is not None:
         try:
             parse_host_port(parse_address(scheduler)[1])  # a client of an invalid address cannot be closed cleanly

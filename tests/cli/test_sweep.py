@@ -169,6 +169,7 @@ def test_without_the_extra_one_line_names_it(plan, tmp_path):
     done = idealgas("sweep", plan, "-o", tmp_path / "out", PYTHONPATH=str(tmp_path))
     assert done.returncode == 2
     assert done.stderr == "a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'\n"
+    assert not (tmp_path / "out").exists()
 
 
 LONGER = SWEEP.replace("run.events = 2000", "run.events = 200_000").replace("replicates = 3", "replicates = 4")

@@ -1,14 +1,18 @@
 """Files that are written: what may be replaced, by whom, and that they appear whole or not at all."""
 
+import ast
 import errno
 import os
 import socket
 import subprocess
 import sys
+from pathlib import Path
 
+import idealgas_cli
 import pytest
 from helpers.log_samples import new_writer, write_rows
 
+import idealgas
 from idealgas.errors import OutputError
 from idealgas.files import LOG, check_output, written
 from idealgas.log import open_log
@@ -150,3 +154,13 @@ def test_a_log_that_goes_during_the_run(tmp_path, how):
         writer.close()
         with open_log(tmp_path / "better.h5") as log:
             assert len(log) == 10
+
+
+def test_texts_have_the_same_line_ends_on_every_system():
+    """A file is recognised by its first line, also on Windows, where Python writes "\\r\\n" if it is not told."""
+    for package in (idealgas, idealgas_cli):
+        for path in Path(package.__file__).parent.rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "write_text":
+                    given = {word.arg: ast.unparse(word.value) for word in node.keywords}
+                    assert given == {"encoding": "'utf-8'", "newline": "'\\n'"}, (path, node.lineno)
