@@ -24,7 +24,9 @@ def progress_bar(description: str) -> Iterator[Show]:
 
     columns = BarColumn(), TaskProgressColumn(), TextColumn("{task.description}, remaining"), TimeRemainingColumn()
     console = terminal(err=True)
-    with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bar:
+    with Progress(
+        *columns, console=console, disable=not console.is_terminal, transient=True, redirect_stdout=False
+    ) as bar:
         task = bar.add_task(description, total=None)
 
         def show(done: float, total: float = 1.0, description: str | None = None, notice: str = "") -> None:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from idealgas.log.summary import Summary
     from idealgas.run.simulate import Progress
 
+    from .events import EventStream
+
 
 def run_with_progress(
     simulate: "Callable[..., Summary]",
@@ -24,6 +26,7 @@ def run_with_progress(
     as_json: bool,
     from_start: bool = True,
     on_start: Callable[[], None] = lambda: None,
+    stream: "EventStream | None" = None,
 ) -> None:
     """Call `simulate` with a progress bar, stop it at Ctrl-C, and print the summary of its log.
 
@@ -33,6 +36,7 @@ def run_with_progress(
         as_json: whether to print JSON.
         from_start: whether this run wrote all events of the log.
         on_start: called when the first events are in the log.
+        stream: prints the events instead of the summary; the run ends when it is closed.
     """
     from ._interrupt import EXIT_CODE, ctrl_c
 
@@ -50,14 +54,19 @@ def run_with_progress(
                 doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}"
                 show(progress.share, description=doing, notice=progress.notice)
 
-            summary = simulate(command=command, on_progress=on_progress, interrupted=interrupted)
-        if as_json:
+            def stopped() -> bool:
+                return interrupted() or (stream is not None and stream.closed)
+
+            summary = simulate(command=command, on_progress=on_progress, interrupted=stopped)
+        if stream is not None:
+            pass
+        elif as_json:
             data(json.dumps(summary.as_dict(), indent=2))
         else:
             _print(summary, path, from_start)
-        if interrupted():
+        if stopped():
             echo(f"interrupted; `idealgas resume {shlex.quote(path)}` continues it", err=True)
-            raise SystemExit(EXIT_CODE)
+            raise SystemExit(EXIT_CODE) if interrupted() else BrokenPipeError
 
 
 def _print(summary: "Summary", output: str, from_start: bool) -> None:

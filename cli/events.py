@@ -39,7 +39,7 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
             live = follow and log.live  # before the rows are read, so that none is missed
             stop = len(log) if t1 is None else log.row_at(t1)
             for batch in log.chunks(None, row, stop):
-                _print(batch, disc, None if kind is None else KINDS.index(kind))
+                print_events(batch, disc, None if kind is None else KINDS.index(kind))
             row = max(row, stop)
             if not live or (t1 is not None and stop < len(log)):
                 return
@@ -47,7 +47,24 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
             log.refresh()
 
 
-def _print(batch: "EventBatch", disc: int | None, kind: int | None) -> None:
+class EventStream:
+    """Function that prints event rows until the reader of the output closes it.
+
+    Attributes:
+        closed: whether the reader has closed it.
+    """
+
+    closed = False
+
+    def __call__(self, batch: "EventBatch") -> None:
+        """Print the rows of a batch; waits while the pipe is full."""
+        try:
+            print_events(batch)
+        except BrokenPipeError:
+            self.closed = True
+
+
+def print_events(batch: "EventBatch", disc: int | None = None, kind: int | None = None) -> None:
     """Print the rows of a batch that are of a disc and of a kind, None for any."""
     import numpy as np
 

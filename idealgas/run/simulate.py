@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.diagnostics import Diagnostics
@@ -104,6 +105,7 @@ def simulate(
     command: str = "",
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
+    on_events: Callable[[EventBatch], None] | None = None,
 ) -> Summary:
     """Run a scene to the end that its table [run] asks for, and write its log.
 
@@ -117,6 +119,7 @@ def simulate(
         on_progress: called several times per second with the `Progress` of the run.
         interrupted: called as often; once it returns True, the run ends after its last event, and the summary has
             `completed` False. The log can then be read and resumed, as after Ctrl-C (KeyboardInterrupt).
+        on_events: called with the next rows of the log, in order, which it may use until it returns; the run waits.
 
     Raises:
         SceneError: if the discs cannot be placed.
@@ -140,7 +143,7 @@ def simulate(
         force=force,
     ) as log:
         past = RunHistory(energy_of(gas, effects))
-        return LoggedRun(scene, Simulation(gas, method, effects), log, past, compiled_before).run(
+        return LoggedRun(scene, Simulation(gas, method, effects), log, past, compiled_before, on_events).run(
             on_progress, interrupted
         )
 
@@ -170,12 +173,19 @@ class LoggedRun:
     """A simulation and its log on the way to a stop; compiled_before: `compile_seconds` before either was made."""
 
     def __init__(
-        self, scene: Scene, simulation: Simulation, log: LogWriter, past: RunHistory, compiled_before: float
+        self,
+        scene: Scene,
+        simulation: Simulation,
+        log: LogWriter,
+        past: RunHistory,
+        compiled_before: float,
+        on_events: Callable[[EventBatch], None] | None = None,
     ) -> None:
         self._scene = scene
         self._simulation = simulation
         self._log = log
         self._compiled_before = compiled_before
+        self._on_events = on_events
         self._stop = stop_of(scene, len(simulation.gas))
         self._start_energy, self._overlap, self._outside, self._snapshots, self._begun = past
         self._stall = StallDetector(simulation, self._stop, self._begun)
@@ -224,15 +234,23 @@ class LoggedRun:
         """Advance by at most `events` events and write their rows to the log."""
         simulation = self._simulation
         if self._scene.log.events:
-            self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
+            self._advance(events)
             while simulation.method.pending:
-                self._log.write(simulation.advance(self._stop, self._log.batch(), events, self._next_snapshot))
+                self._advance(events)
         else:
             simulation.advance(self._stop, None, events, self._next_snapshot)
         if self._extra_state != simulation.method.extra_state:
             self._extra_state = dict(simulation.method.extra_state)
             gas, effects = simulation.state()
             self._observe(simulation.last_event_time, gas, effects, simulation.check_invariants_of(gas))
+
+    def _advance(self, events: int) -> None:
+        """Advance by at most `events` events and write the rows that fit into a buffer of the log."""
+        batch = self._log.batch()
+        rows = self._simulation.advance(self._stop, batch, events, self._next_snapshot)
+        if self._on_events is not None and rows:
+            self._on_events(batch.rows(0, rows))
+        self._log.write(rows)
 
     @property
     def _next_snapshot(self) -> float:

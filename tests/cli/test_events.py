@@ -1,11 +1,13 @@
 """Events as lines of JSON: filters, a log that is being written, and a reader that goes away."""
 
 import json
+import os
+import pty
 import subprocess
 
 import numpy as np
 import pytest
-from helpers.support import IDEALGAS, called, output_of
+from helpers.support import IDEALGAS, called, error_of, output_of
 from idealgas_cli.events import KINDS
 
 from idealgas import open_log
@@ -67,6 +69,49 @@ def test_a_reader_that_goes_away(folder):
     command = f"{IDEALGAS} events run.h5 | head -n 1; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], cwd=folder, capture_output=True, text=True)
     assert (done.returncode, done.stderr, len(rows(done.stdout))) == (141, "", 1)
+
+
+def test_stream_of_a_run(folder):
+    """The lines are those of `events`, and the log is that of a run without a stream."""
+    streamed = output_of("run", "scene.toml", "-o", "streamed.h5", "--stream", folder=folder)
+    assert streamed == output_of("events", folder / "run.h5")
+    assert output_of("digest", folder / "streamed.h5").split()[0] == output_of("digest", folder / "run.h5").split()[0]
+
+
+def test_stream_beside_a_progress_bar(folder):
+    """A bar on a terminal leaves the lines on stdout."""
+    bar, terminal = pty.openpty()
+    run = [IDEALGAS, "run", "scene.toml", "-o", "bar.h5", "--stream", "--set", "run.until=2"]
+    done = subprocess.run(run, cwd=folder, stdout=subprocess.PIPE, stderr=terminal, text=True)
+    os.close(terminal)
+    os.close(bar)
+    assert (done.returncode, done.stdout) == (0, output_of("events", folder / "run.h5", "--to", 2))
+
+
+def test_a_reader_that_leaves_a_run(folder):
+    """The run waits for its reader, ends with it, has every line that was read, and can be continued."""
+    run = [IDEALGAS, "run", "scene.toml", "-o", "left.h5", "--stream"]
+    with subprocess.Popen(run, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        first = process.stdout.readline()
+        assert process.poll() is None  # 200 units of time fill any pipe
+        process.stdout.close()
+        assert process.wait() == 141
+        assert process.stderr.read() == "interrupted; `idealgas resume left.h5` continues it\n"
+    whole = output_of("events", folder / "run.h5")
+    left = output_of("events", folder / "left.h5")
+    assert left.startswith(first)
+    assert whole.startswith(left)
+    assert len(left) < len(whole)
+    output_of("resume", folder / "left.h5")
+    assert output_of("events", folder / "left.h5") == whole
+
+
+def test_streams_that_cannot_be(folder):
+    line = error_of("run", "scene.toml", "-o", "no.h5", "--stream", "--json", folder=folder)
+    assert line == "--stream cannot be combined with --json or --watch\n"
+    line = error_of("run", "scene.toml", "-o", "no.h5", "--stream", "--set", "log.events=false", folder=folder)
+    assert line == "scene.toml: --stream requires events (got log.events = false)\n"
+    assert not (folder / "no.h5").exists()
 
 
 def test_a_log_without_events(folder):
