@@ -11,6 +11,7 @@ from pathlib import Path
 import idealgas_cli
 import pytest
 from helpers.log_samples import new_writer, write_rows
+from helpers.support import posix
 
 import idealgas
 from idealgas.errors import OutputError
@@ -47,6 +48,7 @@ def test_only_files_of_the_same_kind_are_replaced(tmp_path):
     assert (scene.read_text(), page.read_text()) == ("[box]", "<!doctype html><title>mine</title>")
 
 
+@posix
 def test_what_is_no_regular_file_is_left_alone(tmp_path):
     os.mkfifo(tmp_path / "fifo")
     listening = socket.socket(socket.AF_UNIX)
@@ -70,6 +72,7 @@ def test_an_input_is_no_output(tmp_path, link):
     check_output(tmp_path / "third.h5", LOG, inputs=[source, tmp_path / "none.toml"])
 
 
+@posix
 def test_a_link_is_written_through(tmp_path):
     (tmp_path / "folder").mkdir()
     link = tmp_path / "page.html"
@@ -138,6 +141,7 @@ def test_two_writers_of_a_new_log(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
+@posix
 @pytest.mark.parametrize("how", ["removed", "moved"])
 def test_a_log_that_goes_during_the_run(tmp_path, how):
     """Without a name its rows are lost; under another name they are as good as before."""

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from helpers.crafted import craft, link, opened, put, read_path, refused, seal, swap
 from helpers.log_samples import write_log
+from helpers.support import posix
 from isal import isal_zlib
 
 from idealgas.log import DamageError, LogError, LogWriter, open_log, recover
@@ -181,6 +182,7 @@ def fifo(path):
     return path
 
 
+@posix
 def test_what_is_not_a_regular_file(tmp_path):
     for odd in (fifo(tmp_path / "fifo"), tmp_path / "link", Path("/dev/null"), Path("/dev/zero")):
         if odd.name == "link":

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from helpers.log_compare import scene_of
 from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
+from helpers.support import posix
 
 from idealgas.columns import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
@@ -191,6 +192,7 @@ def test_hdf5_of_others(tmp_path):
             open_log(tmp_path / "run.h5")
 
 
+@posix
 def test_no_file(tmp_path):
     with pytest.raises(LogError, match=r"cannot be read: No such file or directory$"):
         open_log(tmp_path / "run.h5")

@@ -1,7 +1,6 @@
 """Logs opened for writing again: after their writer was killed, and to continue from a checkpoint."""
 
 import os
-import signal
 
 import h5py
 import numpy as np
@@ -18,7 +17,7 @@ def left(request, tmp_path_factory):
     """A log whose writer was killed."""
     path = tmp_path_factory.mktemp("log") / "run.h5"
     child = start_writer(path, request.param, "499", rows=2000)
-    child.send_signal(signal.SIGKILL)
+    child.kill()
     child.wait()
     return path
 

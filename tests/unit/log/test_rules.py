@@ -330,7 +330,7 @@ def test_pairs(run, tmp_path):
 def test_missing_data_are_named(sound, tmp_path):
     with open_log(sound) as log:
         for table, name in (("observables", "momentum"), ("summary", "trials")):
-            with pytest.raises(LogError, match=f"^{sound}: damaged: {table}: has no {name}$"):
+            with pytest.raises(LogError, match=f"^{re.escape(str(sound))}: damaged: {table}: has no {name}$"):
                 getattr(log, table)[name]
 
 

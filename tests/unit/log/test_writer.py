@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.log_samples import DISCS, STEP, check, gas, new_writer, rows, write_checkpoint, write_log, write_rows
+from helpers.support import posix
 
 import idealgas.log.writer as log_writer
 from idealgas.columns import (
@@ -291,6 +292,7 @@ def test_a_fault_of_the_thread_comes_up(tmp_path, monkeypatch, calls):
     assert not any(thread.name == "log writer" for thread in threading.enumerate())
 
 
+@posix
 def test_a_command_with_a_file_name_that_is_not_utf_8(tmp_path):
     path = tmp_path / os.fsdecode(b"gas\xff.h5")
     write_log(path, 10, command="idealgas run gas\udcff.toml")

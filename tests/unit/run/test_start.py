@@ -176,6 +176,8 @@ def test_exported_frames_are_starts(tmp_path, old, kind):
     path = tmp_path / f"frames.{kind}"
     with open_log(old) as log:
         discs, state = log.discs, log.state_at(log.end_time)
+    if kind in ("csv", "gsd"):
+        pytest.importorskip({"csv": "pyarrow", "gsd": "gsd"}[kind])
     if kind == "npz":
         names = np.array(discs.species_names)[discs.species]
         np.savez(path, position=state.position, velocity=state.velocity, species=names)
@@ -220,7 +222,7 @@ START = f"{GAS}[start]\n"
         (START, "start.log: not one source of discs (got nothing; allowed one of log and file)"),
         (START + "log = 'a.h5'\nfile = 'b.csv'\n", "start.log: not one source of discs (got log and file"),
         (START + "log = 'none.h5'\n", "start.log: cannot be started from (got"),
-        (START + "file = 'none.csv'\n", "start.file: cannot be read (got No such file or directory"),
+        (START + "file = 'none.csv'\n", "start.file: cannot be read (got "),
         (START + "file = 'none.txt'\n", "start.file: unknown kind of file (got none.txt; allowed .npz, .csv"),
         (START + "log = 'OLD'\ntime = 1e9\n", "start.log: cannot be started from (got OLD: no state at time 1e+09"),
         (START + "log = 'OLD'\ntime = 'soon'\n", "start.time: unknown value"),

@@ -1,6 +1,5 @@
 """Exported files, read by the packages they are for."""
 
-import resource
 import sys
 import warnings
 
@@ -206,6 +205,7 @@ def test_an_existing_file_stays(log, tmp_path):
 @pytest.mark.parametrize("share", [0.1, 0.999])
 def test_a_full_disk_leaves_nothing(log, kind, made, share, tmp_path):
     """A limit of the size of a file stands for it; HDF5 would crash."""
+    resource = pytest.importorskip("resource")
     path = tmp_path / f"out{made.ending}"
     times = frame_times(log, "50")
     try:
