@@ -14,6 +14,7 @@ NAMES = (
     "gravity",
     "periodic",
     "wall",
+    "permeable",
     "rotation",
     "restitution",
     "thermal",

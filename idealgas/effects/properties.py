@@ -47,7 +47,8 @@ class Properties:
 
     driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
     with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
-    motion. varies: a temperature, a pressure or a velocity changes in time. vibrates: a side does.
+    motion. varies: a temperature, a pressure or a velocity changes in time. vibrates: a side does. one_way: discs pass
+    a wall in one direction only.
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
     are. acceleration: of all discs between events, length/time². emits: temperature of each thermal wall at the start,
@@ -71,6 +72,7 @@ class Properties:
     drives_discs: bool = _plain(False, operator.or_)
     varies: bool = _plain(False, operator.or_)
     vibrates: bool = _plain(False, operator.or_)
+    one_way: bool = _plain(False, operator.or_)
     inertia: float | None = _plain(None, _first_not_none)
     periodic: tuple[bool, bool] = _plain((False, False), _merge)
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
@@ -36,6 +36,10 @@ class Wall(SteppedTable):
     of times open and close it several times; if `opens_at` begins with 0, it is absent at the start. A disc in the way
     of a closing gate stays on the side of its centre: it may leave, and bounces where it comes nearer. One that cannot
     rise out against gravity bounces as deep in the gate as it is.
+
+    Discs of the species `permeable_to` pass a wall as if it were absent. With `permeable_from` they pass from that side
+    only: beyond, a disc bounces where it touches the wall, or where its centre is back at it as long as the disc has
+    not come out; the ends are solid.
     """
 
     in_steps = ("temperature",)
@@ -48,6 +52,12 @@ class Wall(SteppedTable):
     )
     opens_at: Times | None = Field(default=None, description="time > 0, or times, at which it is removed")
     closes_at: Times | None = Field(default=None, description="time > 0, or times, at which it is inserted")
+    permeable_to: Annotated[tuple[Word, ...], Field(strict=False, min_length=1)] | None = Field(
+        default=None, description="species that pass the wall; all if only `permeable_from` is given"
+    )
+    permeable_from: Literal[SIDES] | None = Field(  # type: ignore[valid-type]
+        default=None, description="the side of the wall from which they pass; both if absent"
+    )
     name: Word | None = Field(default=None, description="unique word for the log; if absent its number")
 
     @property
@@ -62,8 +72,20 @@ class Wall(SteppedTable):
     def action(self) -> str:
         """Short description for output."""
         action = "reflecting" if self.temperature is None else f"thermal, temperature {description(self.temperature)}"
+        if self.is_permeable:
+            action += f", permeable to {' and '.join(self.permeable_to or ('all discs',))}"
+            action += f" from the {self.permeable_from}" if self.permeable_from else ""
         spans = (f"from {o:g}" + ("" if math.isinf(c) else f" to {c:g}") for o, c in self.absences)
         return ", open ".join((action, ", ".join(spans))) if self.absences else action
+
+    @property
+    def is_permeable(self) -> bool:
+        """Whether it lets any disc pass."""
+        return self.permeable_to is not None or self.permeable_from is not None
+
+    def lets_pass(self, species: str) -> bool:
+        """Whether it lets discs of a species pass, from one side at least."""
+        return self.is_permeable and (self.permeable_to is None or species in self.permeable_to)
 
     def later(self, time: float) -> "Wall | None":
         """The wall in a scene whose clock starts at a later time; None if it has been removed for good."""
@@ -86,8 +108,9 @@ class FixedDisc:
     number: int
     start: tuple[float, float]
     radius: float
-    temperature = None
+    temperature = permeable_from = None
     absences = ()
+    is_permeable = False
 
     @property
     def end(self) -> tuple[float, float]:
@@ -112,6 +135,10 @@ class FixedDisc:
     def is_there(self, _: float) -> bool:
         """Whether it is present at a time."""
         return True
+
+    def lets_pass(self, _: str) -> bool:
+        """Whether it lets discs of a species pass."""
+        return False
 
 
 def _as_tuple(times: Any) -> tuple[float, ...]:

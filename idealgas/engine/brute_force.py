@@ -32,6 +32,7 @@ from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
+from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.vibration import contact_with_side
 from idealgas.physics.wall import segment_contact
@@ -73,11 +74,19 @@ def segment_event(disc, i, segments, effects, best):
     if segments is not None:
         for k in range(segments.shape[0]):
             if segments[k].active:
+                passage = passage_of(effects.permeable, i, k)
                 for image_x in range(*image_range(effects.periodic, False)):
                     for image_y in range(*image_range(effects.periodic, True)):
                         images = images_to_wall(effects.periodic, i, (image_x, image_y))
                         time = segment_contact(
-                            disc, i, segments[k], effects.gravity, effects.restitution, effects.periodic, images
+                            disc,
+                            i,
+                            segments[k],
+                            passage,
+                            effects.gravity,
+                            effects.restitution,
+                            effects.periodic,
+                            images,
                         )
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)

@@ -9,6 +9,7 @@ from idealgas.physics.disc_wall import collide_with_wall, inward_normal
 from idealgas.physics.exact_sum import add
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
+from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
@@ -136,7 +137,8 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
     if segments is not None:
         arrive(disc, time, effects)
         wall = segments[U(segment)]
-        nx, ny, at_end = segment_normal(disc, wall, effects.periodic, images)
+        passage = passage_of(effects.permeable, own, segment)
+        nx, ny, at_end = segment_normal(disc, wall, passage, effects.periodic, images)
         px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
         tx, ty = (ny, -nx) if wall.length == 0.0 else (wall.tx, wall.ty)  # a fixed disc has one face
         left = 1.0 if tx * ny - ty * nx >= 0.0 else -1.0

@@ -10,7 +10,6 @@ import numpy as np
 
 from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
 from idealgas.scene import Scene
-from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 
@@ -38,12 +37,13 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
     if acceleration.any():
-        for k, wall in enumerate(walls_inside(scene)):
+        for k, wall in enumerate(scene.walls):
             if wall.is_there(0.0):
+                freely = [wall.lets_pass(name) and wall.permeable_from is None for name in gas.species_names]
                 start, along = np.array(wall.start), np.array(wall.end) - wall.start
                 share = np.clip((gas.position - start) @ along / (along @ along or 1.0), 0.0, 1.0)
                 normal = gas.position - start - share[:, None] * along
-                touches = (normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2
+                touches = ((normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2) & ~np.array(freely)[gas.species]
                 yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:
         piston = scene.piston

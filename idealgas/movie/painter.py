@@ -260,9 +260,10 @@ class Painter:
                 self._walls.append(axes.add_collection(discs))
                 self._names.append(self._name(axes, "", wall.start))
                 continue
-            (line,) = axes.plot(*zip(wall.start, wall.end, strict=True), color=self._ink, linewidth=1.5, animated=True)
+            ends, dash = zip(wall.start, wall.end, strict=True), "--" if wall.is_permeable else "-"
+            (line,) = axes.plot(*ends, dash, color=self._ink, linewidth=1.5, animated=True)
             self._walls.append(line)
-            self._names.append(self._name(axes, wall.name, max(wall.start, wall.end, key=lambda end: end[1])))
+            self._names.append(self._name(axes, wall.label, max(wall.start, wall.end, key=lambda end: end[1])))
         if self._piston is not None:
             draw = axes.axhline if self._piston.axis else axes.axvline
             self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
@@ -340,8 +341,7 @@ class Painter:
 
     def _walls_at(self, time: float) -> list[Artist]:
         """Draw the walls that are present at a time, as gates may be open, and the piston."""
-        there = [wall.is_there(time) for wall in self._inside]
-        drawn = list(compress((*self._walls, *self._names), there * 2))
+        drawn = list(compress((*self._walls, *self._names), [wall.is_there(time) for wall in self._inside] * 2))
         if self._piston is None:
             return drawn
         place = self._piston.at(time)

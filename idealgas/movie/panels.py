@@ -99,12 +99,12 @@ class DensityPanel:
 
 
 class SidesPanel:
-    """Fraction of the discs right of the first gate, or of the middle, in time."""
+    """Fraction of the discs right of the first gate or permeable wall, or of the middle, in time."""
 
     def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, times: tuple[float, float]) -> None:
         """Draw the axes. line: colour of the fraction at equal density. times: start and end of the film."""
-        gates = (wall.start[0] for wall in walls_inside(scene) if wall.is_gate and wall.start[0] == wall.end[0])
-        self._middle = next(gates, gas.box[0] / 2)
+        upright = (wall for wall in walls_inside(scene) if wall.is_passable and wall.start[0] == wall.end[0])
+        self._middle = next((wall.start[0] for wall in upright), gas.box[0] / 2)
         self._points: list[tuple[float, float]] = []
         axes.set(xlim=times, ylim=(0, 1), xlabel="t (time)", ylabel=f"fraction right of x = {self._middle:g} (no unit)")
         axes.axhline(1 - self._middle / gas.box[0], ls="--", color=line)

@@ -15,6 +15,14 @@ from idealgas.physics.disc_disc import collision_delay, collision_discriminant
 from idealgas.physics.disc_wall import reflected_velocity
 from idealgas.physics.motion import NEVER, position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
+from idealgas.physics.permeable import (
+    OPEN,
+    SOLID,
+    closed_face_delay,
+    closed_side,
+    nearest_end,
+    touches_face,
+)
 from idealgas.physics.polynomial import first_contact_root, parabola
 
 SEGMENT = np.dtype(
@@ -110,6 +118,17 @@ def moves_off(delay, far, d, s, vn, vt, an, at, length):
 
 
 @inline
+def point_delay(x, y, disc, reach, gravity, after):
+    """Time until a disc, at (x, y) from a point, is within reach (length) of it; NEVER if it never is.
+
+    after: on a parabola, the contact is the first one after this time.
+    """
+    if gravity is not None:
+        return first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
+    return straight_end_delay(x, y, disc, reach)
+
+
+@inline
 def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, reach, gravity):
     """Time until a disc, at (x, y) from an end of a segment, touches that end; NEVER if it does not.
 
@@ -117,22 +136,25 @@ def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, reach, gravity):
     """
     delay = -1.0
     for _ in range(2):  # on a parabola a disc approaches a point at most twice
-        if gravity is not None:
-            delay = first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, delay)
-        else:
-            delay = straight_end_delay(x, y, disc, reach)
+        delay = point_delay(x, y, disc, reach, gravity, delay)
         if delay == NEVER or not moves_off(delay, far, d, s, vn, vt, an, at, length):
             return delay
     return NEVER
 
 
 @inline
-def segment_normal(disc, segment, periodic, images):
+def segment_normal(disc, segment, passage, periodic, images):
     """Unit normal (x, y) towards a disc that touches a segment, and whether the disc touches an end."""
     tx = segment.tx
     ty = segment.ty
     x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     s = tx * x + ty * y
+    if passage is not None and passage != SOLID:
+        side = closed_side(passage)
+        end_x, end_y, distance = nearest_end(x, y, s, segment.length, tx, ty)
+        if foot_inside(s, segment.length) and touches_face(side * (tx * y - ty * x), distance, disc.r):
+            return -side * ty, side * tx, False
+        return end_x / distance, end_y / distance, True
     if foot_inside(s, segment.length):
         return (-ty, tx, False) if tx * y - ty * x > 0.0 else (ty, -tx, False)
     if s > 0.0:
@@ -168,15 +190,55 @@ def misses_segment(disc, segment, gravity, periodic, images):
 
 
 @inline
-def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
+def solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity):
+    """Time until a disc touches a solid segment, its body or an end; NEVER if it does not."""
+    length = segment.length
+    if gravity is not None:
+        delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
+    else:
+        delay = straight_body_delay(d, s, vn, vt, disc.r, length)
+    for far in range(2):
+        end_x, end_y = x - far * length * segment.tx, y - far * length * segment.ty
+        reach = disc.r + segment.radius
+        delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, reach, gravity))
+    return delay
+
+
+@inline
+def one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
+    """Time until a disc touches the closed face or an end of a segment that lets it pass from one side; else NEVER."""
+    side, length = closed_side(passage), segment.length
+    delay = closed_face_delay(side * d, side * vn, side * an, disc.r)
+    if delay < NEVER and not foot_inside(parabola(s, vt, at, delay), length):
+        delay = NEVER
+    for far in range(2):
+        end_x, end_y = x - far * length * segment.tx, y - far * length * segment.ty
+        delay = min(delay, point_delay(end_x, end_y, disc, disc.r, gravity, -1.0))
+    return delay
+
+
+@inline
+def segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
+    """Time until a disc touches a segment, unless that lets it pass; NEVER if it does not."""
+    if passage is not None:
+        if passage == OPEN:
+            return NEVER
+        if passage != SOLID:
+            return one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
+    return solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity)
+
+
+@inline
+def segment_contact(disc, own, segment, passage, gravity, restitution, periodic, images):
     """Local time at which a disc touches a segment, its body or an end; NEVER if it does not.
+
+    passage: from where the segment lets the disc pass, see `permeable`; None where no wall lets any disc pass.
 
     A touching disc whose reflection would not change a digit of its velocity counts as reflected, unless gravity
     presses it to the wall.
     """
     tx = segment.tx
     ty = segment.ty
-    length = segment.length
     x, y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     d = tx * y - ty * x
     s = tx * x + ty * y
@@ -186,15 +248,9 @@ def segment_contact(disc, own, segment, gravity, restitution, periodic, images):
     if gravity is not None:
         an = tx * gravity.y - ty * gravity.x
         at = tx * gravity.x + ty * gravity.y
-        delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
-    else:
-        delay = straight_body_delay(d, s, vn, vt, disc.r, length)
-    for far in range(2):
-        end_x, end_y = x - far * length * tx, y - far * length * ty
-        reach = disc.r + segment.radius
-        delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, reach, gravity))
+    delay = segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
     if gravity is None and delay == 0.0:
-        nx, ny, _ = segment_normal(disc, segment, periodic, images)
+        nx, ny, _ = segment_normal(disc, segment, passage, periodic, images)
         if not reflection_changes(disc, own, nx, ny, restitution):
             return NEVER
     return disc.t + delay if delay < NEVER else NEVER

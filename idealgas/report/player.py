@@ -93,7 +93,14 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
             for share, mass in zip((kinds.number / len(gas)).tolist(), kinds.mass.tolist(), strict=True)
         ],
         "walls": [
-            {"name": w.name, "from": w.start, "to": w.end, "radius": w.radius, "absent": _absences(w, last)}
+            {
+                "name": w.label,
+                "from": w.start,
+                "to": w.end,
+                "radius": w.radius,
+                "permeable": w.is_permeable,
+                "absent": _absences(w, last),
+            }
             for w in walls_inside(log.scene)
         ],
         "piston": _piston(log, first, last),

@@ -97,7 +97,7 @@ class DiscView {
       const open = wall.absent.some(([opens, closes]) => gas.time >= opens && gas.time < closes);
       pen.strokeStyle = open ? theme.soft : theme.ink;
       pen.lineWidth = open ? 1 : 2;
-      pen.setLineDash(open ? [1, 5] : []);
+      pen.setLineDash(open ? [1, 5] : wall.permeable ? [6, 4] : []);
       this.line(pen, wall.from.map(x => x * scale), wall.to.map(x => x * scale), inset, height);
       pen.setLineDash([]);
       const [x, y] = wall.from[1] > wall.to[1] ? wall.from : wall.to; // the upper end

@@ -10,10 +10,15 @@ if TYPE_CHECKING:
     from idealgas.scene.scene import Scene
 
 
+ARROWS = dict(zip(SIDES, "→←↑↓", strict=True))
+"""Direction in which discs pass a wall, by the side from which they do."""
+
+
 class NumberedWall(NamedTuple):
     """Wall with name, ends (length), description of its action, and times from and until which it is absent.
 
-    radius: of a fixed disc, whose ends are its centre, length; 0 for others.
+    radius: of a fixed disc, whose ends are its centre, length; 0 for others. is_permeable: whether discs of some
+    species pass it. label: its name in pictures, with an arrow if they pass in one direction.
     """
 
     name: str
@@ -22,11 +27,18 @@ class NumberedWall(NamedTuple):
     action: str
     absences: tuple[tuple[float, float], ...] = ()
     radius: float = 0.0
+    is_permeable: bool = False
+    label: str = ""
 
     @property
     def is_gate(self) -> bool:
         """Whether the wall opens at some time."""
         return bool(self.absences)
+
+    @property
+    def is_passable(self) -> bool:
+        """Whether discs pass the wall, at some time or of some species."""
+        return self.is_gate or self.is_permeable
 
     def is_there(self, time: float) -> bool:
         """Whether the wall is present at a time."""
@@ -43,7 +55,9 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         walls.append(NumberedWall(name, *ends, action))
     for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
         name = wall.name or f"wall {k}"
-        walls.append(NumberedWall(name, wall.start, wall.end, wall.action, wall.absences, wall.radius))
+        label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
+        body = wall.start, wall.end, wall.action, wall.absences, wall.radius
+        walls.append(NumberedWall(name, *body, wall.is_permeable, label))
     return walls
 
 

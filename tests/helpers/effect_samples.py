@@ -16,6 +16,7 @@ from idealgas.jit import aligned
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
+from idealgas.physics.permeable import FROM_LEFT, FROM_RIGHT, OPEN, SOLID, Permeable
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
@@ -56,7 +57,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     draw = np.random.default_rng(seed)
     walls = []
     schedule: list[tuple[float, int, int, float]] = []
-    if "segments" in names:
+    if names & {"segments", "permeable"}:
         walls += [(9.0, 1.0, 10.0, 4.0, True), (9.5, 7.0, 10.5, 7.0, True)]
     if "gates" in names:
         first, field = len(walls), [effect.field for effect in EFFECTS].index("segments")
@@ -66,6 +67,8 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     inertia = 0.5 * gas.mass * gas.radius**2
     temperature = np.full(FIRST_SEGMENT + len(walls), -1.0)
     temperature[2] = 1.5
+    passage = np.resize(np.array([[FROM_LEFT, FROM_RIGHT], [OPEN, SOLID]], np.uint8), (len(walls), 2))
+    passage[2:] = SOLID
     piston = aligned(1, PISTON)
     piston[0].x, piston[0].a, piston[0].m, piston[0].stop, piston[0].side = 11.5, -0.8, 20.0, 12.0, 1
     own: dict[str, Any] = {
@@ -74,6 +77,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
             "piston" not in names, "piston" in names, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)
         ),
         "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
+        "permeable": lambda: Permeable(gas.species.copy(), passage),
         "rotation": lambda: Rotation(draw.normal(size=n), inertia, 0.6, 0.3),
         "restitution": lambda: Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)),
         "thermal": lambda: Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)),

@@ -32,6 +32,7 @@ EFFECTS = (
     "thermostat",
     "vibration",
     "fixed",
+    "permeable",
 )
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
@@ -114,6 +115,13 @@ def draw_gate(draw) -> dict[str, Any]:
     return gate if lasts is None else gate | {"closes_at": (opens or 0.0) + lasts}
 
 
+def draw_passage(draw, start, end) -> dict[str, Any]:
+    """Which discs a wall lets pass, if any: those of the tables [[disc]], or all, from both sides or from one."""
+    sides = [s for axis in range(2) if start[1 - axis] != end[1 - axis] for s in SIDES[2 * axis : 2 * axis + 2]]
+    one_way, some = {"permeable_from": pick(draw, *sides)}, {"permeable_to": ["disc"]}
+    return pick(draw, {}, some, one_way, some | one_way)
+
+
 def draw_piston(draw, size, mass: float) -> dict[str, Any]:
     side = pick(draw, *SIDES)
     axis, upper = divmod(SIDES.index(side), 2)
@@ -158,12 +166,14 @@ def tables_of(draw) -> dict[str, Any]:
     walls = draw(walls_in(size)) if "walls" in called else np.empty((0, 2, 2))
     if piston:
         keep_clear_of_piston(walls, size, piston)
+    passages = [draw_passage(draw, *wall) if "permeable" in called else {} for wall in walls.tolist()]
+    free = np.array(["permeable_to" in p and "permeable_from" not in p for p in passages], bool)
     number = pick(draw, 4, 1, 2, 3, 9, 16, 40)
     share = pick(draw, 0.5, 1.0, 1 - 1e-9, 0.97, 0.1, 1e-3, 1e-6)
     factors = pick(draw, [1.0], [1.0, 0.5], [1.0, 0.1, 1e-3])
     gridded = draw(st.booleans())
     position, radius = place(
-        random, np.array(size), periodic, room_of(size, piston), walls, number, share, gridded, factors
+        random, np.array(size), periodic, room_of(size, piston), walls[~free], number, share, gridded, factors
     )
     n = len(position)
     velocity = move(random, pick(draw, "normal", "few directions", "one hot", "one moves", "all speeds"), n)
@@ -191,7 +201,10 @@ def tables_of(draw) -> dict[str, Any]:
         hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}
         gates = draw(st.booleans())
         tables["wall"] = [
-            {"from": a, "to": b} | (draw_gate(draw) if gates else {}) | (hot if k == 0 else {})
+            {"from": a, "to": b}
+            | (draw_gate(draw) if gates and "permeable_from" not in passages[k] else {})
+            | passages[k]
+            | (hot if k == 0 else {})
             for k, (a, b) in enumerate(walls.tolist())
         ]
     if "gravity" in called and not periodic.all():

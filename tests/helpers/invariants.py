@@ -12,6 +12,7 @@ each bounce rounds both coordinates twice, and the roundings may add up.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from helpers.random_walls import crossings, distances
 from idealgas.columns import BATH, SIDES, EventBatch, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation
+from idealgas.physics.permeable import FROM_LEFT, FROM_RIGHT, OPEN, SOLID
 from idealgas.physics.piston import piston_motion
 from idealgas.physics.vibration import height_on, parabola_at
 from idealgas.run.energy import energy_of
@@ -50,6 +52,12 @@ class InvariantChecker:
         self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
+        along = (self.walls[:, 1] - self.walls[:, 0]) / np.hypot(*(self.walls[:, 1] - self.walls[:, 0]).T)[:, None]
+        self.left = np.column_stack((-along[:, 1], along[:, 0]))
+        passage = np.zeros((len(scene.walls), len(gas.species_names)), int)
+        if scene.wall and any(wall.is_permeable for wall in scene.wall):
+            passage = effects.permeable.passage
+        self.passage = np.asarray(passage)[:, gas.species]
         self.gates, self.fixed = scene.wall, scene.walls[len(scene.wall) :]
         self.piston = scene.piston
         self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
@@ -183,16 +191,56 @@ class InvariantChecker:
         if (high - low + 1).prod() * len(self.walls) > MOST_IMAGES:
             return
         shifts = [(x, y) for x in range(low[0], high[0] + 1) for y in range(low[1], high[1] + 1)]
+        passage = self.passage[: len(self.gates), disc]
         there = np.array([all(opens >= time for opens, _ in wall.absences) for wall in self.gates])
+        there &= passage == SOLID
         walls = np.concatenate([self.walls[there] + np.array(shift) * self.size for shift in shifts])
         since = self.since[disc]
         gates = np.array([all(o >= time or c <= since for o, c in wall.absences) for wall in self.gates])
+        gates &= passage == SOLID
         closed = np.concatenate([self.walls[gates] + np.array(shift) * self.size for shift in shifts])
         path = self.path(disc, np.sort(np.concatenate((times, *self.nearest(disc, walls, duration)))))
         if len(walls):
             assert distances(path, walls).min() >= radius - self.known - self.sunk[disc], "in a wall"
         if radius > self.known and len(closed):
             assert not crossings(path[:-1], path[1:], closed).any(), "through a wall"
+        for k in np.flatnonzero((passage == FROM_LEFT) | (passage == FROM_RIGHT)):
+            for shift in shifts:
+                self.pass_one_way(disc, k, np.array(shift) * self.size, duration)
+
+    def pass_one_way(self, disc: int, k: int, shift: np.ndarray, duration: float) -> None:
+        """The way of a disc keeps clear of the ends of a wall that it passes in one direction, and goes not back."""
+        start, end = self.walls[k] + shift
+        times = self.nearest(disc, (self.walls[k] + shift)[None], duration)
+        path = self.path(disc, np.sort(np.concatenate((np.linspace(0, duration, SAMPLES), *times))))
+        away = np.minimum(np.hypot(*(path - start).T), np.hypot(*(path - end).T))
+        assert away.min() >= self.gas.radius[disc] - self.known - self.sunk[disc], "in the end of a wall"
+        height = (path - start) @ self.closed_normal(disc, k)
+        share = (path - start) @ (end - start) / ((end - start) @ (end - start))
+        beyond = np.flatnonzero(np.abs(height) > self.known)
+        for pair in pairwise(beyond):
+            inside = (share[[*pair]] > 0).all() and (share[[*pair]] < 1).all()
+            assert not (inside and height[pair[0]] > 0 > height[pair[1]]), "back through a wall"
+
+    def closed_normal(self, disc: int, k: int) -> np.ndarray:
+        """Normal of the closed face of a wall that a disc passes in one direction."""
+        return self.left[k] * (-1.0 if self.passage[k, disc] == FROM_LEFT else 1.0)
+
+    def at_one_way(self, kind, disc: int, k: int, place: np.ndarray) -> tuple[np.ndarray, float]:
+        """Normal of such a wall for a disc that bounces off it, and by how much the disc misses its place there."""
+        (start, end), radius = self.walls[k], self.gas.radius[disc]
+        images = place + self.shifts
+        if kind == Kind.WALL:
+            normal = self.closed_normal(disc, k)
+            height = (images - start) @ normal
+            share = (images - start) @ (end - start) / ((end - start) @ (end - start))
+            margin = self.known / np.hypot(*(end - start))
+            misses = np.where((share > -margin) & (share < 1 + margin), 0.0, np.inf)
+            return normal, float((misses + np.minimum(np.abs(height - radius), np.abs(height))).min())
+        away = np.concatenate((images - start, images - end))
+        distances = np.hypot(*away.T)
+        nearest = np.abs(distances - radius).argmin()
+        return away[nearest] / distances[nearest], float(np.abs(distances - radius).min())
 
     def path(self, disc: int, times: np.ndarray) -> np.ndarray:
         """Unwrapped positions (T, 2) of a disc at times after its last event."""
@@ -301,6 +349,10 @@ class InvariantChecker:
             nearest = np.abs(distances - fixed.radius - radius).argmin()
             normal, distance = away[nearest] / distances[nearest], distances[nearest] - fixed.radius
             assert kind == Kind.WALL_END
+        elif self.passage[wall - 4, disc] != SOLID:
+            assert self.passage[wall - 4, disc] != OPEN
+            normal, miss = self.at_one_way(kind, disc, wall - 4, place)
+            distance = radius + miss
         else:
             gate = self.gates[wall - 4]
             assert gate.is_there(time), "an open gate"

@@ -58,6 +58,8 @@ EFFECTS = {
     "box.top = { vibrating = { amplitude = 0.1, frequency = 0.7 } }\ngravity.acceleration = [0.0, -0.05]\n",
     "fixed": "disc = [{ position = [2, 30], radius = 1, fixed = true }, "
     "{ position = [5, 50], radius = 2, fixed = true }]\n",
+    "permeable": "wall = [{ from = [0, 40], to = [8, 40.5], permeable_from = 'bottom' }, "
+    "{ from = [0, 70], to = [8, 70], permeable_to = ['b'] }]\n",
     "everything": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n' + EVERYTHING,
 }
 

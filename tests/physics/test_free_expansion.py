@@ -52,5 +52,5 @@ def test_half_of_the_discs_end_beyond_the_gate(log):
     late = found.beyond["gas"][found.time > 100]
     assert abs(late.mean() - 0.5) < 4 * one.standard_error
     text = as_text(found.tables())
-    assert "beyond the gate in equilibrium: 50.0% ± 1.6% of gas (binomial)" in text
+    assert "beyond the wall in equilibrium: 50.0% ± 1.6% of gas (binomial)" in text
     assert "nan" not in text

@@ -20,7 +20,8 @@ ALL_PERIODIC = set(NAMES) - {"piston"}
 SETS += [ALL, ALL_PERIODIC]
 
 interpreted_only = pytest.mark.skipif(
-    not numba.config.DISABLE_JIT, reason="would compile for each of 93 sets: NUMBA_DISABLE_JIT=1 pytest -m interpreted"
+    not numba.config.DISABLE_JIT,
+    reason="would compile for each set: NUMBA_DISABLE_JIT=1 pytest -m interpreted",
 )
 
 

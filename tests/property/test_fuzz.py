@@ -29,6 +29,7 @@ from idealgas.jit import aligned
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import Periodic
+from idealgas.physics.permeable import Permeable
 from idealgas.physics.piston import PISTON
 from idealgas.physics.restitution import Restitution
 from idealgas.physics.rotation import Rotation
@@ -74,6 +75,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
     neutral = Effects(
         periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         segments=aligned(0, SEGMENT),
+        permeable=Permeable(np.zeros(n, np.uint16), np.zeros((walls, 1), np.uint8)),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
         thermal=Thermal(np.full(FIRST_SEGMENT + walls, -1.0), np.uint64(0), np.zeros(n, np.uint64)),

@@ -12,8 +12,9 @@ from idealgas.scene.walls import walls_inside
 class Chambers:
     """Chambers of the box while all of its dividing walls are there, from the start of a log to some time.
 
-    A row of walls from side to side along x or y, with no gap, divides the box, unless it may be passed by a periodic
-    boundary or reached by a piston. Chambers that are empty at the start stay empty.
+    A row of walls from side to side along x or y that no disc passes, with no gap, divides the box, unless the gas gets
+    past it through a periodic boundary or it may be reached by a piston. Chambers that are empty at the start stay
+    empty.
 
     cuts: places (K + 1,) of the dividing walls and of the sides along x and y. occupied: (Kx, Ky), whether discs are in
     the chambers.
@@ -53,7 +54,8 @@ def _cuts(log: Log, axis: int, until: float) -> np.ndarray:
         return np.array([0.0, log.box[axis]])
     rows: dict[float, list[tuple[float, float]]] = defaultdict(list)
     for wall in walls_inside(log.scene):
-        if wall.start[axis] == wall.end[axis] and all(opens >= until for opens, _ in wall.absences):
+        divides = wall.start[axis] == wall.end[axis] and not wall.is_permeable
+        if divides and all(opens >= until for opens, _ in wall.absences):
             low, high = sorted((wall.start[1 - axis], wall.end[1 - axis]))
             rows[wall.start[axis]].append((low, high))
     found = {0.0, log.box[axis]}

@@ -106,6 +106,8 @@ def nonequilibrium_reason(log: Log) -> str:
         return "values change in time"
     if properties.vibrates:
         return "a side vibrates"
+    if properties.one_way:
+        return "discs pass a wall in one direction only"
     if len(properties.temperatures) > 1:
         sources = "walls" if properties.bath is None else "walls and heat bath"
         return f"{sources} have {len(properties.temperatures)} temperatures"

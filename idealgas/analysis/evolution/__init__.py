@@ -1,4 +1,4 @@
-"""Follow temperature, pressure, discs beyond a gate, piston and energies in time, with the expected temperature.
+"""Follow temperature, pressure, discs beyond a wall, piston and energies in time, with the expected temperature.
 
 Laws: Haff's law for a cooling gas, the adiabat of a slow piston, the rest position of a piston under pressure, and
 equilibrium for isolated gases, gases under gravity and heat baths. The pressure is the mechanical one on the walls.
@@ -54,7 +54,8 @@ class Evolution(Result):
         time: (F,), times.
         temperature: (F,), mean m v²/2 per disc, energy.
         spin: (F,), mean I ω² per disc, energy; None without spin.
-        beyond: fraction of the discs of each species beyond the first gate along an axis, (F,), by species.
+        beyond: fraction of the discs of each species beyond the first gate or permeable wall along an axis, (F,),
+            by species.
         spread: fractions in equilibrium without walls inside, by species; their error is the standard deviation of a
             binomial distribution.
         law: theory of the temperature at these times; None without one.
@@ -119,7 +120,7 @@ class EvolutionAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Evolution:
-        """Follow temperature, pressure, energies, piston and discs beyond a gate in time; needs no equilibrium.
+        """Follow temperature, pressure, energies, piston and discs beyond a wall in time; needs no equilibrium.
 
         The theory, if there is one, is that of the temperature: in equilibrium, of a gas that cools by its collisions
         (Haff's law), or of one that a moving piston compresses (the adiabat).
@@ -162,18 +163,18 @@ class EvolutionAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Evolution) -> list[Table]:
-        """Tables of temperature and of discs beyond the gate, of the pressure, and of the energies."""
+        """Tables of temperature and of discs beyond the wall, of the pressure, and of the energies."""
         law = result.law
         series = {
             "t": result.time,
             "kinetic energy per disc": result.temperature,
             "law": law.temperature if law else None,
             "I ω² per disc": result.spin,
-            **{f"fraction of {name} beyond the gate": share for name, share in result.beyond.items()},
+            **{f"fraction of {name} beyond the wall": share for name, share in result.beyond.items()},
         }
         notes = [f"law: {law.text if law else 'none for this scene'}"]
         notes += [
-            f"beyond the gate in equilibrium: {one.value:.1%} ± {one.standard_error:.1%} of {name} (binomial)"
+            f"beyond the wall in equilibrium: {one.value:.1%} ± {one.standard_error:.1%} of {name} (binomial)"
             for name, one in result.spread.items()
         ]
         tables = [time_series("Time series", series, notes)]
@@ -194,7 +195,7 @@ class EvolutionAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Evolution) -> str:
-        """Temperature at the start and the end beside its law, the piston, and discs beyond a gate at the end."""
+        """Temperature at the start and the end beside its law, the piston, and discs beyond a wall at the end."""
         first, last = result.temperature[[0, -1]]
         law = (
             "no theory here"
@@ -214,12 +215,12 @@ class EvolutionAnalysis(Analysis):
                 replace(one, value=share[-1], theory=one.value) for n, one in result.spread.items() if n == name
             ]
             said = agreement([(name, one) for one in expected], "equilibrium")
-            found.append(f"At the end {100 * share[-1]:.1f} % of {name} are beyond the gate; {said}.")
+            found.append(f"At the end {100 * share[-1]:.1f} % of {name} are beyond the wall; {said}.")
         return " ".join(found)
 
     @staticmethod
     def figure(result: Evolution) -> "Figure":
-        """Picture of the temperature, its law dashed, of discs beyond a gate, pressure, piston and energy from walls.
+        """Picture of the temperature, its law dashed, of discs beyond a wall, pressure, piston and energy from walls.
 
         With a piston the pressure against the area comes last, with the isotherm and the adiabat through the start.
         """
@@ -246,7 +247,7 @@ class EvolutionAnalysis(Analysis):
             for k, (name, share) in enumerate(result.beyond.items()):
                 colour, line, _ = curve_style(k)
                 ax.plot(result.time, share, line, color=colour, label=name)
-            ax.set(ylim=(-0.05, 1.05), ylabel="fraction beyond the gate (no unit)")
+            ax.set(ylim=(-0.05, 1.05), ylabel="fraction beyond the wall (no unit)")
         if series:
             draw_pressure(next(rest), series, law)
         if result.track:

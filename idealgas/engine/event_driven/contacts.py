@@ -19,6 +19,7 @@ from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, njit, noinline
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between
+from idealgas.physics.permeable import passage_of
 from idealgas.physics.wall import misses_segment, segment_contact
 
 U = np.uintp
@@ -160,7 +161,10 @@ def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effec
         segment = effects.segments[U(k)]
         if misses_segment(disc, segment, effects.gravity, effects.periodic, images):
             continue
-        time = segment_contact(disc, own, segment, effects.gravity, effects.restitution, effects.periodic, images)
+        passage = passage_of(effects.permeable, own, k)
+        time = segment_contact(
+            disc, own, segment, passage, effects.gravity, effects.restitution, effects.periodic, images
+        )
         partner = segment_partner(k)
         if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
             prediction.contact = time

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 from idealgas.columns import MOST_SPECIES, MOST_WALLS
 from idealgas.effects import EFFECTS
 from idealgas.scene.checks import piston, vibration
-from idealgas.scene.checks.discs import placement_issues, room_issues, species_issues
+from idealgas.scene.checks.discs import permeable_issues, placement_issues, room_issues, species_issues
 from idealgas.scene.checks.overlaps import discs_in_walls, label, overlap_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.scene.sizes import wrong_radius
@@ -47,6 +47,8 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
     if mobile and scene.start is not None:
         yield Issue((("disc", mobile[0]), ("start",)), "discs of their own beside a start", "[[disc]]", "[start] alone")
     yield from species_issues(scene)
+    if not {"species", "disc"} & invalid:
+        yield from permeable_issues(scene)
     yield from overlap_issues(scene, box)
     if "rotation" not in invalid:
         yield from _spin_issues(scene, invalid)

@@ -85,6 +85,16 @@ def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[I
                 yield Issue(keys, wrong, f"{getattr(discs, key)[i]}", f'{expected}, that of "{name}"')
 
 
+def permeable_issues(scene: Document) -> Iterator[Issue]:
+    """Check that the species that pass a wall are those of discs."""
+    known = dict.fromkeys((*(s.name for _, s in scene.placed), *scene.given.names))
+    for i, wall in enumerate(scene.wall):
+        for name in (wall and wall.permeable_to) or ():
+            if name not in known:
+                key = ("wall", i, "permeable_to")
+                yield Issue((key,), "no such species", f'"{name}"', " or ".join(f'"{one}"' for one in known))
+
+
 def room_issues(
     scene: Document,
     invalid: AbstractSet[str],

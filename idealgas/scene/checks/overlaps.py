@@ -177,10 +177,13 @@ def wall_overlaps(
     order = np.argsort(centre[:, 0], kind="stable")
     along, largest = centre[order, 0], float(discs.radius.max(initial=0.0))
     for i, wall in walls.items():
+        passes = np.array([wall.lets_pass(name) for name in discs.names])
         ends = sorted((wall.start[0], wall.end[0]))
         reach = largest + wall.radius
         near = order[along.searchsorted(ends[0] - reach) : along.searchsorted(ends[1] + reach, "right")]
         distance = distance_to_wall(centre[near], wall)
+        if passes.any():
+            distance = np.where(passes[discs.species[owner[near]]], _distance_to_ends(centre[near], wall), distance)
         for k in np.flatnonzero(distance < (discs.radius - slack)[owner[near]]).tolist():
             yield int(owner[near[k]]), i, float(distance[k])
 
@@ -200,6 +203,13 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
         keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
         wrong = f"{label(scene, number)}overlaps {walls[i].name if walls[i].radius else f'wall {i}'}"
         yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
+
+
+def _distance_to_ends(points: np.ndarray, wall: Wall) -> np.ndarray:
+    """Distances of discs that pass a wall, at points (M, 2), from its ends; infinite if they pass from both sides."""
+    if wall.permeable_from is None:
+        return np.full(len(points), np.inf)
+    return np.min([np.hypot(*(points - end).T) for end in (wall.start, wall.end)], axis=0)
 
 
 def distance_to_wall(points: np.ndarray, wall: Wall) -> np.ndarray:

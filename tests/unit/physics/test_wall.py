@@ -124,7 +124,7 @@ def test_contact_with_a_segment(gravity):
             disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.05, 0.4), m=1.0, t=draw.uniform(0, 1))
             if distance_to(wall, exact(x), exact(y)) < 1.5 * disc.r:
                 continue
-            found = segment_contact(disc, 0, wall, gravity, None, None, NO_IMAGES)
+            found = segment_contact(disc, 0, wall, None, gravity, None, None, NO_IMAGES)
             gx, gy = map(exact, gravity or (0.0, 0.0))
 
             def place(t, disc=disc, gx=gx, gy=gy):
@@ -155,7 +155,7 @@ def test_what_surely_misses_a_segment():
         angle = draw.uniform(0, 2 * math.pi)
         disc = body(x=x, y=y, vx=math.cos(angle), vy=math.sin(angle), r=draw.uniform(0.01, 0.4), m=1.0, t=1.0)
         misses = misses_segment(disc, wall, None, None, NO_IMAGES)
-        if segment_contact(disc, 0, wall, None, None, None, NO_IMAGES) < NEVER:
+        if segment_contact(disc, 0, wall, None, None, None, None, NO_IMAGES) < NEVER:
             assert not misses
         else:
             missed += 1
@@ -209,7 +209,7 @@ def test_a_fixed_disc_is_met_as_a_disc_that_stays(gravity):
     for x, y, vx, vy in draw.normal(size=(300, 4)) * (2, 2, 1, 1):
         disc = body(x=float(x), y=float(y), vx=float(vx), vy=float(vy), r=0.3, t=0.0)
         away = math.hypot(x - fixed.x, y - fixed.y)
-        time = segment_contact(disc, 0, fixed, gravity, None, None, NO_IMAGES)
+        time = segment_contact(disc, 0, fixed, None, gravity, None, None, NO_IMAGES)
         if gravity is None and away > 1.1:
             assert time == straight_end_delay(x - 0.5, y + 0.25, disc, 0.3 + 0.8)
             assert time < NEVER or misses_segment(disc, fixed, None, None, NO_IMAGES)
@@ -219,7 +219,7 @@ def test_a_fixed_disc_is_met_as_a_disc_that_stays(gravity):
             there = SimpleNamespace(x=x + vx * time + g.x * time**2 / 2, y=y + vy * time + g.y * time**2 / 2)
             away = math.hypot(there.x - fixed.x, there.y - fixed.y)
             assert away == pytest.approx(1.1, abs=20 * U * (4 + time * math.hypot(vx, vy) + time**2))
-            nx, ny, at_end = segment_normal(there, fixed, None, NO_IMAGES)
+            nx, ny, at_end = segment_normal(there, fixed, None, None, NO_IMAGES)
             assert at_end
             assert (nx, ny) == pytest.approx(((there.x - 0.5) / away, (there.y + 0.25) / away), abs=4 * U)
     assert met > 20
@@ -232,18 +232,18 @@ def test_normals():
     along, across = np.array([0.6, 0.8]), np.array([-0.8, 0.6])
     for side, nx, ny in ((1, -0.8, 0.6), (-1, 0.8, -0.6)):
         place = np.array([2.0, 3.0]) + 2.0 * along + side * 0.5 * across
-        assert segment_normal(body(x=place[0], y=place[1]), wall, None, NO_IMAGES) == (nx, ny, False)
+        assert segment_normal(body(x=place[0], y=place[1]), wall, None, None, NO_IMAGES) == (nx, ny, False)
     with mpmath.workdps(50):
         for angle in draw.uniform(-1.5, 1.5, 50):  # around the start, seen from beyond it
             away = -along * math.cos(angle) + across * math.sin(angle)
             disc = body(x=2.0 + 0.3 * away[0], y=3.0 + 0.3 * away[1])
-            nx, ny, at_end = segment_normal(disc, wall, None, NO_IMAGES)
+            nx, ny, at_end = segment_normal(disc, wall, None, None, NO_IMAGES)
             x, y = exact(disc.x) - 2, exact(disc.y) - 3
             distance = mpmath.sqrt(x * x + y * y)
             assert at_end
             assert abs(nx - x / distance) <= gamma(5) * abs(x / distance)
             assert abs(ny - y / distance) <= gamma(5) * abs(y / distance)
-    beyond = segment_normal(body(x=5.6, y=7.8), wall, None, NO_IMAGES)
+    beyond = segment_normal(body(x=5.6, y=7.8), wall, None, None, NO_IMAGES)
     assert beyond == (pytest.approx(0.6), pytest.approx(0.8), True)
 
 
@@ -270,6 +270,6 @@ def test_what_a_reflection_changes():
     assert reflection_changes(body(vx=1.0, vy=-1e-3), 0, 0.0, 1.0, None)
     assert not reflection_changes(body(vx=1.0, vy=0.0), 0, 0.0, 1.0, None)
     slides = body(x=3.5, y=4.0, vx=1.0, vy=0.0, r=0.5, m=1.0)
-    assert segment_contact(slides, 0, segment((3.0, 3.5), (9.0, 3.5)), None, None, None, NO_IMAGES) == NEVER
+    assert segment_contact(slides, 0, segment((3.0, 3.5), (9.0, 3.5)), None, None, None, None, NO_IMAGES) == NEVER
     falls = body(x=3.5, y=4.0, vx=1.0, vy=-1e-9, r=0.5, m=1.0, t=7.0)
-    assert segment_contact(falls, 0, segment((3.0, 3.5), (9.0, 3.5)), None, None, None, NO_IMAGES) == 7.0
+    assert segment_contact(falls, 0, segment((3.0, 3.5), (9.0, 3.5)), None, None, None, None, NO_IMAGES) == 7.0

@@ -1,0 +1,68 @@
+"""Wall segments that let discs of some species pass, from both sides or from one."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from idealgas.columns import OUTWARD, SIDES
+from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.properties import Properties
+from idealgas.physics import permeable as law
+from idealgas.toml.issues import Issue
+
+
+def _properties(tables: Tables) -> Properties | None:
+    walls = [wall for wall in tables.walls if wall is not None and wall.is_permeable]
+    return Properties(one_way=any(wall.permeable_from for wall in walls)) if walls else None
+
+
+def _to_left(wall: Any) -> float:
+    """Distance by which the side from which a wall lets discs pass is to the left, seen from its start to its end."""
+    outward = OUTWARD[SIDES.index(wall.permeable_from)]
+    return (wall.end[0] - wall.start[0]) * outward[1] - (wall.end[1] - wall.start[1]) * outward[0]
+
+
+def _passage(wall: Any, species: str) -> int:
+    if not wall.lets_pass(species):
+        return law.SOLID
+    if wall.permeable_from is None:
+        return law.OPEN
+    return law.FROM_LEFT if _to_left(wall) > 0 else law.FROM_RIGHT
+
+
+def _check(tables: Tables) -> Iterator[Issue]:
+    """Walls that have no such side, and gates that let discs pass from one side."""
+    for i, wall in enumerate(tables.walls):
+        if wall is None or wall.permeable_from is None:
+            continue
+        own, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
+        if wall.start != wall.end and _to_left(wall) == 0:
+            sides = SIDES[2:] if wall.permeable_from in SIDES[:2] else SIDES[:2]
+            yield Issue((own,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
+        if wall.absences:
+            keys = (own, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
+            allowed = "a wall that is always there; beside a gate at its place, if need be"
+            yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
+
+
+def _make(tables: Tables, start: Start) -> law.Permeable:
+    gas = start.gas
+    passage = [[_passage(wall, name) for name in gas.species_names] for wall in tables.walls]
+    return law.Permeable(gas.species.astype(np.uint16), np.array(passage, np.uint8))
+
+
+def _door(x: float, height: float) -> str:
+    """Table of a wall from the bottom up to a height, which all discs pass from the left."""
+    return f'[[wall]]\nfrom = [{x}, 0]\nto = [{x}, {height}]\npermeable_from = "left"\n'
+
+
+EFFECT = EffectSpec(
+    name="permeable walls",
+    field="permeable",
+    properties=_properties,
+    check=_check,
+    make=_make,
+    samples=(Sample(tables=lambda side: _door(side / 4, side)),),
+    sample_together=Sample(tables=lambda side: _door(side / 4, 9.0)),
+)
