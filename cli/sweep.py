@@ -1,17 +1,17 @@
 """Command `idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
 
+import json
 import os
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from idealgas.errors import UserError
 from idealgas.files import check_output
 
-from ._analysis import print_json
 from ._options import FILE, force_option, json_option, plot_option, quiet_option
 from ._progress import progress_bar
 from ._tables import print_tables, shown
@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 
 @click.command(epilog="Example: idealgas sweep phi.toml -o phi --workers 2")
-@click.argument("path", type=FILE, metavar="SWEEP.toml", required=False)
+@click.argument("paths", type=FILE, metavar="SWEEP.toml...", nargs=-1)
 @click.option(
-    "-o", "--output", type=FILE, metavar="DIR", help="Folder for logs and results; an existing one is continued."
-)
+    "-o", "--output", type=FILE, metavar="DIR",
+    help="Folder for logs and results, or for a folder of each of several sweeps; an existing one is continued.",
+)  # fmt: skip
 @click.option(
     "--workers", type=click.IntRange(1), metavar="N", help="Number of processes on this machine.  [default: its cores]"
 )
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
 @plot_option
 @click.option(
     "--of", "quantity", metavar="QUANTITY",
-    help="Quantity to plot, by its name in results.csv.  [default: the main one of the first analysis]",
+    help="Quantity to plot, by its name in results.csv.  [default: deviations from published values, if there are any, "
+    "or else the main one of the first analysis]",
 )  # fmt: skip
 @click.option("--against", "axis", metavar="KEY", help="Axis to plot against.  [default: the first one]")
 @click.option("--list", "listing", is_flag=True, help="List the quantities of all analyses; * stands for any group.")
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
 @json_option
 @quiet_option
 def sweep(
-    path: str | None,
+    paths: tuple[str, ...],
     output: str | None,
     workers: int | None,
     scheduler: str | None,
@@ -55,7 +57,7 @@ def sweep(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Run a scene at many points and collect the results of its analyses in DIR/results.csv.
+    """Run scenes at many points and collect the results of their analyses in DIR/results.csv.
 
     The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
     twice more and then reported; the other points run. With --plot it draws a figure at the end.
@@ -63,38 +65,63 @@ def sweep(
     if listing:
         _list_quantities()
         return
-    if path is None:
+    if not paths:
         raise UserError("SWEEP.toml: missing (the file of the sweep)")
     from idealgas.sweep.plan import load_sweep
 
-    plan = load_sweep(path)
+    plans = [load_sweep(path) for path in paths]
     if dry_run:
-        _print_plan(plan, workers, as_json)
+        found = [_planned(path, plan, workers, as_json) for path, plan in zip(paths, plans, strict=True)]
+        _print_json(found, as_json)
         return
     if output is None:
         raise UserError("-o DIR: missing (the folder for logs and results)")
+    folders = _folders(paths, output)
+    compares = all(plan.published for plan in plans) and not quantity and not axis
     if plot:
-        check_output(plot, Path(plot).suffix.lower(), force, [path])
+        check_output(plot, Path(plot).suffix.lower(), force, paths)
+        if len(plans) > 1 and not compares:
+            raise UserError("--plot: several sweeps have no common figure but that of their published values")
     from ._interrupt import EXIT_CODE, ctrl_c
 
-    failed = False
+    outcomes: list[dict[str, Any]] = []
     with ctrl_c(raises=True) as interrupted:
         try:
-            failed = _run(plan, output, workers, scheduler, interrupted, as_json)
+            for plan, folder in zip(plans, folders, strict=True):
+                outcomes.append(_run(plan, folder, workers, scheduler, interrupted, as_json))
         except BaseException:
             if not interrupted():  # otherwise an error caused by the interruption
                 raise
         if interrupted():
             echo("interrupted; run the same command again to continue", err=True)
             raise SystemExit(EXIT_CODE)
+    _print_json(outcomes, as_json)
     if plot:
         from idealgas.analysis.core.style import save
         from idealgas.sweep.figure import sweep_figure
+        from idealgas.sweep.published import published_figure
 
-        save(sweep_figure(output, quantity, axis), plot, force)
+        sweeps = zip(plans, folders, strict=True)
+        save(published_figure(sweeps) if compares else sweep_figure(output, quantity, axis), plot, force)
         written(plot, err=as_json)
-    if failed:
+    if any(outcome["failures"] for outcome in outcomes):
         raise SystemExit(1)
+
+
+def _folders(paths: tuple[str, ...], output: str) -> list[str]:
+    """Folder of each sweep: the only one's is that for the output, several have one by their names in it."""
+    if len(paths) == 1:
+        return [output]
+    names = [Path(path).stem for path in paths]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise UserError(f"{twice}: several sweeps of one name, which is that of the folder of their results")
+    return [str(Path(output) / name) for name in names]
+
+
+def _print_json(found: list[dict[str, Any]], as_json: bool) -> None:
+    """Print what was found of one sweep, or the list of it of several, if JSON is asked for."""
+    if as_json:
+        data(json.dumps(found[0] if len(found) == 1 else found, indent=2, allow_nan=False))
 
 
 def _run(
@@ -104,10 +131,10 @@ def _run(
     scheduler: str | None,
     interrupted: Callable[[], bool],
     as_json: bool,
-) -> bool:
-    """Run a sweep and write its tables; return whether any point failed."""
+) -> dict[str, Any]:
+    """Run a sweep, print its outcome unless as JSON, and return it as plain values."""
     from idealgas.sweep.published import published_tables
-    from idealgas.sweep.results import result_rows, write_tables
+    from idealgas.sweep.results import result_rows
     from idealgas.sweep.run import run_sweep
 
     with progress_bar("sweep") as show:
@@ -121,19 +148,16 @@ def _run(
         outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress)
     for index, reason in outcome.failures.items():
         echo(f"point {index} failed: {reason}", err=True)
-    tables = write_tables(output) if outcome.ran or outcome.before else []
-    published = list(published_tables(plan, output)) if tables else []
     if as_json:
-        rows = result_rows(output) if tables else []
-        print_json({**asdict(outcome), "files": list(map(str, tables)), "results": rows})
-    elif tables:
+        return {**asdict(outcome), "results": result_rows(output) if outcome.files else []}
+    if outcome.files:
         done = f"{outcome.ran} points run, {outcome.before} done before, {len(outcome.failures)} failed"
         estimate = "" if outcome.estimated is None else f" (estimate {outcome.estimated:.3g} s)"
-        echo(f"{done}: {' and '.join(map(str, tables))}")
+        echo(f"{done}: {' and '.join(outcome.files)}")
         if outcome.ran:
             echo(f"time: {outcome.seconds:.3g} s{estimate}")
-        print_tables(published)
-    return bool(outcome.failures)
+        print_tables(published_tables(plan, output))
+    return asdict(outcome)
 
 
 def _list_quantities() -> None:
@@ -144,7 +168,8 @@ def _list_quantities() -> None:
         data("\n".join(names(analysis.results[0], (analysis.name,))))
 
 
-def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
+def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> dict[str, Any]:
+    """Points of a sweep and their cost as plain values; print them unless as JSON."""
     from rich.filesize import decimal
 
     from idealgas.analysis.core.tables import Cell, Number, Table
@@ -153,11 +178,11 @@ def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
     workers = workers or os.cpu_count() or 1
     costs = estimate_cost(plan)
     seconds = total_seconds(costs, workers)
+    labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)
+    points = [label | cost._asdict() for label, cost in zip(labels, costs, strict=True)]
+    found = {"points": points, "workers": workers, "seconds": seconds}
     if as_json:
-        labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)
-        points = [label | cost._asdict() for label, cost in zip(labels, costs, strict=True)]
-        print_json({"points": points, "workers": workers, "seconds": seconds})
-        return
+        return found
     rows: list[tuple[Cell, ...]] = [
         (
             str(point.index),
@@ -173,4 +198,5 @@ def _print_plan(plan: "Sweep", workers: int | None, as_json: bool) -> None:
     print_tables([Table("", ("point", "replicate", *plan.points[0].values, "N", "φ", "events", "log"), rows)])
     size = sum(cost.bytes for cost in costs)
     kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
-    echo(f"{len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")
+    echo(f"{path}: {len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")
+    return found

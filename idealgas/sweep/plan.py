@@ -87,6 +87,7 @@ class Published(Table):
     errors: Annotated[tuple[NotNegative, ...], Field(strict=False)] = Field(
         default=(), description="their standard errors; none: exact"
     )
+    note: str = Field(default="", description="a known difference, in one sentence")
 
 
 class Tables(Table):

@@ -21,6 +21,7 @@ from idealgas.sweep.cost import estimate_cost, total_seconds
 from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
 from idealgas.sweep.plan import Sweep
 from idealgas.sweep.point import result_path, run_point
+from idealgas.sweep.results import write_tables
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -59,7 +60,7 @@ class Outcome:
 
     ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
     seconds: time taken. estimated: estimated time, seconds; None where the machines are unknown or a point cannot be
-    estimated.
+    estimated. files: paths of the tables of all results; none if no point is done.
     """
 
     ran: int
@@ -67,6 +68,7 @@ class Outcome:
     failures: dict[int, str]
     seconds: float = 0.0
     estimated: float | None = None
+    files: tuple[str, ...] = ()
 
 
 def run_sweep(
@@ -77,7 +79,7 @@ def run_sweep(
     scheduler: str | None = None,
     on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> Outcome:
-    """Run the points of a sweep that are not done yet.
+    """Run the points of a sweep that are not done yet, and write the tables of all results.
 
     Args:
         sweep: the sweep to run.
@@ -93,7 +95,7 @@ def run_sweep(
         import distributed  # noqa: F401
     except ImportError:
         raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'") from None
-    folder = Path(folder).absolute()
+    given, folder = folder, Path(folder).absolute()
     with hold_folder(folder):
         sweep = resume_numbering(sweep, folder)
         open_points = [point for point in sweep.points if not result_path(folder, point.index).exists()]
@@ -111,8 +113,10 @@ def run_sweep(
                         check_folder(folder)
                         failures[index] = failure
                     on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
-    seconds = time.monotonic() - started
-    return Outcome(len(open_points) - len(failures), before, dict(sorted(failures.items())), seconds, estimated)
+        seconds = time.monotonic() - started
+        done = len(sweep.points) - len(failures)
+        tables = tuple(map(str, write_tables(given))) if done else ()
+    return Outcome(done - before, before, dict(sorted(failures.items())), seconds, estimated, tables)
 
 
 def _estimate(sweep: Sweep, workers: int) -> float | None:
