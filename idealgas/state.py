@@ -17,6 +17,7 @@ class Gas:
         mass: (N,) f8, mass.
         species: (N,) u2, index into species_names.
         species_names: name of each species.
+        solid_area: area of the box where no gas can be, length².
     """
 
     box: tuple[float, float]
@@ -26,6 +27,7 @@ class Gas:
     mass: np.ndarray
     species: np.ndarray
     species_names: tuple[str, ...]
+    solid_area: float = 0.0
 
     def __len__(self) -> int:
         """Number N of discs."""
@@ -40,12 +42,12 @@ class Gas:
 
     @property
     def area(self) -> float:
-        """Area of the box, length²."""
-        return self.box[0] * self.box[1]
+        """Area of the box without solids, length²."""
+        return self.box[0] * self.box[1] - self.solid_area
 
     @property
     def packing_fraction(self) -> float:
-        """Fraction of the box's area that discs cover, no unit."""
+        """Fraction of the area that discs cover, no unit."""
         return float(np.pi * (self.radius**2).sum() / self.area)
 
     @property

@@ -284,7 +284,7 @@ def _slit(log: Log) -> Slit:
 
 def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
     """Why a gate is not a slit in a wall, as part of a sentence; empty if it is one."""
-    if gate.start[across] != gate.end[across]:
+    if gate.start[across] != gate.end[across] or not gate.is_straight:
         return "the gate is not along an axis"
     (low, high), radius, size = _reach(gate, across), float(log.discs.radius[0]), log.box[1 - across]
     if high - low + 2 * radius >= size:  # what remains of the wall is shorter than a disc
@@ -314,6 +314,7 @@ def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
         wall
         for wall in walls_inside(log.scene)
         if wall != gate
+        and wall.arc is None
         and all(start >= closes or end <= opens for start, end in wall.absences)
         and max(abs(wall.start[across] - place), abs(wall.end[across] - place)) <= near
     ]

@@ -28,7 +28,7 @@ def info(log: Log) -> dict[str, Any]:
         "gas": {
             "box": list(log.box),
             "number": len(gas),
-            "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom)),
+            "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom) - gas.solid_area),
             "kinetic_energy": gas.kinetic_energy,
             "common_motion": frame.tolist(),
             "temperature": (gas.kinetic_energy - centre_of_mass_energy(log)) / len(gas),

@@ -14,6 +14,7 @@ NAMES = (
     "gravity",
     "periodic",
     "wall",
+    "arc",
     "permeable",
     "rotation",
     "restitution",

@@ -37,7 +37,11 @@ def _check(tables: Tables) -> Iterator[Issue]:
         if wall is None or wall.permeable_from is None:
             continue
         own, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
-        if wall.start != wall.end and _to_left(wall) == 0:
+        if wall.via is not None:
+            yield Issue(
+                (own, ("wall", i, "via")), "an arc that discs pass from one side", got, "a straight wall, or both sides"
+            )
+        elif wall.start != wall.end and _to_left(wall) == 0:
             sides = SIDES[2:] if wall.permeable_from in SIDES[:2] else SIDES[:2]
             yield Issue((own,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
         if wall.absences:

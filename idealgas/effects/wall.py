@@ -1,4 +1,4 @@
-"""Wall segments inside the box, which may be gates."""
+"""Walls inside the box, straight or arcs, which may be gates."""
 
 import math
 from collections.abc import Iterator
@@ -10,11 +10,13 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from idealgas.columns import SIDES
+from idealgas.effects.arc import FLATTEST
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, WallTemperature, description
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
+from idealgas.physics.arc_geometry import Arc, arc_through, bounds
 from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import NotNegative, Positive, Vector, Word
 
@@ -30,7 +32,7 @@ Times = Annotated[
 
 
 class Wall(SteppedTable):
-    """`[[wall]]`: a segment whose body and ends are solid, at rest. One that opens or closes is a gate.
+    """`[[wall]]`: a segment or arc whose body and ends are solid, at rest. One that opens or closes is a gate.
 
     It is there until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then. Lists
     of times open and close it several times; if `opens_at` begins with 0, it is absent at the start. A disc in the way
@@ -47,6 +49,12 @@ class Wall(SteppedTable):
 
     start: Vector = Field(alias="from", description="[x, y] of one end, length")
     end: Vector = Field(alias="to", description="[x, y] of the other end, length")
+    via: Vector | None = Field(
+        default=None, description="[x, y] of a point of the arc between them; of a circle, opposite to both, length"
+    )
+    solid: Literal["inside", "outside"] | None = Field(
+        default=None, description="where no gas is: inside or outside of the closed curve of walls with this key"
+    )
     temperature: WallTemperature | None = Field(
         default=None, description="of a thermal wall, as that of a thermal side; reflecting if absent"
     )
@@ -61,6 +69,11 @@ class Wall(SteppedTable):
     name: Word | None = Field(default=None, description="unique word for the log; if absent its number")
 
     @property
+    def arc(self) -> Arc | None:
+        """Its arc; None for a straight wall."""
+        return self.via and arc_through(self.start, self.via, self.end)
+
+    @property
     def absences(self) -> tuple[tuple[float, float], ...]:
         """Times from and until which it is absent, in order; the last may be infinite."""
         opens, closes = (_as_tuple(times) for times in (self.opens_at or 0.0, self.closes_at))
@@ -72,6 +85,8 @@ class Wall(SteppedTable):
     def action(self) -> str:
         """Short description for output."""
         action = "reflecting" if self.temperature is None else f"thermal, temperature {description(self.temperature)}"
+        if arc := self.arc:
+            action = f"{'circle' if self.start == self.end else 'arc'} of radius {arc.radius:.6g}, {action}"
         if self.is_permeable:
             action += f", permeable to {' and '.join(self.permeable_to or ('all discs',))}"
             action += f" from the {self.permeable_from}" if self.permeable_from else ""
@@ -111,6 +126,7 @@ class FixedDisc:
     temperature = permeable_from = None
     absences = ()
     is_permeable = False
+    arc = None
 
     @property
     def end(self) -> tuple[float, float]:
@@ -187,15 +203,32 @@ def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue
     """Faults of one wall in a box of a size, except for its name."""
     keys: tuple[Key, ...] = (("wall", i, "from"), ("wall", i, "to"))
     ends = f"{list(wall.start)} to {list(wall.end)}"
-    if not all(0 <= end[axis] <= size[axis] for end in (wall.start, wall.end) for axis in range(2)):
-        allowed = f"0 <= x <= {size[0]} and 0 <= y <= {size[1]} at both ends"
+    length = math.dist(wall.start, wall.end)
+    if wall.via is not None:
+        keys, ends = (("wall", i, "via"), *keys), f"{list(wall.start)} via {list(wall.via)} to {list(wall.end)}"
+        arc, farthest = wall.arc, FLATTEST * max(size)
+        nearest = min(math.dist(wall.via, wall.start), math.dist(wall.via, wall.end))
+        if arc is None or arc.radius > farthest or nearest < SHORTEST * max(size):
+            yield Issue(keys, "no arc through these points", ends, f"points not on a line, a radius <= {farthest:g}")
+            return
+    low, high = bounds(wall.start, wall.end, wall.arc)
+    slack = SHORTEST * max(size) if wall.via else 0.0  # rounding of an arc
+    if not all(-slack <= low[axis] and high[axis] <= size[axis] + slack for axis in range(2)):
+        allowed = f"0 <= x <= {size[0]} and 0 <= y <= {size[1]} everywhere"
         yield Issue((*keys, ("box", "size")), "wall not in the box", ends, allowed)
-    length = math.hypot(wall.end[0] - wall.start[0], wall.end[1] - wall.start[1])
-    if length < SHORTEST * max(size):
+    if wall.via is not None and wall.start == wall.end:
+        pass
+    elif length < SHORTEST * max(size):
         yield Issue(keys, "a wall of no length", ends, f"a length >= {SHORTEST * max(size)}")
-    elif any(wall.start[a] == wall.end[a] in (0, size[a]) for a in range(2)):
+    elif wall.via is None and any(wall.start[a] == wall.end[a] in (0, size[a]) for a in range(2)):
         yield Issue(keys, "a wall along a side of the box", ends, "walls inside the box; a side is a wall already")
     times = [time for absence in wall.absences for time in absence]
+    if wall.is_permeable and wall.solid:
+        keys = (("wall", i, "solid"), ("wall", i, "permeable_to"), ("wall", i, "permeable_from"))
+        yield Issue(keys, "a solid that lets discs pass", f'"{wall.solid}" and a permeable wall', "one of them")
+    if times and wall.solid:
+        keys = (("wall", i, "solid"), ("wall", i, "opens_at"), ("wall", i, "closes_at"))
+        yield Issue(keys, "a solid that opens", f'"{wall.solid}" and a gate', "one of them")
     if any(later <= earlier for earlier, later in pairwise(times)):
         keys = (("wall", i, "closes_at"), ("wall", i, "opens_at"))
         opens, closes = _as_tuple(wall.opens_at), _as_tuple(wall.closes_at)

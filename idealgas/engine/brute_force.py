@@ -28,6 +28,7 @@ from idealgas.engine.resolve import (
     resolve_thermostat_collision,
 )
 from idealgas.jit import inline, njit
+from idealgas.physics.arc import wall_contact
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.motion import NEVER
@@ -35,7 +36,6 @@ from idealgas.physics.periodic import boundary_crossings_along, images_between, 
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.vibration import contact_with_side
-from idealgas.physics.wall import segment_contact
 
 SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
 
@@ -78,19 +78,19 @@ def segment_event(disc, i, segments, effects, best):
                 for image_x in range(*image_range(effects.periodic, False)):
                     for image_y in range(*image_range(effects.periodic, True)):
                         images = images_to_wall(effects.periodic, i, (image_x, image_y))
-                        time = segment_contact(
-                            disc,
-                            i,
-                            segments[k],
-                            passage,
-                            effects.gravity,
-                            effects.restitution,
-                            effects.periodic,
-                            images,
-                        )
+                        time = contact_with_wall(disc, i, k, passage, effects, images)
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)
     return best
+
+
+@inline
+def contact_with_wall(disc, i, k, passage, effects, images):
+    """Local time of disc i's contact with wall k inside the box; NEVER without one."""
+    segments, arcs = effects.segments, effects.arcs
+    return wall_contact(
+        disc, i, k, segments, arcs, passage, effects.gravity, effects.restitution, effects.periodic, images
+    )
 
 
 @inline

@@ -4,6 +4,7 @@ import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.jit import inline
+from idealgas.physics.arc import wall_frame
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.disc_wall import collide_with_wall, inward_normal
 from idealgas.physics.exact_sum import add
@@ -16,7 +17,6 @@ from idealgas.physics.stress import flights_to, record_collision_stress, record_
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import andersen_collision
 from idealgas.physics.vibration import side_velocity
-from idealgas.physics.wall import segment_normal
 
 U = np.uintp
 
@@ -133,15 +133,14 @@ def resolve_side(disc, own, side, time, effects):
 
 @inline
 def resolve_segment(disc, own, segment, time, images, segments, effects):
-    """Collide a disc with a wall segment at a local time; return whether it touches an end of the segment."""
+    """Collide a disc with a wall inside the box at a local time; return whether it touches an end of the wall."""
     if segments is not None:
         arrive(disc, time, effects)
-        wall = segments[U(segment)]
         passage = passage_of(effects.permeable, own, segment)
-        nx, ny, at_end = segment_normal(disc, wall, passage, effects.periodic, images)
+        nx, ny, at_end, tx, ty, left = wall_frame(
+            disc, segment, segments, effects.arcs, passage, effects.periodic, images
+        )
         px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
-        tx, ty = (ny, -nx) if wall.length == 0.0 else (wall.tx, wall.ty)  # a fixed disc has one face
-        left = 1.0 if tx * ny - ty * nx >= 0.0 else -1.0
         face = FIRST_SEGMENT + 2 * segment + (0 if left > 0.0 else 1)
         record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
         return at_end

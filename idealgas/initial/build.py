@@ -28,6 +28,7 @@ def make_gas(scene: Scene) -> Gas:
         mass=mass,
         species=species,
         species_names=names,
+        solid_area=scene.solids.area,
     )
     if issues := list(static_contact_issues(scene, gas)):
         raise SceneError(scene.report(issues))
@@ -117,9 +118,9 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
     box, periodic = scene.box, scene.properties.periodic
     space = scene.room
-    walls = np.array([(*w.start, *w.end, w.radius) for w in walls_inside(scene) if w.is_there(0.0)]).reshape(-1, 5)
+    walls = [wall for wall in walls_inside(scene) if wall.is_there(0.0)]
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    grid = placement.make_grid(box.size, radius, periodic, walls)
+    grid = placement.make_grid(box.size, radius, periodic, walls, scene.solids.walls)
     random = rng(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.given), *(s.count for _, s in scene.placed)])[:-1])
     if len(scene.given):

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
+from idealgas.physics.arc_geometry import nearest_points
 from idealgas.scene import Scene
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
@@ -40,9 +41,7 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
         for k, wall in enumerate(scene.walls):
             if wall.is_there(0.0):
                 freely = [wall.lets_pass(name) and wall.permeable_from is None for name in gas.species_names]
-                start, along = np.array(wall.start), np.array(wall.end) - wall.start
-                share = np.clip((gas.position - start) @ along / (along @ along or 1.0), 0.0, 1.0)
-                normal = gas.position - start - share[:, None] * along
+                normal = gas.position - nearest_points(gas.position, wall.start, wall.end, wall.arc)
                 touches = ((normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2) & ~np.array(freely)[gas.species]
                 yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:

@@ -6,11 +6,14 @@ of pure random addition (Feder, J. Theor. Biol. 87, 237 (1980)). At low density 
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from idealgas.jit import inline, njit
+from idealgas.physics.arc import ARC, faces_arc, toggles
+from idealgas.physics.arc_geometry import NO_ARC, Arc, bounds, nearest_points
 from idealgas.physics.periodic import nearest_image
 from idealgas.scene.lattice import TriangularLattice
 
@@ -21,8 +24,12 @@ MIN_REFUSALS = 3_000_000
 """Number of refused positions, of all discs together, before which random placement never fails."""
 
 
-WALL = np.dtype([("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8"), ("radius", "f8")], align=True)
-"""Start of a wall, the way from there to its end, and the radius of a fixed disc, length."""
+WALL = np.dtype(
+    [("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8"), ("radius", "f8"), ("arc", ARC)], align=True
+)
+"""Start of a wall, the way from there to its end, and the radius of a fixed disc, length; and the arc, if it is one."""
+
+NO_SOLIDS: Mapping[str, Sequence[Any]] = {"inside": (), "outside": ()}
 
 
 class Grid(NamedTuple):
@@ -38,6 +45,8 @@ class Grid(NamedTuple):
         wall: (W,) WALL, every wall, images included.
         wall_start: (columns * rows + 1,) i8, first entry of each cell in `wall_item`; cell (c, r) is c * rows + r.
         wall_item: i8, rows of `wall` that a disc of a cell may touch, cell by cell.
+        inside: WALL, closed curves of walls in which no disc is.
+        outside: WALL, closed curves of walls outside of which no disc is; no walls if discs are everywhere else.
     """
 
     first: np.ndarray
@@ -49,52 +58,67 @@ class Grid(NamedTuple):
     wall: np.recarray
     wall_start: np.ndarray
     wall_item: np.ndarray
+    inside: np.recarray
+    outside: np.recarray
 
 
 def make_grid(
     box: tuple[float, float],
     radius: np.ndarray,
     periodic: tuple[bool, bool] = (False, False),
-    walls: np.ndarray | None = None,
+    walls: Sequence[Any] = (),
+    solids: Mapping[str, Sequence[Any]] = NO_SOLIDS,
 ) -> Grid:
     """Empty grid with about one disc per cell.
 
     box: width and height, length. radius: (N,), length. periodic: whether the sides along x and along y are periodic.
-    walls: (W, 5), x, y of the start and x, y of the end of each wall, and the radius of a fixed disc, length.
+    walls: with start, end, arc and radius. solids: the walls of solids, as in `Solids`.
     """
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
     shape = [max(int(length / side), 1) for length in box]
     size, period = np.array(box) / shape, np.where(periodic, box, 0.0)
-    images = _images(np.empty((0, 5)) if walls is None else walls, period)
+    images = _images(_rows(walls), period)
     near = [_cells_near(wall, shape, size, largest) for wall in images]
     cell = np.concatenate([*near, np.empty(0, np.int64)])
     item = np.repeat(np.arange(len(images)), [len(cells) for cells in near])
     order = np.argsort(cell, kind="stable")
     start = np.searchsorted(cell[order], np.arange(shape[0] * shape[1] + 1))
     first, behind = np.full(shape, -1, np.int32), np.full(len(radius), -1, np.int32)
-    columns = np.hstack((images[:, :2], images[:, 2:4] - images[:, :2], images[:, 4:]))
-    made = columns.view(WALL).reshape(-1).view(np.recarray)
+    made, inside, outside = map(_records, (images, _rows(solids["inside"]), _rows(solids["outside"])))
     (width, height), (period_x, period_y) = size.tolist(), period.tolist()
-    return Grid(first, behind, width, height, period_x, period_y, made, start, item[order])
+    return Grid(first, behind, width, height, period_x, period_y, made, start, item[order], inside, outside)
+
+
+def _rows(walls: Sequence[Any]) -> np.ndarray:
+    """Start, end, radius and arc of each wall as numbers (W, 12)."""
+    rows = [(*wall.start, *wall.end, wall.radius, *(wall.arc or NO_ARC)) for wall in walls]
+    return np.array(rows, float).reshape(-1, 12)
+
+
+def _records(rows: np.ndarray) -> np.recarray:
+    """Walls (W,) WALL of rows of numbers."""
+    columns = np.hstack((rows[:, :2], rows[:, 2:4] - rows[:, :2], rows[:, 4:]))
+    return columns.view(WALL).reshape(-1).view(np.recarray)
 
 
 def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
-    """Walls (W, 5) and their images next to the box along periodic axes."""
+    """Rows (W, 12) of walls and of their images next to the box along periodic axes."""
     shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
-    return np.concatenate([walls + np.array((dx, dy, dx, dy, 0.0)) for dx in shifts[0] for dy in shifts[1]])
+    rest = np.zeros(walls.shape[1] - 4)
+    return np.concatenate([walls + np.array((dx, dy, dx, dy, *rest)) for dx in shifts[0] for dy in shifts[1]])
 
 
 def _cells_near(wall: np.ndarray, shape: list[int], size: np.ndarray, reach: float) -> np.ndarray:
     """Indices of the cells of which a point may be within reach (length) of a wall."""
     ends, reach = wall[:4].reshape(2, 2), reach + wall[4]
-    along = ends[1] - ends[0]
-    low, high = ends.min(axis=0) - reach, ends.max(axis=0) + reach
+    arc = Arc(*wall[5:])
+    place = (*ends, arc if arc.radius else None)
+    low, high = np.array(bounds(*place)) + np.array(((-reach,), (reach,)))
     ranges = [np.arange(*np.clip((low[a] // size[a], high[a] // size[a] + 1), 0, shape[a]).astype(int)) for a in (0, 1)]
     column, row = (axis.ravel() for axis in np.meshgrid(*ranges))
-    centre = (np.column_stack((column, row)) + 0.5) * size - ends[0]
-    foot = np.clip(centre @ along / (along @ along or 1.0), 0.0, 1.0)[:, None] * along
-    near = np.hypot(*(centre - foot).T) <= (reach + np.hypot(*size) / 2) * (1 + 1e-9)
+    centre = (np.column_stack((column, row)) + 0.5) * size
+    near = np.hypot(*(centre - nearest_points(centre, *place)).T) <= (reach + np.hypot(*size) / 2) * (1 + 1e-9)
     return (column * shape[1] + row)[near]
 
 
@@ -134,7 +158,7 @@ def _around(index, count, period):
 
 @inline
 def _is_free(grid, position, radius, x, y, reach, i):
-    """Whether a disc of radius `reach` at (x, y) would overlap no wall and no disc of the grid but disc i."""
+    """Whether a disc of radius `reach` at (x, y) would overlap no wall, no solid and no disc of the grid but disc i."""
     columns, rows = grid.first.shape
     column, row = _cell(grid, x, y)
     for c in range(*_around(column, columns, grid.period_x)):
@@ -152,20 +176,45 @@ def _is_free(grid, position, radius, x, y, reach, i):
 
 @inline
 def _is_clear(grid, cell, x, y, reach):
-    """Whether a disc of radius `reach` at (x, y), a point of the cell, would overlap no wall."""
+    """Whether a disc of radius `reach` at (x, y), a point of the cell, would overlap no wall and is in no solid."""
     for k in range(grid.wall_start[cell], grid.wall_start[cell + 1]):
         wall = grid.wall[grid.wall_item[k]]
-        dx = x - wall.x
-        dy = y - wall.y
-        along = dx * wall.along_x + dy * wall.along_y
-        squared = wall.along_x * wall.along_x + wall.along_y * wall.along_y
-        share = min(max(along / squared, 0.0), 1.0) if squared > 0.0 else 0.0
-        dx -= share * wall.along_x
-        dy -= share * wall.along_y
         contact = reach + wall.radius
-        if dx * dx + dy * dy < contact * contact:
+        if _squared_distance(wall, x - wall.x, y - wall.y) < contact * contact:
             return False
-    return True
+    return not (_encloses(grid.inside, x, y) or (len(grid.outside) > 0 and not _encloses(grid.outside, x, y)))
+
+
+@inline
+def _encloses(walls, x, y):
+    """Whether closed curves of walls enclose the point (x, y)."""
+    found = False
+    for k in range(len(walls)):
+        wall = walls[k]
+        found ^= toggles(x - wall.x, y - wall.y, wall.along_x, wall.along_y, wall.arc)
+    return found
+
+
+@inline
+def _squared_distance(wall, dx, dy):
+    """Squared distance, length², of a point from a wall, from the centre of a fixed disc.
+
+    dx, dy: position of the point relative to the start of the wall, length.
+    """
+    squared = wall.along_x * wall.along_x + wall.along_y * wall.along_y
+    if wall.arc.radius > 0.0:
+        away_x = dx - wall.arc.x
+        away_y = dy - wall.arc.y
+        distance = math.sqrt(away_x * away_x + away_y * away_y)
+        if faces_arc(away_x, away_y, distance, wall.arc):
+            return (distance - wall.arc.radius) * (distance - wall.arc.radius)
+        share = 1.0 if 2.0 * (dx * wall.along_x + dy * wall.along_y) > squared else 0.0  # the nearer end
+    else:
+        along = dx * wall.along_x + dy * wall.along_y
+        share = min(max(along / squared, 0.0), 1.0) if squared > 0.0 else 0.0
+    dx -= share * wall.along_x
+    dy -= share * wall.along_y
+    return dx * dx + dy * dy
 
 
 @njit

@@ -1,5 +1,6 @@
 """The header of a log, written before the run: scene, box, discs, walls, and versions of the programs."""
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -54,7 +55,8 @@ class LogHeader:
         def read() -> Scene:
             scene = parse_scene(self.scene_text, "scene", discs=self.given)
             columns = {*self._file.names("events"), *self._file.names("checkpoints")}
-            check_scene(scene, self.discs, self.walls, self.periodic, self.gravity, self._file.has_thermostat, columns)
+            discs = self._stored_discs
+            check_scene(scene, discs, self.walls, self.periodic, self.gravity, self._file.has_thermostat, columns)
             return scene
 
         return self._file.checked(read, "runs/scene")
@@ -83,17 +85,22 @@ class LogHeader:
     @cached_property
     def discs(self) -> Gas:
         """Discs at the start of the run: constants of each disc, and position and velocity at time 0."""
-        columns = {column.name: self._file.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
+        return replace(self._stored_discs, solid_area=self.scene.solids.area)
+
+    @cached_property
+    def _stored_discs(self) -> Gas:
+        """Discs at the start of the run as the file contains them, without knowledge of the scene."""
+        columns: dict[str, Any] = {column.name: self._file.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         names = tuple(self._file.texts("discs/species_name"))
         self._file.checked(lambda: check_species(columns["species"], names), "discs/species")
-        return Gas(box=self.box, species_names=names, **columns)
+        return Gas(self.box, **columns, species_names=names)
 
     @property
     def given(self) -> "Discs":
         """The discs at the start, as those from which a scene starts."""
         from idealgas.scene.discs import Discs
 
-        gas, n = self.discs, len(self.discs)
+        gas, n = self._stored_discs, len(self._stored_discs)
         spin = self._file.fixed("discs/angular_velocity") if self.inertia is not None else np.zeros(n)
         species = gas.species.astype(np.uint32)
         return Discs(gas.position, gas.velocity, gas.radius, gas.mass, spin, species, gas.species_names, np.arange(n))

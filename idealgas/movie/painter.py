@@ -260,8 +260,8 @@ class Painter:
                 self._walls.append(axes.add_collection(discs))
                 self._names.append(self._name(axes, "", wall.start))
                 continue
-            ends, dash = zip(wall.start, wall.end, strict=True), "--" if wall.is_permeable else "-"
-            (line,) = axes.plot(*ends, dash, color=self._ink, linewidth=1.5, animated=True)
+            line_of, dash = zip(*wall.points, strict=True), "--" if wall.is_permeable else "-"
+            (line,) = axes.plot(*line_of, dash, color=self._ink, linewidth=1.5, animated=True)
             self._walls.append(line)
             self._names.append(self._name(axes, wall.label, max(wall.start, wall.end, key=lambda end: end[1])))
         if self._piston is not None:

@@ -103,8 +103,9 @@ class SidesPanel:
 
     def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, times: tuple[float, float]) -> None:
         """Draw the axes. line: colour of the fraction at equal density. times: start and end of the film."""
-        upright = (wall for wall in walls_inside(scene) if wall.is_passable and wall.start[0] == wall.end[0])
-        self._middle = next((wall.start[0] for wall in upright), gas.box[0] / 2)
+        passable = (wall for wall in walls_inside(scene) if wall.is_passable and wall.is_straight)
+        upright = (wall.start[0] for wall in passable if wall.start[0] == wall.end[0])
+        self._middle = next(upright, gas.box[0] / 2)
         self._points: list[tuple[float, float]] = []
         axes.set(xlim=times, ylim=(0, 1), xlabel="t (time)", ylabel=f"fraction right of x = {self._middle:g} (no unit)")
         axes.axhline(1 - self._middle / gas.box[0], ls="--", color=line)

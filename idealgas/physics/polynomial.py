@@ -91,12 +91,28 @@ def gap(x, y, vx, vy, gx, gy, r, t):
     return x_then * x_then + y_then * y_then - r * r
 
 
-@noinline
+@inline
 def first_contact_root(x, y, vx, vy, gx, gy, r, after):
     """Smallest t ≥ 0 at which a body on a parabola is within r of the origin and approaches it; NEVER if there is none.
 
     x, y, r: length. vx, vy: length/time. gx, gy: length/time². Only an approach that begins after the time `after`
     counts.
+    """
+    return first_descent(x, y, vx, vy, gx, gy, r, after, 1.0)
+
+
+@inline
+def first_exit_root(x, y, vx, vy, gx, gy, r, after):
+    """Smallest t ≥ 0 at which a body on a parabola is at least r from the origin and moves away; NEVER without any.
+
+    Arguments as of `first_contact_root`.
+    """
+    return first_descent(x, y, vx, vy, gx, gy, r, after, -1.0)
+
+
+@noinline
+def first_descent(x, y, vx, vy, gx, gy, r, after, sign):
+    """Smallest t ≥ 0 at which the gap times `sign` (1 or -1) falls and is zero or less.
 
     The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
     interval that ends at or below zero contains the root. A gap that is zero or less at 0 and falls there gives 0. If
@@ -106,8 +122,8 @@ def first_contact_root(x, y, vx, vy, gx, gy, r, after):
     b = gx * vx + gy * vy
     c = vx * vx + vy * vy + gx * x + gy * y
     d = 2.0 * (x * vx + y * vy)
-    e = gap(x, y, vx, vy, gx, gy, r, 0.0)
-    if e <= 0.0 and d < 0.0 and after < 0.0:
+    e = sign * gap(x, y, vx, vy, gx, gy, r, 0.0)
+    if e <= 0.0 and sign * d < 0.0 and after < 0.0:
         return 0.0
     largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
     last = 1.0 + largest / a  # Cauchy's bound on the roots
@@ -118,8 +134,8 @@ def first_contact_root(x, y, vx, vy, gx, gy, r, after):
     for k in range(4):
         high = first if k == 0 else (second if k == 1 else (third if k == 2 else last))
         if high > low:
-            at_low = gap(x, y, vx, vy, gx, gy, r, low)
-            at_high = gap(x, y, vx, vy, gx, gy, r, high)
+            at_low = sign * gap(x, y, vx, vy, gx, gy, r, low)
+            at_high = sign * gap(x, y, vx, vy, gx, gy, r, high)
             level = min(e, 0.0) if low > 0.0 and at_low <= 0.0 else 0.0
             if low > after and at_high <= level and at_high < at_low:
                 if at_low <= level:
@@ -128,7 +144,7 @@ def first_contact_root(x, y, vx, vy, gx, gy, r, after):
                     middle = 0.5 * (low + high)
                     if middle <= low or middle >= high:
                         break
-                    if gap(x, y, vx, vy, gx, gy, r, middle) > level:
+                    if sign * gap(x, y, vx, vy, gx, gy, r, middle) > level:
                         low = middle
                     else:
                         high = middle

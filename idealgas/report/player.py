@@ -95,8 +95,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
         "walls": [
             {
                 "name": w.label,
-                "from": w.start,
-                "to": w.end,
+                "points": w.points,
                 "radius": w.radius,
                 "permeable": w.is_permeable,
                 "absent": _absences(w, last),

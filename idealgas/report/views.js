@@ -82,7 +82,7 @@ class DiscView {
       for (const x of head.periodic[0] ? [-boxX, 0, boxX] : [0]) {
         for (const y of head.periodic[1] ? [-boxY, 0, boxY] : [0]) {
           pen.beginPath();
-          pen.arc(inset + (wall.from[0] + x) * scale, height - (wall.from[1] + y) * scale, wall.radius * scale, 0, 7);
+          pen.arc(inset + (wall.points[0][0] + x) * scale, height - (wall.points[0][1] + y) * scale, wall.radius * scale, 0, 7);
           pen.fill();
         }
       }
@@ -98,16 +98,16 @@ class DiscView {
       pen.strokeStyle = open ? theme.soft : theme.ink;
       pen.lineWidth = open ? 1 : 2;
       pen.setLineDash(open ? [1, 5] : wall.permeable ? [6, 4] : []);
-      this.line(pen, wall.from.map(x => x * scale), wall.to.map(x => x * scale), inset, height);
+      this.line(pen, wall.points.map(([x, y]) => [x * scale, y * scale]), inset, height);
       pen.setLineDash([]);
-      const [x, y] = wall.from[1] > wall.to[1] ? wall.from : wall.to; // the upper end
+      const from = wall.points[0], to = wall.points.at(-1), [x, y] = from[1] > to[1] ? from : to; // the upper end
       this.label(pen, theme, open ? `${wall.name}, open` : wall.name, inset + x * scale, height - y * scale);
     }
     if (head.piston) {
       pen.lineWidth = 3;
       pen.strokeStyle = head.pistonColour;
       const place = gas.pistonPlace() * scale, along = head.piston.axis === 0;
-      this.line(pen, along ? [place, 0] : [0, place], along ? [place, height] : [boxX * scale, place], inset, height);
+      this.line(pen, along ? [[place, 0], [place, height]] : [[0, place], [boxX * scale, place]], inset, height);
       this.label(pen, theme, "piston", inset + (along ? place : 0), along ? 0 : height - place);
     }
     pen.lineWidth = 1;
@@ -157,10 +157,9 @@ class DiscView {
     pen.lineWidth = 1;
   }
 
-  line(pen, [x0, y0], [x1, y1], inset, height) {
+  line(pen, points, inset, height) {
     pen.beginPath();
-    pen.moveTo(inset + x0, height - y0);
-    pen.lineTo(inset + x1, height - y1);
+    for (const [x, y] of points) pen.lineTo(inset + x, height - y);
     pen.stroke();
   }
 

@@ -18,6 +18,7 @@ from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
 from idealgas.scene.discs import Discs, Given, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
+from idealgas.scene.solids import Solids, find_solids
 from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
 from idealgas.toml.table import Rectangle, Table, Vector
 
@@ -81,6 +82,11 @@ class Document(_DiscsAndEffects):
         if self._given.walls_of is not self.disc:
             self._given.walls, self._given.walls_of = fixed_discs(self.disc), self.disc
         return (*self.wall, *self._given.walls)
+
+    @property
+    def solids(self) -> Solids:
+        """Solids that the tables [[wall]] make."""
+        return find_solids(self.wall, self.box.size[0] * self.box.size[1])
 
     @property
     def placed(self) -> list[tuple[int, Species]]:
@@ -190,9 +196,11 @@ class Document(_DiscsAndEffects):
         """
         n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
         size = right - left, top - bottom
-        phi = self.covered_area / (size[0] * size[1])
+        area = size[0] * size[1] - self.solids.area
+        phi = self.covered_area / area
         diameter, largest = self._sum_of_diameters / n, self.largest_radius
         encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n
+        encounters *= size[0] * size[1] / area
         path = 1.0 / max(encounters, 1.0 / sum(size))
         speed = math.sqrt(self.mean_speed**2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
         return path / speed if speed > 0 else math.inf

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from idealgas.columns import FIRST_SEGMENT, SIDES, Point, side_ends
+from idealgas.physics.arc_geometry import Arc, drawn_points
 
 if TYPE_CHECKING:
     from idealgas.scene.scene import Scene
@@ -18,7 +19,8 @@ class NumberedWall(NamedTuple):
     """Wall with name, ends (length), description of its action, and times from and until which it is absent.
 
     radius: of a fixed disc, whose ends are its centre, length; 0 for others. is_permeable: whether discs of some
-    species pass it. label: its name in pictures, with an arrow if they pass in one direction.
+    species pass it. label: its name in pictures, with an arrow if they pass in one direction. arc: None for
+    other walls.
     """
 
     name: str
@@ -29,6 +31,17 @@ class NumberedWall(NamedTuple):
     radius: float = 0.0
     is_permeable: bool = False
     label: str = ""
+    arc: Arc | None = None
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether it is neither an arc nor a fixed disc."""
+        return not self.radius and self.arc is None
+
+    @property
+    def points(self) -> list[Point]:
+        """Points between which lines draw it."""
+        return drawn_points(self.start, self.end, self.arc)
 
     @property
     def is_gate(self) -> bool:
@@ -57,7 +70,7 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         name = wall.name or f"wall {k}"
         label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
-        walls.append(NumberedWall(name, *body, wall.is_permeable, label))
+        walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc))
     return walls
 
 

@@ -8,11 +8,13 @@ from helpers.support import record
 from idealgas.bench.effects import effect_scene
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.effects import EFFECTS
+from idealgas.effects.arc import make_arcs
 from idealgas.effects.bundle import Effects
 from idealgas.effects.effect import EffectSpec, Start
 from idealgas.effects.wall import make_segments
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
+from idealgas.physics.arc_geometry import arc_through
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
@@ -28,6 +30,7 @@ from idealgas.run.layout import by_name
 from idealgas.state import Gas
 
 BOX = (12.0, 9.0)
+ARC = (4.2, 8.2), (5.7, 7.3), (7.2, 8.2)
 
 NAMES = (*(effect.field for effect in EFFECTS), "gates")
 """Effects by their fields of the bundle; gates are segments too."""
@@ -55,10 +58,14 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     """Fresh effects. Periodic sides join left and right (top and bottom where gravity or a piston leave no other)."""
     n = len(gas)
     draw = np.random.default_rng(seed)
-    walls = []
+    walls: list[tuple[float, float, float, float, bool]] = []
+    arcs = []
     schedule: list[tuple[float, int, int, float]] = []
     if names & {"segments", "permeable"}:
         walls += [(9.0, 1.0, 10.0, 4.0, True), (9.5, 7.0, 10.5, 7.0, True)]
+    if "arcs" in names:
+        arcs = [None] * len(walls) + [arc_through(*ARC)]
+        walls += [(*ARC[0], *ARC[2], True)]
     if "gates" in names:
         first, field = len(walls), [effect.field for effect in EFFECTS].index("segments")
         walls += [(8.6, 4.5, 8.6, 8.8, True), (0.5, 8.6, 3.5, 8.6, False)]
@@ -78,6 +85,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         ),
         "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
         "permeable": lambda: Permeable(gas.species.copy(), passage),
+        "arcs": lambda: make_arcs([*arcs, *[None] * (len(walls) - len(arcs))]),
         "rotation": lambda: Rotation(draw.normal(size=n), inertia, 0.6, 0.3),
         "restitution": lambda: Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)),
         "thermal": lambda: Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)),

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from helpers.random_walls import HEIGHT, WIDTH, distances, some_walls
 from idealgas.columns import SIDES
 from idealgas.initial.build import make_gas
+from idealgas.physics.arc_geometry import arc_through, bounds, nearest_points
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import toml_value
@@ -33,6 +34,7 @@ EFFECTS = (
     "vibration",
     "fixed",
     "permeable",
+    "arcs",
 )
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
@@ -48,10 +50,10 @@ def room_of(size, piston) -> tuple[float, float, float, float]:
     return (*low, *high)
 
 
-def place(random, size, periodic, room, walls, number, share, gridded, factors):
+def place(random, size, periodic, room, walls, bent, number, share, gridded, factors):
     """Positions (M, 2) and radii (M,) of discs on a lattice, moved a little unless gridded.
 
-    Those in walls are left out. share: of the pitch that the largest discs take up.
+    Those in walls are left out. bent: tables of the walls. share: of the pitch that the largest discs take up.
     """
     low, span = np.array(room[:2]), np.array(room[2:]) - room[:2]
     columns = max(round(math.sqrt(number * span[0] / span[1])), 1)
@@ -68,6 +70,10 @@ def place(random, size, periodic, room, walls, number, share, gridded, factors):
         shifts = [(x, y) for x in ((-1, 0, 1) if periodic[0] else (0,)) for y in ((-1, 0, 1) if periodic[1] else (0,))]
         images = np.concatenate([walls + np.array(s) * size for s in shifts])
         clear = distances(position, images).min(axis=1) >= radius
+        for wall in (wall for wall in bent if "via" in wall):
+            ends = tuple(wall["from"]), tuple(wall["to"])
+            nearest = nearest_points(position, *ends, arc_through(ends[0], tuple(wall["via"]), ends[1]))
+            clear &= np.hypot(*(position - nearest).T) >= radius
         position, radius = position[clear], radius[clear]
     return position, radius
 
@@ -122,6 +128,19 @@ def draw_passage(draw, start, end) -> dict[str, Any]:
     return pick(draw, {}, some, one_way, some | one_way)
 
 
+def bend(draw, size, wall: dict[str, Any]) -> dict[str, Any]:
+    """A wall bent to either side, to a shallow arc, a half circle or more, or a circle, if the box has room for it."""
+    (x, y), end = wall["from"], wall["to"]
+    along, height = np.subtract(end, (x, y)), pick(draw, 0.1, -0.1, 0.5, -0.5, 2.0)
+    via = (np.add((x, y), end) / 2 + height * np.array([-along[1], along[0]])).tolist()
+    bent = wall | {"via": via} | ({"to": [x, y]} if pick(draw, False, False, True) else {})
+    arc = arc_through((x, y), tuple(via), tuple(bent["to"]))
+    if arc is None or arc.radius > 50 * max(size):
+        return wall
+    low, high = bounds((x, y), bent["to"], arc)
+    return bent if min(low) >= 0 and high[0] <= size[0] and high[1] <= size[1] else wall
+
+
 def draw_piston(draw, size, mass: float) -> dict[str, Any]:
     side = pick(draw, *SIDES)
     axis, upper = divmod(SIDES.index(side), 2)
@@ -168,12 +187,17 @@ def tables_of(draw) -> dict[str, Any]:
         keep_clear_of_piston(walls, size, piston)
     passages = [draw_passage(draw, *wall) if "permeable" in called else {} for wall in walls.tolist()]
     free = np.array(["permeable_to" in p and "permeable_from" not in p for p in passages], bool)
+    tables_of_walls = [{"from": a, "to": b} | p for (a, b), p in zip(walls.tolist(), passages, strict=True)]
+    if "arcs" in called and not piston:
+        bent = [draw(st.booleans()) and "permeable_from" not in wall for wall in tables_of_walls]
+        tables_of_walls = [bend(draw, size, w) if on else w for w, on in zip(tables_of_walls, bent, strict=True)]
+    solid = [wall for wall, passes in zip(tables_of_walls, free, strict=True) if not passes]
     number = pick(draw, 4, 1, 2, 3, 9, 16, 40)
     share = pick(draw, 0.5, 1.0, 1 - 1e-9, 0.97, 0.1, 1e-3, 1e-6)
     factors = pick(draw, [1.0], [1.0, 0.5], [1.0, 0.1, 1e-3])
     gridded = draw(st.booleans())
     position, radius = place(
-        random, np.array(size), periodic, room_of(size, piston), walls[~free], number, share, gridded, factors
+        random, np.array(size), periodic, room_of(size, piston), walls[~free], solid, number, share, gridded, factors
     )
     n = len(position)
     velocity = move(random, pick(draw, "normal", "few directions", "one hot", "one moves", "all speeds"), n)
@@ -201,11 +225,8 @@ def tables_of(draw) -> dict[str, Any]:
         hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}
         gates = draw(st.booleans())
         tables["wall"] = [
-            {"from": a, "to": b}
-            | (draw_gate(draw) if gates and "permeable_from" not in passages[k] else {})
-            | passages[k]
-            | (hot if k == 0 else {})
-            for k, (a, b) in enumerate(walls.tolist())
+            wall | (draw_gate(draw) if gates and "permeable_from" not in wall else {}) | (hot if k == 0 else {})
+            for k, wall in enumerate(tables_of_walls)
         ]
     if "gravity" in called and not periodic.all():
         pull = pick(draw, 1.0, 0.01, 1e-6, 100.0)
@@ -232,6 +253,7 @@ def dimension(path: tuple[str, ...]) -> tuple[int, int, int]:
     key = path[-1]
     powers = {
         "size": (1, 0, 0), "position": (1, 0, 0), "radius": (1, 0, 0), "from": (1, 0, 0), "to": (1, 0, 0),
+        "via": (1, 0, 0),
         "velocity": (0, 1, 0), "speed": (0, 1, 0), "mass": (0, 0, 1), "angular_velocity": (-1, 1, 0),
         "temperature": (0, 2, 1), "thermal": (0, 2, 1), "spin_temperature": (0, 2, 1), "acceleration": (-1, 2, 0),
         "pressure": (-2, 2, 1), "until": (1, -1, 0), "opens_at": (1, -1, 0), "closes_at": (1, -1, 0),

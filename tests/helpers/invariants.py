@@ -20,6 +20,7 @@ from helpers.random_walls import crossings, distances
 from idealgas.columns import BATH, SIDES, EventBatch, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation
+from idealgas.physics.arc_geometry import nearest_points
 from idealgas.physics.permeable import FROM_LEFT, FROM_RIGHT, OPEN, SOLID
 from idealgas.physics.piston import piston_motion
 from idealgas.physics.vibration import height_on, parabola_at
@@ -52,12 +53,14 @@ class InvariantChecker:
         self.pull = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0))
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
         self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
-        along = (self.walls[:, 1] - self.walls[:, 0]) / np.hypot(*(self.walls[:, 1] - self.walls[:, 0]).T)[:, None]
+        along = self.walls[:, 1] - self.walls[:, 0]
+        along = along / np.where(along.any(axis=1), np.hypot(*along.T), 1.0)[:, None]
         self.left = np.column_stack((-along[:, 1], along[:, 0]))
         passage = np.zeros((len(scene.walls), len(gas.species_names)), int)
         if scene.wall and any(wall.is_permeable for wall in scene.wall):
             passage = effects.permeable.passage
         self.passage = np.asarray(passage)[:, gas.species]
+        self.straight = np.array([w.arc is None for w in scene.wall], bool)
         self.gates, self.fixed = scene.wall, scene.walls[len(scene.wall) :]
         self.piston = scene.piston
         self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
@@ -184,7 +187,8 @@ class InvariantChecker:
         for wall in self.fixed:
             away = np.hypot(*self.wrapped(path - wall.start).T)
             assert (away >= radius + wall.radius - self.known - self.sunk[disc]).all(), "in a fixed disc"
-        if not len(self.walls):
+        self.clear_of_arcs(disc, path, time)
+        if not self.straight.any():
             return
         low, high = (np.floor(edge / self.size) for edge in (path.min(axis=0) - radius, path.max(axis=0) + radius))
         low, high = np.where(self.periodic, low, 0).astype(int), np.where(self.periodic, high, 0).astype(int)
@@ -193,11 +197,11 @@ class InvariantChecker:
         shifts = [(x, y) for x in range(low[0], high[0] + 1) for y in range(low[1], high[1] + 1)]
         passage = self.passage[: len(self.gates), disc]
         there = np.array([all(opens >= time for opens, _ in wall.absences) for wall in self.gates])
-        there &= passage == SOLID
+        there &= self.straight & (passage == SOLID)
         walls = np.concatenate([self.walls[there] + np.array(shift) * self.size for shift in shifts])
         since = self.since[disc]
         gates = np.array([all(o >= time or c <= since for o, c in wall.absences) for wall in self.gates])
-        gates &= passage == SOLID
+        gates &= self.straight & (passage == SOLID)
         closed = np.concatenate([self.walls[gates] + np.array(shift) * self.size for shift in shifts])
         path = self.path(disc, np.sort(np.concatenate((times, *self.nearest(disc, walls, duration)))))
         if len(walls):
@@ -241,6 +245,15 @@ class InvariantChecker:
         distances = np.hypot(*away.T)
         nearest = np.abs(distances - radius).argmin()
         return away[nearest] / distances[nearest], float(np.abs(distances - radius).min())
+
+    def clear_of_arcs(self, disc: int, path: np.ndarray, time: float) -> None:
+        """The way of a disc until a time keeps clear of the arcs that have been there since the start."""
+        inside = self.wrapped(path - self.size / 2) + self.size / 2
+        images = (inside[:, None] + self.shifts).reshape(-1, 2)
+        for wall in self.gates:
+            if wall.arc and all(opens >= time for opens, _ in wall.absences):
+                away = images - nearest_points(images, wall.start, wall.end, wall.arc)
+                assert np.hypot(*away.T).min() >= self.gas.radius[disc] - self.known - self.sunk[disc], "in an arc"
 
     def path(self, disc: int, times: np.ndarray) -> np.ndarray:
         """Unwrapped positions (T, 2) of a disc at times after its last event."""
@@ -358,7 +371,7 @@ class InvariantChecker:
             assert gate.is_there(time), "an open gate"
             closed = any(closes <= time for _, closes in gate.absences)  # perhaps over a disc
             start, end = self.walls[wall - 4]
-            share, away = self.near(place, start, end)
+            share, away = self.near(place, gate)
             distances = np.hypot(*away.T)
             if closed and distances.min() <= self.touches:
                 return  # it closed on the very centre: neither side is that of the disc
@@ -369,7 +382,7 @@ class InvariantChecker:
             touching = (np.abs(distances - radius) <= self.touches) | (np.arange(len(away)) == nearest)
             normal = self.fitting(normals[touching], before, after, rebounds)
             share, distance = share[touching], distances[nearest]
-            along = self.known / np.hypot(*(end - start))
+            along = self.known / (np.hypot(*(end - start)) or 1.0)
             inside = (share > along) & (share < 1 - along)
             beyond = (share < -along) | (share > 1 + along)
             assert not (beyond if kind == Kind.WALL else inside).all(), "foot"
@@ -388,9 +401,17 @@ class InvariantChecker:
         else:
             self.parts(incoming, outgoing, rebounds, bound, grazing, "wall")
 
-    def near(self, place, start, end) -> tuple[np.ndarray, np.ndarray]:
-        """For each image of a place: where along a segment its foot is, as a share, and how it stands from there."""
+    def near(self, place, wall) -> tuple[np.ndarray, np.ndarray]:
+        """For each image of a place: where along a wall its foot is, as a share, and how it stands from there.
+
+        On an arc the share is 1/2, or 0 next to an end.
+        """
+        start, end = np.array(wall.start), np.array(wall.end)
         along, images = end - start, place + self.shifts
+        if wall.arc:
+            foot = nearest_points(images, start, end, wall.arc)
+            ends = np.minimum(np.hypot(*(foot - start).T), np.hypot(*(foot - end).T))
+            return np.where((ends < 1e-6 * wall.arc.radius) & (wall.start != wall.end), 0.0, 0.5), images - foot
         share = (images - start) @ along / (along @ along)
         return share, images - start - np.clip(share, 0, 1)[:, None] * along
 

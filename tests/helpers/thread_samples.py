@@ -60,6 +60,8 @@ EFFECTS = {
     "{ position = [5, 50], radius = 2, fixed = true }]\n",
     "permeable": "wall = [{ from = [0, 40], to = [8, 40.5], permeable_from = 'bottom' }, "
     "{ from = [0, 70], to = [8, 70], permeable_to = ['b'] }]\n",
+    "arcs": "wall = [{ from = [0.1, 30], to = [0.1, 30], via = [7.9, 30] }, "
+    "{ from = [1, 60], to = [7, 60], via = [4, 66] }]\n",
     "everything": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n' + EVERYTHING,
 }
 

@@ -25,12 +25,13 @@ class Chambers:
         self.cuts = [_cuts(log, axis, until) for axis in range(2)]
         x, y = log.discs.position.T
         self.occupied = np.histogram2d(x, y, self.cuts)[0] > 0
+        self._solid_area = log.discs.solid_area
 
     @property
     def area(self) -> float:
-        """Area of the chambers with discs, length²."""
+        """Area of the chambers with discs, length²; without solids if discs are in all of them."""
         x, y = map(np.diff, self.cuts)
-        return float(x @ self.occupied @ y)
+        return float(x @ self.occupied @ y) - self._solid_area * bool(self.occupied.all())
 
     def along(self, side: int) -> np.ndarray:
         """Whether discs are in each of the chambers along a side of the box."""
@@ -54,7 +55,7 @@ def _cuts(log: Log, axis: int, until: float) -> np.ndarray:
         return np.array([0.0, log.box[axis]])
     rows: dict[float, list[tuple[float, float]]] = defaultdict(list)
     for wall in walls_inside(log.scene):
-        divides = wall.start[axis] == wall.end[axis] and not wall.is_permeable
+        divides = wall.is_straight and wall.start[axis] == wall.end[axis] and not wall.is_permeable
         if divides and all(opens >= until for opens, _ in wall.absences):
             low, high = sorted((wall.start[1 - axis], wall.end[1 - axis]))
             rows[wall.start[axis]].append((low, high))

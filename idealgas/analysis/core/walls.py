@@ -5,7 +5,7 @@ discs one radius inside the box; the length is that of the wall itself, of a sid
 discs.
 """
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -19,7 +19,7 @@ from idealgas.analysis.core.stream import Tally, add_to
 from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Kind, axis_of
 from idealgas.errors import UserError
 from idealgas.log import Flights, Log
-from idealgas.scene.walls import number_walls
+from idealgas.scene.walls import NumberedWall, number_walls
 from idealgas.state import Gas
 
 
@@ -30,10 +30,10 @@ class WallImpulses:
     faces: (B, W, 2, 2), momentum given to the first and to the second face by discs that touch the body of the wall,
     perpendicular to it and along it; the direction along a wall is its first normal turned by -90°, for a segment from
     its start to its end. given: (B, W, 2), momentum along x and y, with that of discs that touch the ends of the wall.
-    hits: (B, W), numbers of hits.
+    hits: (B, W), numbers of hits. The normal of an arc is that at the place of the hit.
     """
 
-    columns = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity")
+    columns: tuple[str, ...] = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity")
     cut = False
 
     def __init__(self, log: Log) -> None:
@@ -42,6 +42,12 @@ class WallImpulses:
         along[~along.any(axis=1), 0] = 1.0  # fixed discs
         along /= np.hypot(*along.T)[:, None]
         self.normals = np.concatenate((-np.array(OUTWARD), np.column_stack((-along[:, 1], along[:, 0]))))
+        walls = number_walls(log.scene)
+        self._turn = np.array([wall.arc.turn if wall.arc else 0.0 for wall in walls])
+        self._centre = np.array([np.add(wall.start, wall.arc[:2]) if wall.arc else (0.0, 0.0) for wall in walls])
+        self._period = np.where(log.periodic, log.box, np.inf)
+        if self._turn.any():
+            self.columns = (*self.columns, "end_position")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
@@ -60,11 +66,22 @@ class WallImpulses:
         for axis in range(2):
             add_to(self.given, place * 2 + axis, given[:, axis])
         body = np.flatnonzero(flights.kind[some] != Kind.WALL_END)
-        (px, py), (nx, ny) = given[body].T, self.normals[wall[body]].T
+        (px, py), (nx, ny) = given[body].T, self._normals(flights, some[body], wall[body]).T
         across = px * nx + py * ny
         face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it
         add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
         add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
+
+    def _normals(self, flights: Flights, hits: np.ndarray, wall: np.ndarray) -> np.ndarray:
+        """Unit normals (H, 2) of the first faces of walls where discs hit them."""
+        normals = self.normals[wall]
+        if (curved := np.flatnonzero(self._turn[wall])).size:
+            assert flights.end_position is not None
+            away = flights.end_position[hits[curved]] - self._centre[wall[curved]]
+            with np.errstate(invalid="ignore"):
+                away -= np.where(np.isfinite(self._period), self._period * np.rint(away / self._period), 0.0)
+            normals[curved] = away * (-self._turn[wall[curved]] / np.hypot(*away.T))[:, None]
+        return normals
 
     def finish(self) -> None:
         """Do nothing: the sums are complete."""
@@ -147,41 +164,38 @@ class WallGauge:
         for k, wall in enumerate(number_walls(self._log.scene)):
             if wall.radius or (k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]):
                 continue
-            exposed = self._exposed(k, wall.start, wall.end, wall.absences, edges)
+            exposed = self._exposed(k, wall, edges)
             if not exposed.any():
                 continue
             names = [wall_name(k, wall.name)]
             if k >= FIRST_SEGMENT:
-                names = [f"{wall.name}, {name}" for name in self._looks(k)]
+                names = [f"{wall.name}, {name}" for name in self._looks(k, wall)]
             for face, name in enumerate(names):
                 push, along = self.impulses.faces[:, k, face].T
+                if self._log.discs.solid_area > 0 and not push.any():  # it looks into a solid
+                    continue
                 found.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
         return found
 
-    def _looks(self, wall: int) -> tuple[str, str]:
-        """Directions in which the two faces of a wall segment look."""
-        x, y = self.impulses.normals[wall]
+    def _looks(self, k: int, wall: NumberedWall) -> tuple[str, str]:
+        """Directions in which the two faces of wall k look."""
+        if wall.arc:
+            return ("inside", "outside") if wall.arc.turn > 0 else ("outside", "inside")
+        x, y = self.impulses.normals[k]
         names = ("right", "left") if abs(x) >= abs(y) else ("up", "down")
         return names if (x if abs(x) >= abs(y) else y) > 0 else (names[1], names[0])
 
-    def _exposed(
-        self,
-        wall: int,
-        start: Sequence[float],
-        end: Sequence[float],
-        absences: Sequence[tuple[float, float]],
-        edges: np.ndarray,
-    ) -> np.ndarray:
-        """Length of a wall times the time that it is there, in each block; of a side, where gas is beside it."""
+    def _exposed(self, k: int, wall: NumberedWall, edges: np.ndarray) -> np.ndarray:
+        """Length of wall k times the time that it is there, in each block; of a side, where gas is beside it."""
         width = np.diff(edges)
-        if wall < len(SIDES) and self.moving is not None and axis_of(wall) != self.moving.axis:
+        if k < len(SIDES) and self.moving is not None and axis_of(k) != self.moving.axis:
             return self.moving.depth * width
         absent = np.zeros(len(width))
-        for opens, closes in absences:
+        for opens, closes in wall.absences:
             absent += np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
-        length = float(np.hypot(*np.subtract(end, start)))
-        if wall < len(SIDES) and self.moving is None:
-            length = Chambers(self._log, float(edges[-1])).length(wall)
+        length = wall.arc.length if wall.arc else math.dist(wall.start, wall.end)
+        if k < len(SIDES) and self.moving is None:
+            length = Chambers(self._log, float(edges[-1])).length(k)
         return length * (width - absent)
 
 

@@ -223,7 +223,7 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
 
 def first_gate(log: Log) -> tuple[int, float] | None:
     """Axis across which the first gate or permeable wall along an axis stands, and its coordinate; None without one."""
-    gates = (wall for wall in walls_inside(log.scene) if wall.is_passable)
+    gates = (wall for wall in walls_inside(log.scene) if wall.is_passable and wall.is_straight)
     return next(((k, wall.start[k]) for wall in gates for k in range(2) if wall.start[k] == wall.end[k]), None)
 
 

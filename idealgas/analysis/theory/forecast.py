@@ -139,7 +139,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     if not scene.log.events:
         rows = 0.0
     x0, y0, x1, y1 = scene.room
-    area = (x1 - x0) * (y1 - y0)
+    area = (x1 - x0) * (y1 - y0) - scene.solids.area
     return Forecast(
         number=len(gas),
         packing_fraction=gas.packing_fraction * gas.area / area,

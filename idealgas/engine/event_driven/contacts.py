@@ -17,10 +17,10 @@ from idealgas.engine.event_driven.prediction import (
 from idealgas.engine.event_driven.state import copy_image, image_of
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, njit, noinline
+from idealgas.physics.arc import misses_wall, wall_contact
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.permeable import passage_of
-from idealgas.physics.wall import misses_segment, segment_contact
 
 U = np.uintp
 
@@ -158,12 +158,12 @@ def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effec
     for entry in range(first, last):
         k = walls.item[U(entry)]
         images = images_to_item(walls, U(entry), own, effects.periodic)
-        segment = effects.segments[U(k)]
-        if misses_segment(disc, segment, effects.gravity, effects.periodic, images):
+        if misses_wall(disc, k, effects.segments, effects.arcs, effects.gravity, effects.periodic, images):
             continue
         passage = passage_of(effects.permeable, own, k)
-        time = segment_contact(
-            disc, own, segment, passage, effects.gravity, effects.restitution, effects.periodic, images
+        segments, arcs = effects.segments, effects.arcs
+        time = wall_contact(
+            disc, own, k, segments, arcs, passage, effects.gravity, effects.restitution, effects.periodic, images
         )
         partner = segment_partner(k)
         if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):

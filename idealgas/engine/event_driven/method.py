@@ -114,7 +114,7 @@ class EventDriven(Method):
         if self._walls is None or self._walls[0] != active:
             small = radius if coarse is None else radius[radius <= coarse.limit]
             cells = [(self._state.cells, small)] + ([] if coarse is None else [(coarse.cells, radius)])
-            made = [make_wall_cells(segments, effects.periodic, own, float(r.max())) for own, r in cells]
+            made = [make_wall_cells(segments, effects.arcs, effects.periodic, own, float(r.max())) for own, r in cells]
             self._walls = active, made[0], None if coarse is None else made[1]
         return self._walls[1:]
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from idealgas.engine.event_driven.cells import Cells
 from idealgas.jit import inline
+from idealgas.physics.arc_geometry import bounds, nearest_on_arc
 from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, periodic_axes
 
 
@@ -23,7 +24,9 @@ class WallCells(NamedTuple):
     image: np.ndarray
 
 
-def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cells, largest_radius: float) -> WallCells:
+def make_wall_cells(
+    segments: np.recarray, arcs: np.recarray | None, periodic: Periodic | None, cells: Cells, largest_radius: float
+) -> WallCells:
     """Enter every present segment in all cells that have a point within the largest radius (length) of it.
 
     A small margin makes sure that rounding leaves no cell out.
@@ -33,7 +36,8 @@ def make_wall_cells(segments: np.recarray, periodic: Periodic | None, cells: Cel
     cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
     for k in np.flatnonzero(segments.active):
         for image in ((x, y) for x in across for y in along):
-            found = _cells_near(segments[k], image, cells, reach)
+            arc = None if arcs is None or arcs[k].radius == 0 else arcs[k]
+            found = _cells_near(segments[k], arc, image, cells, reach)
             cell_parts.append(found)
             item_parts.append(np.full((len(found), 3), (k, *image), np.int32))
     cell, item = np.concatenate(cell_parts), np.concatenate(item_parts)
@@ -52,8 +56,10 @@ def images_to_item(walls, entry, own, periodic):
     return NO_IMAGES
 
 
-def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach: float) -> np.ndarray:
-    """Indices of the cells that may have a point within reach (length) of an image of a segment."""
+def _cells_near(
+    segment: np.record, arc: np.record | None, image: tuple[int, int], cells: Cells, reach: float
+) -> np.ndarray:
+    """Indices of the cells that may have a point within reach (length) of an image of a segment or arc."""
     reach += segment.radius
     start = np.array([segment.x + image[0] * cells.Lx, segment.y + image[1] * cells.Ly])
     tangent = np.array([segment.tx, segment.ty])
@@ -61,10 +67,15 @@ def _cells_near(segment: np.record, image: tuple[int, int], cells: Cells, reach:
     size = np.array([cells.width, cells.height])
     last = np.array([cells.columns, cells.rows]) - 2
     ends = np.array([start, start + length * tangent])
-    low = np.clip(np.floor((ends.min(axis=0) - reach) / size).astype(int) + 1, 1, last)
-    high = np.clip(np.floor((ends.max(axis=0) + reach) / size).astype(int) + 1, 1, last)
+    lowest, highest = np.array(bounds(ends[0], ends[1], arc))
+    low = np.clip(np.floor((lowest - reach) / size).astype(int) + 1, 1, last)
+    high = np.clip(np.floor((highest + reach) / size).astype(int) + 1, 1, last)
     column, row = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
     centre = (np.stack((column, row), axis=-1) - 0.5) * size - start
     normal = np.array([-tangent[1], tangent[0]])
     near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no line parallel to it lies between
+    if arc is not None:
+        centre = centre.reshape(-1, 2)
+        away = np.hypot(*(centre - nearest_on_arc(centre, length * tangent, arc)).T)
+        near = (away <= 0.5 * np.hypot(*size) + reach).reshape(row.shape)
     return (row[near] * cells.columns + column[near]).ravel()

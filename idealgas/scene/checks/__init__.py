@@ -13,6 +13,7 @@ from idealgas.scene.checks import piston, vibration
 from idealgas.scene.checks.discs import permeable_issues, placement_issues, room_issues, species_issues
 from idealgas.scene.checks.overlaps import discs_in_walls, label, overlap_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
+from idealgas.scene.checks.solids import solid_issues
 from idealgas.scene.sizes import wrong_radius
 from idealgas.toml.issues import Issue, Key
 
@@ -59,6 +60,7 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
             if effect.find(tables := scene.tables_of(effect)) is not None:
                 yield from effect.check(tables)
         yield from discs_in_walls(scene)
+        yield from solid_issues(scene)
     yield from piston.issues(scene, invalid)
     if not invalid:
         yield from _thermostat_issues(scene)

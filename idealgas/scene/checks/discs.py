@@ -17,7 +17,6 @@ from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Rectangle
 
 if TYPE_CHECKING:
-    from idealgas.scene.discs import Discs
     from idealgas.scene.document import Document
     from idealgas.scene.tables import Box, Species
 
@@ -116,7 +115,7 @@ def room_issues(
             wrong = f"{which}too small for the box in double precision"
             yield Issue((*keys, ("box", "size")), wrong, f"{radius}", f">= {smallest}")
     if not outside and not {"species", "disc"} & invalid:
-        yield from _crowding(space, _name_of(box, space), kinds, discs)
+        yield from _crowding(scene, _name_of(box, space), kinds)
 
 
 def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
@@ -168,14 +167,17 @@ def _name_of(box: Box, space: Rectangle) -> str:
     return "box" if space == (0.0, 0.0, *box.size) else "space before the piston"
 
 
-def _crowding(whole: Rectangle, name: str, kinds: list[tuple[int, Species]], discs: Discs) -> Iterator[Issue]:
+def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
     """Check the packing fractions of the regions and of the whole space."""
+    whole, discs = scene.room, scene.given
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
         covered = math.pi * sum(_area(s) for _, s in here)
+        area = (region[2] - region[0]) * (region[3] - region[1])
         if region == whole:
             covered += math.pi * math.fsum((discs.radius**2).tolist())
-        packing = covered / ((region[2] - region[0]) * (region[3] - region[1]))
+            area -= scene.solids.area
+        packing = covered / area
         random = all(s.placement == "random" for _, s in here)
         if packing > (RANDOM_PACKING if random else CLOSE_PACKING):
             most = max(here, key=lambda item: _area(item[1]))[0]

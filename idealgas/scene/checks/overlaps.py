@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from idealgas.effects.wall import wall_issues
+from idealgas.physics.arc_geometry import bounds, nearest_points
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.toml.issues import Issue, Key
 
@@ -178,9 +179,9 @@ def wall_overlaps(
     along, largest = centre[order, 0], float(discs.radius.max(initial=0.0))
     for i, wall in walls.items():
         passes = np.array([wall.lets_pass(name) for name in discs.names])
-        ends = sorted((wall.start[0], wall.end[0]))
+        low, high = bounds(wall.start, wall.end, wall.arc)
         reach = largest + wall.radius
-        near = order[along.searchsorted(ends[0] - reach) : along.searchsorted(ends[1] + reach, "right")]
+        near = order[along.searchsorted(low[0] - reach) : along.searchsorted(high[0] + reach, "right")]
         distance = distance_to_wall(centre[near], wall)
         if passes.any():
             distance = np.where(passes[discs.species[owner[near]]], _distance_to_ends(centre[near], wall), distance)
@@ -214,7 +215,4 @@ def _distance_to_ends(points: np.ndarray, wall: Wall) -> np.ndarray:
 
 def distance_to_wall(points: np.ndarray, wall: Wall) -> np.ndarray:
     """Distances of points (M, 2) from a wall, from the rim of a fixed disc."""
-    start = np.array(wall.start)
-    along = np.array(wall.end) - start
-    share = np.clip((points - start) @ along / (along @ along or 1.0), 0.0, 1.0)
-    return np.hypot(*(points - start - share[:, None] * along).T) - wall.radius
+    return np.asarray(np.hypot(*(points - nearest_points(points, wall.start, wall.end, wall.arc)).T) - wall.radius)

@@ -11,6 +11,7 @@ from idealgas.columns import SIDES, opposite, sides_across
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.schedule import description, steps_of
 from idealgas.effects.vibration import reach
+from idealgas.physics.arc_geometry import bounds
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
@@ -133,7 +134,9 @@ def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
     else:
         depth = min(_depth(scene, piston, place) for place, _ in _places(scene, piston))
     for i, wall in enumerate(scene.walls):
-        reach = wall.radius + max(_depth(scene, piston, end[piston.axis]) for end in (wall.start, wall.end))
+        reach = wall.radius + max(
+            _depth(scene, piston, end[piston.axis]) for end in bounds(wall.start, wall.end, wall.arc)
+        )
         if reach > depth:
             place: Key = getattr(wall, "place", ("wall", i))
             keys: tuple[Key, ...] = (place, ("piston", "position"), ("piston", "velocity"), ("run", "until"))

@@ -19,7 +19,7 @@ def test_one_at_a_time(name):
     scene = effect_scene(name, 1)
     *needed, own = scene.effects
     assert name.startswith(own)
-    assert needed == (["wall segments"] if own == "permeable walls" else [])
+    assert needed == (["wall segments"] if own in ("permeable walls", "arcs") else [])
     assert sum(s.count for s in scene.species) == SAMPLE_DISCS
 
 

@@ -16,6 +16,7 @@ MARKERS = {
     "gravity": {"crossings.accelerated_crossing", "motion.time_to_plane", "wall.accelerated_body_delay"},
     "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
+    "arcs": {"arc.arc_contact", "arc.arc_frame"},
     "permeable walls": {"permeable.closed_face_delay", "permeable.touches_face"},
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
     "thermal walls": {"thermal.uniform"},

@@ -39,7 +39,7 @@ def test_cells_of_segments(filling):
     ends[20:25, 2] = ends[20:25, 0]  # upright ones
     made = segments(ends)
     cells = make_cells(100, BOX, RADIUS, filling)
-    walls = make_wall_cells(made, None, cells, RADIUS)
+    walls = make_wall_cells(made, None, None, cells, RADIUS)
     grid = np.stack(np.meshgrid(*(np.linspace(0.0, 1.0, 30),) * 2), axis=-1)
     step = np.hypot(cells.width, cells.height) / 58
     for row in range(1, cells.rows - 1):

@@ -1,0 +1,45 @@
+"""Arcs and circles among the walls inside the box."""
+
+import numpy as np
+
+from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.properties import Properties
+from idealgas.jit import aligned
+from idealgas.physics import arc as law
+from idealgas.physics.arc_geometry import Arc
+
+FLATTEST = 100.0
+"""Largest radius of an arc in units of the box's longer side: contacts lose as many digits."""
+
+
+def _properties(tables: Tables) -> Properties | None:
+    return Properties() if any(wall is not None and wall.arc for wall in tables.walls) else None
+
+
+def _make(tables: Tables, _: Start) -> np.recarray:
+    return make_arcs([wall.arc for wall in tables.walls])
+
+
+def make_arcs(found: list[Arc | None]) -> np.recarray:
+    """(W,) ARC of all walls inside the box, None for those that are no arcs."""
+    arcs = aligned(len(found), law.ARC)
+    for k, arc in enumerate(found):
+        if arc is not None:
+            arcs[k] = tuple(arc)
+    return arcs
+
+
+def _circle(side: float) -> str:
+    """Table `[[wall]]` of a circle in a box of this side, length."""
+    low, high, middle = 0.1 * side, 0.9 * side, 0.5 * side
+    return f"[[wall]]\nfrom = [{low}, {middle}]\nto = [{low}, {middle}]\nvia = [{high}, {middle}]\n"
+
+
+EFFECT = EffectSpec(
+    name="arcs",
+    field="arcs",
+    properties=_properties,
+    make=_make,
+    samples=(Sample(tables=_circle),),
+    sample_together=Sample(tables=lambda side: "[[wall]]\nfrom = [2, 2]\nto = [8, 2]\nvia = [5, 5]\n"),
+)

@@ -1,0 +1,248 @@
+"""Contact of a disc with an arc of a circle: with its outer and inner face, and with its two ends.
+
+An arc is a wall segment, its chord, with a record ARC. x and y are the disc's position relative to the arc's centre,
+length. A circle has no ends.
+"""
+
+import math
+
+import numpy as np
+
+from idealgas.jit import inline, noinline
+from idealgas.physics.arc_geometry import CIRCLE
+from idealgas.physics.disc_disc import collision_delay
+from idealgas.physics.motion import NEVER, velocity_after
+from idealgas.physics.periodic import shift_by_images
+from idealgas.physics.permeable import OPEN
+from idealgas.physics.polynomial import first_contact_root, first_exit_root, parabola
+from idealgas.physics.wall import misses_segment, reflection_changes, segment_contact, segment_normal
+
+ARC = np.dtype(
+    [
+        ("x", "f8"), ("y", "f8"),  # centre relative to the start of the segment, length
+        ("radius", "f8"),  # length; 0 for a straight wall
+        ("mx", "f8"), ("my", "f8"),  # unit vector from the centre to the middle of the arc
+        ("cosine", "f8"),  # of the angle from the middle to an end; CIRCLE for a circle
+        ("turn", "f8"),  # 1 for an arc that runs counterclockwise from its start to its end, else -1
+    ],
+    align=True,
+)  # fmt: skip
+
+GLIDE = 2.0**-26
+"""Shortest chord inside an arc in units of its radius: a shorter one is less deep than the rounding of the radius."""
+
+U = np.uintp
+
+
+@inline
+def faces_arc(x, y, distance, arc):
+    """Whether the nearest point of the arc's circle to (x, y), at a distance from the centre, is on the arc."""
+    return x * arc.mx + y * arc.my > distance * arc.cosine
+
+
+@inline
+def toggles(x, y, along_x, along_y, arc):
+    """Whether a ray from a point to the right crosses a wall an odd number of times; numbers or arrays.
+
+    x, y: position of the point relative to the wall's start, length. along_x, along_y: the wall's end relative to it.
+    arc: NO_ARC for a straight wall. An arc adds what is between it and its chord.
+    """
+    crosses = ((y < 0.0) != (along_y > y)) & ((x * along_y < y * along_x) == (along_y > 0.0))
+    away_x, away_y = x - arc.x, y - arc.y
+    within = away_x * away_x + away_y * away_y < arc.radius * arc.radius
+    return crosses != (within & (away_x * arc.mx + away_y * arc.my > arc.radius * arc.cosine))
+
+
+@inline
+def straight_exit_delay(x, y, vx, vy, reach, inside):
+    """Time until a point in straight flight leaves the circle of radius `reach` around the origin; else NEVER.
+
+    x, y, reach: length. vx, vy: length/time. The delay is 0 for a point on the circle, or beyond it, that moves
+    outwards. inside: whether a point that rounding has put beyond the circle belongs inside; it then returns to its own
+    distance at least. The roots have no cancellation for a point near the circle.
+    """
+    square = vx * vx + vy * vy
+    if square == 0.0:
+        return NEVER
+    approach = x * vx + y * vy
+    gap = x * x + y * y - reach * reach
+    cross = vx * y - vy * x
+    discriminant = square * (reach * reach) - cross * cross
+    if gap <= 0.0:
+        discriminant = max(discriminant, approach * approach - square * gap)  # the same, which cannot be too small
+    if approach > 0.0:
+        return max(-gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) + approach)
+    if discriminant < 0.0:
+        if not inside:
+            return NEVER
+        discriminant = approach * approach
+    return max((math.sqrt(discriminant) - approach) / square, GLIDE * reach / math.sqrt(square))
+
+
+@inline
+def crossing_delay(x, y, disc, reach, inner, inside, gravity, after):
+    """Time until a disc's centre comes within `reach` of the arc's centre or, if inner, leaves this circle; else NEVER.
+
+    With gravity, only a crossing after the time `after` counts.
+    """
+    if gravity is not None:
+        if inner:
+            return first_exit_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
+        return first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
+    if inner:
+        return straight_exit_delay(x, y, disc.vx, disc.vy, reach, inside)
+    meets, delay = collision_delay(x, y, disc.vx, disc.vy, reach)
+    return delay if meets else NEVER
+
+
+@inline
+def changes_nothing(x, y, disc, own, restitution):
+    """Whether a reflection along (x, y) would change no digit of a disc's velocity."""
+    distance = math.sqrt(x * x + y * y)
+    return not reflection_changes(disc, own, x / distance, y / distance, restitution)
+
+
+@inline
+def face_delay(x, y, disc, own, arc, inner, gravity, restitution):
+    """Time until a disc touches the inner or the outer face of an arc; NEVER if it does not.
+
+    It touches a face from the side on which its centre is. A touching disc that flies along the outer face counts as
+    reflected; one that flies along the inner face touches it again.
+    """
+    reach = arc.radius - disc.r if inner else arc.radius + disc.r
+    if reach <= 0.0:
+        return NEVER
+    ax = ay = 0.0
+    if gravity is not None:
+        ax, ay = gravity.x, gravity.y
+    inside = x * x + y * y < arc.radius * arc.radius
+    delay = -1.0
+    for _ in range(2):  # on a parabola a disc crosses a circle at most twice in each direction
+        delay = crossing_delay(x, y, disc, reach, inner, inside, gravity, delay)
+        if delay == NEVER:
+            return NEVER
+        then_x, then_y = parabola(x, disc.vx, ax, delay), parabola(y, disc.vy, ay, delay)
+        distance = math.sqrt(then_x * then_x + then_y * then_y)
+        if (distance < arc.radius) == inner and faces_arc(then_x, then_y, distance, arc):
+            if gravity is None and delay == 0.0 and changes_nothing(x, y, disc, own, restitution):
+                return GLIDE * reach / math.sqrt(disc.vx * disc.vx + disc.vy * disc.vy) if inner else NEVER
+            return delay
+        if gravity is None:
+            return NEVER
+    return NEVER
+
+
+@inline
+def leaves_arc(delay, x, y, end_x, end_y, other_x, other_y, disc, ax, ay, arc):
+    """Whether a disc that touches an end after `delay` moves away from the arc's nearest point, which is another one.
+
+    end_x, end_y and other_x, other_y: position relative to this and to the other end, length. Only a disc over which a
+    gate has closed comes to an end from within.
+    """
+    then_x, then_y = parabola(x, disc.vx, ax, delay), parabola(y, disc.vy, ay, delay)
+    vx, vy = velocity_after(disc.vx, ax, delay), velocity_after(disc.vy, ay, delay)
+    distance = math.sqrt(then_x * then_x + then_y * then_y)
+    if faces_arc(then_x, then_y, distance, arc):
+        outwards = then_x * vx + then_y * vy
+        return (outwards <= 0.0) if distance < arc.radius else (outwards >= 0.0)
+    end_x, end_y = parabola(end_x, disc.vx, ax, delay), parabola(end_y, disc.vy, ay, delay)
+    other_x, other_y = parabola(other_x, disc.vx, ax, delay), parabola(other_y, disc.vy, ay, delay)
+    nearer = other_x * other_x + other_y * other_y < end_x * end_x + end_y * end_y
+    return nearer & (other_x * vx + other_y * vy >= 0.0)
+
+
+@inline
+def arc_end_delay(x, y, end_x, end_y, other_x, other_y, disc, own, arc, gravity, restitution):
+    """Time until a disc touches an end of an arc; NEVER if it does not.
+
+    end_x, end_y: position relative to this end. other_x, other_y: relative to the other end, length.
+    """
+    ax = ay = 0.0
+    if gravity is not None:
+        ax, ay = gravity.x, gravity.y
+    delay = -1.0
+    for _ in range(2):
+        delay = crossing_delay(end_x, end_y, disc, disc.r, False, False, gravity, delay)
+        if delay == NEVER:
+            return NEVER
+        if not leaves_arc(delay, x, y, end_x, end_y, other_x, other_y, disc, ax, ay, arc):
+            if gravity is None and delay == 0.0 and changes_nothing(end_x, end_y, disc, own, restitution):
+                return NEVER
+            return delay
+        if gravity is None:
+            return NEVER
+    return NEVER
+
+
+@noinline
+def arc_contact(disc, own, segment, arc, gravity, restitution, periodic, images):
+    """Local time at which a disc touches an arc, one of its faces or an end; NEVER if it does not."""
+    start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
+    x, y = start_x - arc.x, start_y - arc.y
+    delay = face_delay(x, y, disc, own, arc, True, gravity, restitution)
+    delay = min(delay, face_delay(x, y, disc, own, arc, False, gravity, restitution))
+    if arc.cosine != CIRCLE:
+        end_x, end_y = start_x - segment.length * segment.tx, start_y - segment.length * segment.ty
+        for far in range(2):
+            here_x, here_y = (end_x, end_y) if far else (start_x, start_y)
+            there_x, there_y = (start_x, start_y) if far else (end_x, end_y)
+            end = arc_end_delay(x, y, here_x, here_y, there_x, there_y, disc, own, arc, gravity, restitution)
+            delay = min(delay, end)
+    return disc.t + delay if delay < NEVER else NEVER
+
+
+@inline
+def arc_frame(disc, segment, arc, periodic, images):
+    """What `wall_frame` returns, for an arc."""
+    start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
+    x, y = start_x - arc.x, start_y - arc.y
+    distance = math.sqrt(x * x + y * y)
+    inside = distance < arc.radius
+    left = 1.0 if inside == (arc.turn > 0.0) else -1.0
+    at_end = not faces_arc(x, y, distance, arc)
+    if at_end:
+        x, y = start_x - segment.length * segment.tx, start_y - segment.length * segment.ty
+        if start_x * start_x + start_y * start_y < x * x + y * y:
+            x, y = start_x, start_y
+        distance = math.sqrt(x * x + y * y)
+    elif inside:
+        x, y = -x, -y
+    nx, ny = x / distance, y / distance
+    return nx, ny, at_end, left * ny, -left * nx, left
+
+
+@inline
+def wall_frame(disc, k, segments, arcs, passage, periodic, images):
+    """Directions at the contact of a disc with wall k, a segment or an arc.
+
+    Returns the unit normal (nx, ny) towards the disc, whether it touches an end, the unit tangent (tx, ty) of the face
+    that it touches, and 1 if that face is on the left of the wall, seen from its start, else -1.
+    """
+    segment = segments[U(k)]
+    if arcs is not None and arcs[U(k)].radius > 0.0:
+        return arc_frame(disc, segment, arcs[U(k)], periodic, images)
+    nx, ny, at_end = segment_normal(disc, segment, passage, periodic, images)
+    tx, ty = (ny, -nx) if segment.length == 0.0 else (segment.tx, segment.ty)  # a fixed disc has one face
+    left = 1.0 if tx * ny - ty * nx >= 0.0 else -1.0
+    return nx, ny, at_end, tx, ty, left
+
+
+@inline
+def wall_contact(disc, own, k, segments, arcs, passage, gravity, restitution, periodic, images):
+    """Local time at which a disc touches wall k, a segment or an arc; NEVER if it does not.
+
+    passage: from where the wall lets the disc pass, see `permeable`: an arc from both sides or from none.
+    """
+    if arcs is not None and arcs[U(k)].radius > 0.0:
+        if passage is not None and passage == OPEN:
+            return NEVER
+        return arc_contact(disc, own, segments[U(k)], arcs[U(k)], gravity, restitution, periodic, images)
+    return segment_contact(disc, own, segments[U(k)], passage, gravity, restitution, periodic, images)
+
+
+@inline
+def misses_wall(disc, k, segments, arcs, gravity, periodic, images):
+    """Whether a disc surely does not touch wall k; quicker than `wall_contact`. Always False for an arc."""
+    if arcs is not None and arcs[U(k)].radius > 0.0:
+        return False
+    return misses_segment(disc, segments[U(k)], gravity, periodic, images)

@@ -1,0 +1,86 @@
+"""Arcs: the same by all methods and resumed; stadium and round box against exact results."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers.log_compare import differences
+from helpers.support import ROOT
+
+from idealgas import load_scene, open_log, parse_scene, resume, simulate
+from idealgas.columns import Kind
+
+GOLDEN = ROOT / "tests" / "cases" / "golden" / "arcs.toml"
+STADIUM = ROOT / "configs" / "stadium.toml"
+
+
+FALLING = ("gravity.acceleration=[0.1,-0.5]", "restitution.wall=0.9", "rotation={}")
+
+
+@pytest.mark.parametrize("others", [(), pytest.param(FALLING, marks=pytest.mark.slow)], ids=["straight", "falling"])
+def test_the_same_by_brute_force_and_resumed(tmp_path, others):
+    whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
+    summary = simulate(load_scene(GOLDEN, others), whole)
+    simulate(load_scene(GOLDEN, [*others, "run.method=brute_force"]), oracle)
+    simulate(load_scene(GOLDEN, [*others, "run.events=1500"]), resumed)
+    resume(resumed, ["run.events=4000"])
+    assert differences(resumed, whole) == []
+    with open_log(whole) as log, open_log(oracle) as other:
+        columns = list(zip(log.chunks(), other.chunks(), strict=True))
+        assert all(np.array_equal(getattr(a, name), getattr(b, name)) for a, b in columns for name in log.columns)
+        partner, kind = (np.concatenate([getattr(b, name) for b in log.chunks()]) for name in ("partner", "kind"))
+        assert min((partner == -5 - k).sum() for k in range(5)) > 10
+        assert (kind[np.isin(partner, (-6, -7, -9))] == Kind.WALL_END).sum() > 10
+        end = log.state_at(log.end_time).position
+        assert (np.hypot(*(end - (6.5, 6.5)).T) <= 6 - log.discs.radius + 1e-13).all()
+    assert abs(summary.energy_drift) < 1e-12
+    assert summary.deepest_overlap < 16 * 2.0**-53 * 14 / 0.4  # roundings of a coordinate over the sum of the radii
+
+
+def test_chords_of_a_round_box(tmp_path):
+    """A disc keeps its angular momentum L: all chords take 2 √(S² v² - L²)/v², S the radius less its own."""
+    text = """
+        box.size = [10, 10]
+        wall = [{ from = [0, 5], to = [0, 5], via = [10, 5] }]
+        disc = [{ position = [5, 3], velocity = [0.8, 0.6], radius = 0.5 }]
+        run.events = 2000
+    """
+    simulate(parse_scene(text), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        (rows,) = log.chunks()
+        momentum = (rows.position - 5)[:, 0] * rows.velocity[:, 1] - (rows.position - 5)[:, 1] * rows.velocity[:, 0]
+        assert momentum == pytest.approx(1.6, abs=1e-12)
+        assert np.diff(rows.time) == pytest.approx(2 * math.sqrt(4.5**2 - 1.6**2), abs=1e-11)
+        assert (rows.kind == Kind.WALL).all()
+        assert (rows.partner == -5).all()
+
+
+@pytest.fixture(scope="module")
+def stadium(tmp_path_factory):
+    path = tmp_path_factory.mktemp("stadium") / "run.h5"
+    simulate(load_scene(STADIUM), path)
+    with open_log(path) as log:
+        yield log
+
+
+def test_the_mean_time_between_hits_of_the_stadium(stadium):
+    """π A/(v P) of the region of the centre (Chernov, J. Stat. Phys. 88, 1 (1997)); within 3 s.e. of 100 discs."""
+    radius = 2 - 1e-6
+    area, perimeter = math.pi * radius**2 + 8 * radius, 2 * math.pi * radius + 8
+    assert math.pi * area / perimeter == pytest.approx(4.3636, abs=5e-5)
+    disc, kind = (np.concatenate([getattr(b, name) for b in stadium.chunks()]) for name in ("disc", "kind"))
+    rate = np.bincount(disc[kind != Kind.DISC], minlength=100) / stadium.end_time  # the speed is 1
+    error = rate.std(ddof=1) / 10
+    assert abs(rate.mean() - perimeter / (math.pi * area)) < 3 * error
+    assert error < 0.01 * rate.mean()
+
+
+def test_the_stadium_is_filled(stadium):
+    """No disc is outside of it, and A is that of the stadium; discs start everywhere in it alike."""
+    area = 4 * math.pi + 16
+    assert stadium.discs.area == pytest.approx(area, rel=1e-14)
+    for state in (stadium.discs, stadium.state_at(stadium.end_time)):
+        x, y = np.abs(state.position - (4.5, 2.5)).T
+        assert (np.hypot(np.maximum(x - 2, 0), y) < 2).all()
+    x = np.abs(stadium.discs.position[:, 0] - 4.5)
+    assert abs((x < 2).mean() - 16 / area) < 3 * math.sqrt(16 / area * (1 - 16 / area) / 100)

@@ -1,0 +1,97 @@
+"""Closed curves of walls: their area, what is in them, and one line for each mistake."""
+
+import math
+
+import numpy as np
+import pytest
+
+from idealgas.initial.build import make_gas
+from idealgas.scene import SceneError, parse_scene
+from idealgas.scene.solids import enclosed
+
+HEXAGON = [[5 + 2 * math.cos(math.pi * k / 3), 5 + 2 * math.sin(math.pi * k / 3)] for k in range(6)]
+SIDES = [[HEXAGON[k], HEXAGON[(k + 1) % 6]] for k in range(6)]
+
+
+def walls(solid: str, ends, via=()) -> str:
+    """Tables of walls, of which some are arcs."""
+    rows = []
+    for k, (start, end) in enumerate(ends):
+        bend = f", via = {list(via[k])}" if k < len(via) and via[k] is not None else ""
+        rows.append(f'{{ solid = "{solid}", from = {list(start)}, to = {list(end)}{bend} }},\n')
+    return "".join(rows)
+
+
+def scene(text: str, rest: str = 'species = [{ name = "gas", count = 200, radius = 0.15, speed = 1 }]'):
+    return parse_scene(f"box.size = [10, 10]\nrun.events = 10\nwall = [\n{text}]\n{rest}\n")
+
+
+def test_no_disc_is_in_a_polygon():
+    """Of 200 discs some 10 % would be in the hexagon; its walls may run in any direction."""
+    turned = [side[::-1] if k % 2 else side for k, side in enumerate(SIDES)]
+    found = scene(walls("inside", turned))
+    area = 6 * math.sqrt(3)  # of a hexagon of radius 2
+    assert found.solids.area == pytest.approx(area, rel=1e-14)
+    gas = make_gas(found)
+    assert gas.area == pytest.approx(100 - area, rel=1e-14)
+    assert gas.packing_fraction == pytest.approx(200 * math.pi * 0.15**2 / (100 - area), rel=1e-12)
+    angle = np.arctan2(*(gas.position - 5).T[::-1]) % (math.pi / 3) - math.pi / 6
+    assert (np.hypot(*(gas.position - 5).T) * np.cos(angle) > math.sqrt(3)).all()
+    on_lattice = make_gas(scene(walls("inside", SIDES), LATTICE))
+    assert not found.solids.contain(on_lattice.position).any()
+
+
+LATTICE = 'species = [{ name = "gas", count = 300, radius = 0.15, speed = 1, placement = "lattice" }]'
+
+
+def test_areas_of_arcs_and_of_nested_curves():
+    """A stadium with a hole, whose other half circle bulges into it; all areas by hand."""
+    stadium = walls("outside", [([3, 1], [7, 1]), ([7, 1], [7, 5]), ([7, 5], [3, 5]), ([3, 1], [3, 5])],
+                    [None, [9, 3], None, [1, 3]])  # fmt: skip
+    notched = walls("inside", [([4, 2], [6, 2]), ([4, 2], [4, 4]), ([4, 4], [6, 4]), ([6, 4], [6, 2])],
+                    [None, [5, 3], None, None])  # fmt: skip
+    found = scene(stadium + notched, "species = [{ name = 'gas', count = 100, radius = 0.1, speed = 1 }]")
+    covered = 4 - math.pi / 2
+    assert found.solids.area == pytest.approx(100 - 16 - 4 * math.pi + covered, rel=1e-14)
+    points = np.array([[5, 4.5], [4.5, 3], [5.5, 3], [1.5, 1.5], [1.2, 3], [8.9, 3], [9.5, 3], [5, 0.5], [4.1, 2.9]])
+    there = [False, False, True, True, False, False, True, True, False]
+    assert found.solids.contain(points).tolist() == there
+    position = make_gas(found).position
+    assert not found.solids.contain(position).any()
+    ring = walls("outside", [([1, 5], [1, 5]), ([3, 5], [3, 5])], [[9, 5], [7, 5]])
+    assert scene(ring).solids.area == pytest.approx(100 - 16 * math.pi + 4 * math.pi, rel=1e-14)
+
+
+def test_the_ray_through_a_corner():
+    """Points level with corners count as all others do."""
+    diamond = scene(walls("inside", [([2, 5], [5, 2]), ([5, 2], [8, 5]), ([8, 5], [5, 8]), ([5, 8], [2, 5])]))
+    x = np.linspace(0.05, 9.95, 100)
+    inside = enclosed(np.column_stack((x, np.full(100, 5.0))), diamond.wall)
+    assert (inside == (np.abs(x - 5) < 3)).all()
+    half = scene(walls("inside", [([2, 5], [8, 5]), ([8, 5], [2, 5])], [None, [5, 8]]))
+    for y, width in ((5.0, None), (5.0 + 1e-9, 3.0), (8.0, 0.0), (6.5, math.sqrt(9 - 1.5**2))):
+        inside = enclosed(np.column_stack((x, np.full(100, y))), half.wall)
+        if width is not None:
+            assert (inside == (np.abs(x - 5) < width)).all()
+
+
+CROSS = [([1, 4], [9, 4]), ([9, 4], [9, 6]), ([9, 6], [1, 6]), ([1, 6], [1, 4])]
+INSIDE = "disc = [{ position = [5, 5], radius = 0.5, velocity = [1, 0] }]"
+
+
+@pytest.mark.parametrize(
+    ("text", "rest", "message"),
+    [
+        (walls("inside", SIDES[:5]), "", 'wall.0.solid: no closed curve (got an end at [7.0, 5.0]; allowed an end of'),
+        (walls("inside", SIDES) + walls("inside", CROSS), "", "curves that cross (got wall 8; allowed closed"),
+        (walls("inside", SIDES), INSIDE, "disc.0.position: in a solid (got [5.0, 5.0]; allowed a place out of it)"),
+        (walls("inside", SIDES).replace(" }", ", opens_at = 1 }", 1), "", 'a solid that opens (got "inside" and a'),
+        ("{ from = [1, 1], to = [3, 3], via = [2, 2] },", "", "no arc through these points (got [1.0, 1.0] via [2.0"),
+        ("{ from = [1, 1], to = [3, 1], via = [2, -1] },", "", "wall not in the box (got [1.0, 1.0] via [2.0, -1.0]"),
+        ("{ from = [1, 1], to = [1, 1], via = [1, 1] },", "", "no arc through these points"),
+    ],
+)  # fmt: skip
+def test_one_line_for_each_mistake(text, rest, message):
+    with pytest.raises(SceneError) as caught:
+        scene(text, rest or 'species = [{ name = "gas", count = 9, radius = 0.1, speed = 1 }]')
+    assert message in str(caught.value)
