@@ -1,16 +1,17 @@
-"""The example scenes that are installed with the program."""
+"""The files that are installed with the example scenes, for commands."""
 
 import json
 import re
 import tomllib
-from importlib import import_module
 from pathlib import Path
 
 from idealgas.errors import unknown
+from idealgas.examples import SCENE, names, path_of
 
 from ._terminal import written
 
-SCENE = ".toml"
+NOTEBOOK = ".ipynb"
+
 TEMPLATE = "template"
 """Name of the commented scene that `idealgas new` copies."""
 
@@ -20,25 +21,6 @@ SCHEMA = "scene.schema.json"
 
 DIGESTS = "digests.json"
 """Name of the table of the scenes' digests, see `idealgas.run.digest`."""
-
-
-def _folder() -> Path:
-    return Path(next(iter(import_module("idealgas_scenes").__path__)))
-
-
-def path_of(name: str) -> Path:
-    """Path of an installed file."""
-    return _folder() / name
-
-
-def paths() -> list[Path]:
-    """Files of all scenes, in alphabetical order of their names."""
-    return sorted(_folder().glob(f"*{SCENE}"))
-
-
-def names() -> list[str]:
-    """Names of the scenes, in alphabetical order."""
-    return [path.stem for path in paths()]
 
 
 def keys() -> dict[str, str]:
@@ -51,28 +33,44 @@ def keys() -> dict[str, str]:
     return found
 
 
+def notebooks() -> dict[str, Path]:
+    """Files of the notebooks, by name."""
+    return {path.stem: path for path in sorted(path_of("notebooks").glob(f"*{NOTEBOOK}"))}
+
+
 def shown_by(name: str) -> str:
-    """What a scene shows, the first sentence of its description; its title if it has none."""
-    scene = tomllib.loads((_folder() / f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]
+    """What a scene shows, the first sentence of its description; its title if it has none. Of a notebook its title."""
+    if notebook := notebooks().get(name):
+        cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+        return cells[0]["source"][0].strip("# \n")
+    scene = tomllib.loads(path_of(f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]
     text = " ".join(scene.get("description", scene["title"]).split())
     return re.split(r"(?<=\.) ", text, maxsplit=1)[0]
 
 
-def copy_scene(name: str, path: Path, force: bool) -> None:
-    """Copy a scene and, into the same folder, the schema that its first line refers to.
+def copy_example(name: str, output: str | None, force: bool) -> None:
+    """Copy a notebook, or a scene and, into the same folder, the schema that its first line refers to.
+
+    name: with or without the ending. output: path; None for the name in the current folder.
 
     Raises:
-        UserError: if the scene is unknown or a file cannot be written.
+        UserError: if the example is unknown or a file cannot be written.
     """
-    if name not in names():
-        raise unknown("example", name, names())
     from idealgas.files import check_output, replacing
 
-    schema = path.with_name(SCHEMA)
-    check_output(path, "scene", force)
-    if schema.exists():
-        check_output(schema, SCHEMA, force=True)
-    for target, source in ((path, name + SCENE), (schema, SCHEMA)):
+    name = name.removesuffix(SCENE).removesuffix(NOTEBOOK)
+    source = notebooks().get(name, path_of(name + SCENE))
+    if name not in (known := [*names(), *notebooks()]):
+        raise unknown("example", name, known)
+    path = Path(output or source.name)
+    copies = {path: source}
+    check_output(path, "scene" if source.suffix == SCENE else NOTEBOOK, force)
+    if source.suffix == SCENE:
+        schema = path.with_name(SCHEMA)
+        if schema.exists():
+            check_output(schema, SCHEMA, force=True)
+        copies[schema] = path_of(SCHEMA)
+    for target, original in copies.items():
         with replacing(target) as part:
-            part.write_bytes((_folder() / source).read_bytes())
+            part.write_bytes(original.read_bytes())
         written(target)

@@ -5,9 +5,10 @@ import json
 import click
 
 from idealgas.errors import UserError, unknown
+from idealgas.examples import names, path_of
 
 from ._options import FILE
-from ._scenes import DIGESTS, names, path_of
+from ._scenes import DIGESTS
 from ._terminal import data
 
 

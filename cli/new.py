@@ -1,11 +1,11 @@
 """Command `idealgas new`: a scene to start from."""
 
-from pathlib import Path
-
 import click
 
+from idealgas.examples import SCENE, path_of
+
 from ._options import force_option
-from ._scenes import SCENE, TEMPLATE, copy_scene, path_of
+from ._scenes import TEMPLATE, copy_example
 from ._terminal import data
 
 
@@ -20,4 +20,4 @@ def new(name: str, force: bool) -> None:
     if name == "-":
         data(path_of(TEMPLATE + SCENE).read_text(encoding="utf-8"), nl=False)
         return
-    copy_scene(TEMPLATE, Path(f"{name.removesuffix(SCENE)}{SCENE}"), force)
+    copy_example(TEMPLATE, f"{name.removesuffix(SCENE)}{SCENE}", force)

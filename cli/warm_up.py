@@ -4,8 +4,9 @@ import json
 
 import click
 
+from idealgas.examples import paths as shipped
+
 from ._options import FILE, json_option
-from ._scenes import paths as shipped
 from ._tables import facts, print_tables
 from ._terminal import data, terminal
 

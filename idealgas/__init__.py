@@ -11,13 +11,13 @@
             print(route.name, route.compressibility_factor.value, route.compressibility_factor.standard_error)
         print(log.to_pandas("events", disc=0))
 
-`load_scene` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a run; both
-return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures something in
-it, or in a log at a path; `write_report`, `animate` and `export` take both as well. `run_sweep` runs what `load_sweep`
-has read. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which
-gives a figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard
-error. An error that a user can mend is a `UserError`, in one plain line; `SceneError`, `LogError` and `OutputError` are
-kinds of it.
+`load_scene`, `load_example` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a
+run; both return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures
+something in it, or in a log at a path, and `combine` takes its results of several logs; `write_report`, `animate` and
+`export` take both as well. `run_sweep` runs what `load_sweep` has read. Results are dataclasses with `as_dict()`, which
+gives plain values for JSON, `tables()` and `plot()`, which gives a figure of matplotlib; notebooks show their tables. A
+measured number is an `Estimate`, a value with its standard error. An error that a user can mend is a `UserError`, in
+one plain line; `SceneError`, `LogError` and `OutputError` are kinds of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
 used, so that `import idealgas` itself is quick.
@@ -33,9 +33,10 @@ _HOMES = {
     "idealgas.accuracy.study": ("study_accuracy",),
     "idealgas.analysis.core.deviations": ("sensitivity",),
     "idealgas.analysis.core.statistics": ("Estimate",),
-    "idealgas.analysis.registry": ("analyse",),
+    "idealgas.analysis.registry": ("analyse", "combine"),
     "idealgas.errors": ("OutputError", "UserError"),
     "idealgas.columns": ("EventBatch", "Kind"),
+    "idealgas.examples": ("load_example",),
     "idealgas.log": ("Log", "LogError", "LogState", "open_log"),
     "idealgas.log.export.export": ("export",),
     "idealgas.movie.film": ("animate",),
@@ -65,7 +66,9 @@ __all__ = [  # and the names of all analyses
     "__version__",
     "analyse",
     "animate",
+    "combine",
     "export",
+    "load_example",
     "load_scene",
     "load_sweep",
     "open_log",

@@ -14,6 +14,7 @@ from idealgas.analysis.order import OrderAnalysis
 from idealgas.analysis.pressure.measure import pressure as pressure
 from idealgas.analysis.profile import ProfileAnalysis
 from idealgas.analysis.registry import analyse as analyse
+from idealgas.analysis.registry import combine as combine
 from idealgas.analysis.relaxation import RelaxationAnalysis
 from idealgas.analysis.sound import SoundAnalysis
 from idealgas.analysis.temperature import temperature as temperature
@@ -22,6 +23,7 @@ from idealgas.columns import EventBatch as EventBatch
 from idealgas.columns import Kind as Kind
 from idealgas.errors import OutputError as OutputError
 from idealgas.errors import UserError as UserError
+from idealgas.examples import load_example as load_example
 from idealgas.log import Log as Log
 from idealgas.log import LogError as LogError
 from idealgas.log import LogState as LogState

@@ -29,6 +29,7 @@ _BEGINNINGS = {
     ".h5md": _HDF5,
     ".htm": _HTML,
     ".html": _HTML,
+    ".ipynb": rb'\{\s*"cells": \[',
     ".json": rb'\{\s*"(title|period)"',
     ".mp4": rb"....ftyp",
     ".parquet": rb"PAR1",

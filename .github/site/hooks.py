@@ -6,10 +6,6 @@ As a script it makes the pictures of the gallery that are missing, by running th
 import os
 import posixpath
 import re
-import subprocess
-import sys
-import tempfile
-import tomllib
 from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -77,16 +73,13 @@ def _linked(source: str, repository: str) -> str:
 
 def _gallery() -> str:
     """Page with every example scene: its picture, its description and its commands."""
+    from idealgas.gallery import commands, description
+
     parts = ["# Gallery", "The example scenes, with the discs at the end of the run, coloured by speed."]
     for path in SCENES:
-        name, about = path.stem, tomllib.loads(path.read_text(encoding="utf-8"))["scene"]
-        commands = (
-            f"idealgas examples {name}",
-            f"idealgas run {name}.toml -o {name}.h5",
-            f"idealgas report {name}.h5 -o {name}.html",
-        )
-        parts += [f"## {about['title']}", f"![{about['title']}](gallery/{name}.png)", about["description"].strip()]
-        parts.append("\n".join(("```bash", *commands, "```")))
+        title, paragraphs = description(path.stem)
+        parts += [f"## {title}", f"![{title}](gallery/{path.stem}.png)", *paragraphs]
+        parts.append("\n".join(("```bash", *commands(path.stem), "```")))
     return "\n\n".join(parts) + "\n"
 
 
@@ -113,28 +106,15 @@ def _keys(result: type) -> Iterator[str]:
 
 
 def make_pictures() -> None:
-    """Run the example scenes and draw each at its end; without positions the distribution of its speeds."""
-    from idealgas.log import open_log
+    """Run the example scenes of which there is no picture, and draw them."""
+    from idealgas.gallery import draw
 
     PICTURES.mkdir(parents=True, exist_ok=True)
     for path in SCENES:
         picture = PICTURES / f"{path.stem}.png"
-        if picture.exists():
-            continue
-        with tempfile.TemporaryDirectory() as folder:
-            log_path = str(Path(folder, "run.h5"))
-            _idealgas("run", str(path), "-o", log_path, "-q")
-            with open_log(log_path) as log:
-                end, has_positions = log.end_time, log.has_positions and log.has_events
-            if has_positions:
-                _idealgas("animate", log_path, "--frame", repr(end), "--size", "800x450", "-o", str(picture), "-q")
-            else:
-                _idealgas("histogram", log_path, "--plot", str(picture), "-q")
-        print(picture)
-
-
-def _idealgas(*arguments: str) -> None:
-    subprocess.run([sys.executable, "-m", "idealgas", *arguments], check=True)
+        if not picture.exists():
+            draw(path.stem, picture)
+            print(picture)
 
 
 if __name__ == "__main__":

@@ -5,16 +5,18 @@ Names and first lines of help are read without importing any analysis.
 
 import ast
 import re
+from collections.abc import Sequence
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any
 
-from idealgas.errors import unknown
+from idealgas.errors import UserError, unknown
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.analysis import Analysis, Progress
+    from idealgas.analysis.core.result import Result
     from idealgas.log import Log
 
 FOLDER = Path(__file__).parent
@@ -90,3 +92,20 @@ def analyse(
         UserError: if the name or an option is unknown, or if the analysis does not apply to the log.
     """
     return find(name).analyse(log, start, end, progress, **options)
+
+
+def combine(results: "Sequence[Result]") -> "Result":
+    """Combine the results of one analysis of several logs, as commands with several logs do.
+
+    The pressures of several gases become their equation of state, with its virial coefficients.
+
+    Args:
+        results: of the same analysis.
+
+    Raises:
+        UserError: if the analysis does not combine logs, if a run is given twice, or if the gases do not fit together.
+    """
+    analysis = results[0].analysis
+    if analysis.combine is None and len(results) > 1:
+        raise UserError(f"{analysis.key}: does not combine several logs")
+    return analysis.combined(results)

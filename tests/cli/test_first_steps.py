@@ -1,21 +1,28 @@
 """From nothing to a scene: `new`, `examples` and `schema`."""
 
+import base64
+import html
+import io
 import json
+import re
 import tomllib
 
 import pytest
 from helpers.support import ROOT, called, error_of, idealgas, output_of
+from PIL import Image
 
 from idealgas.scene import parse_scene
 
 CONFIGS = ROOT / "configs"
 SCENES = sorted(path.stem for path in CONFIGS.glob("*.toml"))
+NOTEBOOKS = sorted(path.stem for path in (CONFIGS / "notebooks").glob("*.ipynb"))
 
 
 def test_examples_are_listed_with_what_they_show():
     listed = dict(line.split(maxsplit=1) for line in called("examples").stdout.splitlines())
-    assert sorted(listed) == SCENES
-    for name, text in listed.items():
+    assert sorted(listed) == sorted(SCENES + NOTEBOOKS)
+    assert listed["lesson-2-pressure"] == "Lesson 2: PV = NkT, and what hard discs add"
+    for name, text in ((name, listed[name]) for name in SCENES):
         scene = tomllib.loads((CONFIGS / f"{name}.toml").read_text())["scene"]
         assert " ".join(scene.get("description", scene["title"]).split()).startswith(text)
     assert listed["brownian"] == "Brownian motion: four large, heavy discs among a thousand light ones."
@@ -35,6 +42,42 @@ def test_an_example_is_copied_and_can_be_checked(tmp_path):
     assert called("examples", "piston", "--force", folder=tmp_path).returncode == 0
     assert called("examples", "quickstart.toml", "-o", "mine.toml", folder=tmp_path).returncode == 0
     assert (tmp_path / "mine.toml").read_bytes() == (CONFIGS / "quickstart.toml").read_bytes()
+
+
+def test_a_notebook_is_copied(tmp_path):
+    done = called("examples", "lesson-2-pressure", folder=tmp_path)
+    assert done.stdout == "lesson-2-pressure.ipynb: written\n"
+    (copy,) = tmp_path.iterdir()
+    assert copy.read_bytes() == (CONFIGS / "notebooks" / copy.name).read_bytes()
+    assert error_of("examples", copy.name, folder=tmp_path).startswith(f"{copy.name}: already exists")
+
+
+def test_the_gallery_of_a_scene_is_one_page_with_its_picture(tmp_path):
+    done = idealgas("examples", "corner", "--gallery", "page.html", folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "page.html: written\n", "")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    scene = tomllib.loads((CONFIGS / "corner.toml").read_text(encoding="utf-8"))["scene"]
+    text = html.unescape(page)
+    assert f"<h2>{scene['title']}</h2>" in text
+    assert " ".join(scene["description"].split("\n\n")[0].split()) in text
+    assert "idealgas run corner.toml -o corner.h5" in text
+    (picture,) = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
+    with Image.open(io.BytesIO(base64.b64decode(picture))) as image:
+        assert image.width >= 540
+        assert len(image.convert("RGB").getcolors(1 << 20)) > 10
+    assert not re.search(r"https?:|<script", page)
+    assert called("examples", "corner", "--gallery", "page.html", folder=tmp_path).returncode == 2
+    for words in (("pistn", "--gallery", "a.html"), ("--gallery", "a.txt"), ("-o", "a.toml", "--gallery", "a.html")):
+        assert error_of("examples", *words, folder=tmp_path).count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+@pytest.mark.slow
+def test_the_gallery_has_all_scenes(tmp_path):
+    assert called("examples", "--gallery", "page.html", folder=tmp_path).returncode == 0
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert re.findall(r'<section id="([\w-]+)"', page) == [name for name in SCENES if name != "template"]
+    assert page.count('src="data:image/png') == len(SCENES) - 1
 
 
 def test_a_new_scene_to_standard_output(tmp_path):

@@ -27,6 +27,8 @@ ALLOWED = {
     "sweep": {"toml", "scene", "initial", "run", "log", "analysis"},
     "accuracy": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
+    "examples": {"scene"},
+    "gallery": {"examples", "scene", "run", "log", "analysis", "movie", "report"},
     "_version": set(),
     "errors": set(),
     "columns": set(),
@@ -42,6 +44,7 @@ ALLOWED = {
         "report",
         "sweep",
         "accuracy",
+        "examples",
     },  # the Python interface, imported when it is asked for
     "__main__": set(),
 }
@@ -152,4 +155,6 @@ def test_commands_use_what_is_public(name):
         "sweep",
         "accuracy",
         "bench",
+        "examples",
+        "gallery",
     }

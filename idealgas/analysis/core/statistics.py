@@ -13,6 +13,7 @@ import numpy as np
 
 from idealgas.analysis.core.autoregression import changes, error_of_mean, inefficiency
 from idealgas.analysis.core.fields import OMITTED, as_dict, reported
+from idealgas.analysis.core.rounding import with_last_digits
 from idealgas.analysis.theory.values import Theory
 
 ENOUGH_REPLICATES = 20
@@ -86,6 +87,12 @@ class Estimate:
             found["theory"],
             found["theory_error"] or 0.0,
         )
+
+    def __str__(self) -> str:
+        """Value with its error, theory, and deviation: "1.1092(8), theory 1.10954, −0.4σ"."""
+        theory = "" if self.theory is None else f", theory {self.theory:.6g}"
+        deviation = "" if self.deviation is None else f", {self.deviation:+.1f}σ".replace("-", "−")
+        return f"{with_last_digits(self.value, self.standard_error)}{theory}{deviation}"
 
     def as_dict(self) -> dict[str, float | None]:
         """Fields and deviation by name, ready for JSON; None for numbers that are not finite."""

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from idealgas.analysis.core.rounding import with_last_digits
 from idealgas.errors import plain
 
 if TYPE_CHECKING:
@@ -173,22 +174,8 @@ def as_text(tables: Iterable[Table]) -> str:
 
 
 def format_estimate(found: "Estimate") -> str:
-    """An estimate with its standard error in units of its last digit, such as "1.1099(3)" for 1.1099 ± 0.0003.
-
-    The error has one digit, and two if the first one is 1; the value of an estimate without an error has six.
-    """
-    value, error = found.value, found.standard_error
-    if not (math.isfinite(value) and math.isfinite(error) and error > 0):
-        return f"{value:.6g}"
-    power = math.floor(math.log10(max(abs(value), error)))
-    if power not in range(-4, 6):
-        return f"{format_estimate(found.times(10.0**-power))}e{power}"
-    one_digit = f"{error:.0e}"
-    last = int(one_digit[2:]) - (one_digit[0] == "1")  # power of ten of the last digit
-    digits = max(-last, 0)
-    rounded = round(error, -last)
-    shown = f"{rounded:.{digits}f}" if rounded >= 1 else f"{rounded * 10**digits:.0f}"
-    return f"{round(value, -last):.{digits}f}({shown})"
+    """An estimate with its standard error in units of its last digit, see `with_last_digits`."""
+    return with_last_digits(found.value, found.standard_error)
 
 
 def escape(text: str) -> str:

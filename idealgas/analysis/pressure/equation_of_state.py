@@ -95,9 +95,7 @@ def sample_of(measured: Pressure) -> Sample:
     Raises:
         UserError: if the gas has no equation of state.
     """
-    if not measured.routes:
-        raise UserError(measured.no_theory or "")
-    pairs = next(route.compressibility_factor for route in measured.routes if route.name == PAIRS)
+    pairs = measured.route(PAIRS).compressibility_factor
     return Sample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
 
 

@@ -49,7 +49,7 @@ from idealgas.analysis.theory.values import (
     mixture_error,
 )
 from idealgas.columns import OUTWARD, SIDES, axis_of
-from idealgas.errors import NotApplicableError, UserError
+from idealgas.errors import NotApplicableError, UserError, unknown
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
@@ -116,6 +116,19 @@ class Pressure(Result):
     def theory_errors(self) -> dict[str, float]:
         """Standard deviation of the error of Z by the name of each theory."""
         return {name: theory.error for name, theory in self.known_theories.items()}
+
+    def route(self, name: str) -> Route:
+        """Pressure by one way of measuring.
+
+        Raises:
+            UserError: if the gas has no such route, with the reason if it has none at all.
+        """
+        if not self.routes:
+            raise UserError(self.no_theory or "")
+        names = [route.name for route in self.routes]
+        if name not in names:
+            raise unknown("route", name, names)
+        return self.routes[names.index(name)]
 
     def check(self) -> CheckResult:
         """Check that Z by the virial of the walls and of the pairs agrees with theory.

@@ -23,8 +23,7 @@ from idealgas.scene import parse_scene
 
 
 def combined(name, *logs):
-    analysis = registry.find(name)
-    return analysis.combined([analysis.analyse(log) for log in logs])
+    return registry.combine([registry.analyse(log, name) for log in logs])
 
 
 # ── where sentences are shown ──
@@ -191,6 +190,11 @@ def test_no_equation_of_state_of_a_mixture(made):
     two = "[{name='a', count=20, radius=0.2, temperature=1}, {name='b', count=20, radius=0.1, temperature=1}]"
     with pytest.raises(UserError, match=r"no equation of state of a mixture \(0.5 of radius 1, 0.5 of radius 2\)"):
         combined("pressure", made(), made(f"species={two}"))
+
+
+def test_an_analysis_of_single_logs_combines_none(made):
+    with pytest.raises(UserError, match=r"^histogram: does not combine several logs$"):
+        combined("histogram", made(), made("scene.seed=9"))
 
 
 def test_effusion_of_different_gases_under_one_name(made):

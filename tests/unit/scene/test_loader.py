@@ -1,6 +1,8 @@
 import pytest
+from helpers.support import ROOT
 
 from idealgas.errors import UserError
+from idealgas.examples import load_example
 from idealgas.scene import Header, Log, Scene, SceneError, load_scene, parse_scene
 from idealgas.toml.dump import dump_document
 from idealgas.toml.table import LARGEST
@@ -139,3 +141,12 @@ def test_a_dump_shows_the_defaults():
         "[run]", 'method = "event_driven"', "until = 1.0", "",
         "[log]", "events = true", 'compression = "gzip"', "pressure = false", "checkpoint_every = 1", "fsync = false",
     ]  # fmt: skip
+
+
+def test_an_example_is_loaded_by_its_name():
+    scene = load_example("brownian", ["run.until=1"])
+    assert scene == load_scene(ROOT / "configs" / "brownian.toml", ["run.until=1"])
+    assert (scene.scene.title, scene.run.until) == ("Brownian motion", 1.0)
+    with pytest.raises(UserError) as refusal:
+        load_example("brownan")
+    assert str(refusal.value).startswith('unknown example, did you mean "brownian"?')

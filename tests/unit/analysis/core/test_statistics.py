@@ -154,3 +154,9 @@ def test_p_values_of_kolmogorov_and_smirnov(samples, off):
     distances = np.linspace(0.3, 2.5, 200) / math.sqrt(samples)
     exact = stats.kstwo.sf(distances, samples)
     assert np.abs(exact - [ks_p_value(one, samples) for one in distances]).max() < off
+
+
+def test_an_estimate_as_text_has_its_error_theory_and_deviation():
+    assert str(Estimate(1.10919, 0.00077, 100.0)) == "1.1092(8)"
+    assert str(Estimate(1.10919, 0.00077, 100.0, theory=1.109537)) == "1.1092(8), theory 1.10954, −0.5σ"
+    assert str(Estimate(0.5, 0.0, math.inf, theory=0.5)) == "0.5, theory 0.5"

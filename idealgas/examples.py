@@ -1,0 +1,45 @@
+"""The example scenes that are installed with the package."""
+
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from idealgas.errors import unknown
+
+if TYPE_CHECKING:
+    from idealgas.scene import Scene
+
+SCENE = ".toml"
+
+
+def path_of(name: str) -> Path:
+    """Path of an installed file."""
+    return Path(next(iter(import_module("idealgas_scenes").__path__))) / name
+
+
+def paths() -> list[Path]:
+    """Files of all scenes, in alphabetical order of their names."""
+    return sorted(path_of("").glob(f"*{SCENE}"))
+
+
+def names() -> list[str]:
+    """Names of the scenes, in alphabetical order."""
+    return [path.stem for path in paths()]
+
+
+def load_example(name: str, overrides: Sequence[str] = ()) -> "Scene":
+    """Load one of the example scenes that are installed with the package.
+
+    Args:
+        name: its name, as `idealgas examples` lists it.
+        overrides: changes, as for `load_scene`.
+
+    Raises:
+        UserError: if there is no such example, or the changes are invalid.
+    """
+    from idealgas.scene import load_scene
+
+    if name not in names():
+        raise unknown("example", name, names())
+    return load_scene(path_of(name + SCENE), overrides)
