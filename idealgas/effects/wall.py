@@ -193,8 +193,9 @@ def _check(tables: Tables) -> Iterator[Issue]:
                 yield Issue(keys, "fixed disc not in the box", str(list(wall.start)), allowed)
             continue
         yield from wall_issues(tables.size, i, wall)
-        if wall.name in SIDES:
-            yield Issue((("wall", i, "name"),), "name taken by a side of the box", f'"{wall.name}"', "any other word")
+        if wall.name in (*SIDES, "piston"):
+            taken = "the piston" if wall.name == "piston" else "a side of the box"
+            yield Issue((("wall", i, "name"),), f"name taken by {taken}", f'"{wall.name}"', "any other word")
         elif wall.name is not None and first.setdefault(wall.name, i) != i:
             yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a name of its own")
 

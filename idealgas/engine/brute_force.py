@@ -34,7 +34,7 @@ from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.permeable import passage_of
-from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
+from idealgas.physics.piston import is_inner, is_piston_side, piston_contact, stop_contact
 from idealgas.physics.vibration import contact_with_side
 
 SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
@@ -57,7 +57,12 @@ def wall_event(record, i, effects, length_x, length_y, best):
             time = contact_with_side(disc, side, length_y if along_y else length_x, effects.gravity, effects.vibration)
             if time < best[0]:
                 best = (time, WALL, i, side, 0, 0)
-    return segment_event(disc, i, effects.segments, effects, best)
+    best = segment_event(disc, i, effects.segments, effects, best)
+    if is_inner(effects.piston):
+        time = piston_hit(disc, effects.piston, effects.gravity)
+        if time < best[0]:
+            best = (time, PISTON, i, 0, 0, 0)
+    return best
 
 
 @inline
@@ -145,7 +150,7 @@ def boundary_crossing_event(record, i, periodic, best):
 
 @inline
 def stop_event(piston, best):
-    """The earlier of the event `best` and the piston's arrival at its end stop, which comes first if they tie."""
+    """The earlier of the event `best` and the piston's arrival at a side, which comes first if they tie."""
     if piston is not None:
         time = stop_contact(piston[0])
         if time <= best[0] and time < NEVER:
@@ -222,8 +227,8 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             rows += write_hit(batch, rows, clock, i, BATH, THERMOSTAT, disc, effects)
             thermostat_collisions += 1
         else:
-            side = resolve_piston(disc, i, time, effects.piston, effects)
-            rows += write_hit(batch, rows, clock, i, -1 - side, PISTON, disc, effects)
+            wall = resolve_piston(disc, i, time, effects.piston, effects)
+            rows += write_hit(batch, rows, clock, i, -1 - wall, PISTON, disc, effects)
         events += 1
         events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])
         now = time

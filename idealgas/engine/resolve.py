@@ -11,7 +11,7 @@ from idealgas.physics.exact_sum import add
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.permeable import passage_of
-from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston
+from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston, is_inner, normal_of_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
 from idealgas.physics.thermal import is_thermal
@@ -149,29 +149,32 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
 
 @inline
 def resolve_piston(disc, own, time, piston, effects):
-    """Collide a disc with the piston at a local time; return the number of the piston's side."""
+    """Collide a disc with the piston at a local time; return the number of the piston among the walls."""
     if piston is not None:
         p = piston[0]
         arrive(disc, time, effects)
         advance_piston(p, time)
         energy = energy_of(disc, own, effects.rotation)
         loss = energy_at_piston(disc, energy, p)
+        nx, ny = normal_of_piston(disc, p)
         vx = disc.vx
         vy = disc.vy
         collide_with_piston(disc, own, p, effects.restitution)
         after = energy_of(disc, own, effects.rotation)
-        record_wall_energy(p.side, after - energy, loss - energy_at_piston(disc, after, p), effects)
+        record_wall_energy(p.wall, after - energy, loss - energy_at_piston(disc, after, p), effects)
         finish(disc, own, time, effects)
-        nx, ny = inward_normal(p.side)
         px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
-        record_hit(effects.flow, disc, p.side, nx, ny, abs(ny), abs(nx), px, py)
-        return p.side
+        face = np.int64(p.wall)
+        if is_inner(piston):
+            face += face - FIRST_SEGMENT + (0 if nx + ny < 0.0 else 1)
+        record_hit(effects.flow, disc, face, nx, ny, abs(ny), abs(nx), px, py)
+        return p.wall
     return 0
 
 
 @inline
 def resolve_stop(time, piston):
-    """Reverse the piston's velocity at its end stop, which it reaches at a local time."""
+    """Reverse the piston's velocity at a side of the box, which it reaches at a local time."""
     if piston is not None:
         p = piston[0]
         advance_piston(p, time)

@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 
+from idealgas.columns import FIRST_SEGMENT
 from idealgas.initial.contacts import static_contact_issues
 from idealgas.physics.elementary import cos_sin_turns
 from idealgas.scene import Scene, SceneError, Species
+from idealgas.scene.checks.piston import crushed_issues
 from idealgas.scene.sizes import Values, mass_of
-from idealgas.scene.walls import walls_inside
+from idealgas.scene.walls import number_walls
 from idealgas.state import Gas, rng
 from idealgas.toml.issues import Issue
 
@@ -16,8 +18,8 @@ from idealgas.toml.issues import Issue
 def make_gas(scene: Scene) -> Gas:
     """Discs of a scene at time 0: given ones have the first ids, then each species in the order of the file.
 
-    SceneError if the discs cannot be placed, or if one is in static contact with a wall or the piston to which it is
-    pressed.
+    SceneError if the discs cannot be placed, if one is in static contact with a wall or the piston to which it is
+    pressed, or if the piston crushes some.
     """
     radius, mass, species, names = disc_constants(scene)
     gas = Gas(
@@ -30,7 +32,7 @@ def make_gas(scene: Scene) -> Gas:
         species_names=names,
         solid_area=scene.solids.area,
     )
-    if issues := list(static_contact_issues(scene, gas)):
+    if issues := [*static_contact_issues(scene, gas), *crushed_issues(scene, gas.position, gas.radius)]:
         raise SceneError(scene.report(issues))
     return gas
 
@@ -118,7 +120,7 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
     box, periodic = scene.box, scene.properties.periodic
     space = scene.room
-    walls = [wall for wall in walls_inside(scene) if wall.is_there(0.0)]
+    walls = [wall for wall in number_walls(scene)[FIRST_SEGMENT:] if wall.is_there(0.0)]
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     grid = placement.make_grid(box.size, radius, periodic, walls, scene.solids.walls)
     random = rng(scene.scene.seed, "placement")

@@ -1,4 +1,4 @@
-"""Discs in static contact with a wall to which they are pressed: they would collide indefinitely at one instant.
+"""Discs in static contact with a wall to which they are pressed, which would collide indefinitely at one instant.
 
 Only a disc that touches the wall exactly and has no velocity along its normal is in static contact; any other disc
 flies or bounces.
@@ -33,12 +33,12 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     for side, name in enumerate(SIDES):
         axis = axis_of(side)
         pressed = acceleration @ OUTWARD[side] > 0 or hasattr(scene.box.sides[side], "vibrating")
-        if pressed and not (scene.piston and scene.piston.side == name):
+        if pressed and not (scene.piston and scene.piston.wall == name):
             coordinate = gas.position[:, axis]
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
     if acceleration.any():
-        for k, wall in enumerate(scene.walls):
+        for k, wall in enumerate(scene.segments):
             if wall.is_there(0.0):
                 freely = [wall.lets_pass(name) and wall.permeable_from is None for name in gas.species_names]
                 normal = gas.position - nearest_points(gas.position, wall.start, wall.end, wall.arc)
@@ -46,9 +46,10 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
                 yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:
         piston = scene.piston
-        gap = piston.outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
+        outward = piston.outward_from(gas.position, gas.box)
+        gap = outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
         relative = piston.acceleration(gas.box, scene.properties.acceleration) - acceleration[piston.axis]
-        pressed = piston.outward * relative < 0
+        pressed = outward * relative < 0
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == piston.start_velocity)
         yield "the piston", in_contact & pressed
 

@@ -45,7 +45,7 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         "angular_velocity": spin,
         "species": [discs.species_names[k] for k in discs.species.tolist()],
     }
-    walls = [wall for wall in scene.walls if wall.is_there(time)]
+    walls = [wall for wall in scene.segments if wall.is_there(time)]
     return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
 
 

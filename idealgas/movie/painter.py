@@ -117,7 +117,7 @@ def view(box: tuple[float, float], piston: PistonTrack | None) -> tuple[tuple[fl
         low, high = shown[piston.axis]
         if piston.outward > 0:
             high = min(high, BEYOND * float(piston.place.max()))
-        else:
+        elif piston.outward < 0:
             low = max(low, high - BEYOND * (high - float(piston.place.min())))
         shown[piston.axis] = low, high
     return shown[0], shown[1]

@@ -12,7 +12,7 @@ from idealgas.log import Log
 class PistonTrack:
     """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: (K,), length/time². limits: of its way.
 
-    outward: +1 if the gas is below it on this axis, -1 if above. name: what pictures call it.
+    outward: +1 if the gas is below it on this axis, -1 if above, 0 if on both sides. name: what pictures call it.
     """
 
     axis: int
@@ -46,11 +46,12 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
     first = max(int(sampled.searchsorted(start, "right")) - 1, 0)
     some = slice(first, int(sampled.searchsorted(end)) + 1)
     times, knots = [sampled[some]], [places[some]]
+    outward = piston.outward_from(log.discs.position, log.box)
     names, last = ("time", "disc", "kind", "position"), max(end, float(sampled[some][-1]))
     for rows in log.chunks(names, log.row_at(sampled[first]), log.row_at(last, "right")):
         hits = rows.kind == Kind.PISTON
         times.append(rows.time[hits])
-        knots.append(rows.position[hits, piston.axis] + piston.outward * log.discs.radius[rows.disc[hits]])
+        knots.append(rows.position[hits, piston.axis] + (outward * log.discs.radius)[rows.disc[hits]])
     time, unique = np.unique(np.concatenate(times), return_index=True)
     if len(time) < 2:
         return None

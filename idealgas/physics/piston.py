@@ -1,7 +1,8 @@
-"""A piston: a wall across the box that moves along one axis, at a given velocity or with a mass under a pressure.
+"""A piston: a wall across the box that moves along one axis, at a given velocity or with a mass.
 
-Between hits it moves as X(t) = X₀ + V t + ½ A t²; A comes from the external pressure and gravity, and is 0 at a given
-velocity.
+An outer piston stands in place of a side and may be pressed from outside; an inner one has gas on both sides. Between
+hits it moves as X(t) = X₀ + V t + ½ A t²; A comes from the external pressure and gravity, and is 0 at a given velocity.
+At the sides of the box across its axis it is reflected.
 """
 
 import numpy as np
@@ -16,17 +17,24 @@ PISTON = np.dtype(
         ("x", "f8"), ("v", "f8"), ("a", "f8"),  # position, velocity, acceleration along the axis: length, time
         ("t", "f8"),  # local time of the record
         ("m", "f8"),  # mass; 0 for a piston with a given velocity, which hits do not change
-        ("stop", "f8"),  # position of the end stop: the side of the box that the piston replaces, length
-        ("side", "i4"), ("count", "u4"),  # number of that side; number of events that changed the velocity
+        ("length", "f8"),  # of the box along the axis
+        ("outward", "f8"),  # direction from the gas to an outer piston along its axis, +1 or -1; 0 for an inner piston
+        ("wall", "i4"), ("axis", "i4"),  # number of the wall that it is; 0 if it moves along x, 1 along y
+        ("count", "u4"),  # number of events that changed the velocity
     ],
     align=True,
 )  # fmt: skip
 
 
 @inline
-def outward(piston):
-    """Direction from the gas to the piston along its axis: +1 if the gas has the smaller coordinates, else -1."""
-    return 1.0 if piston.side & 1 else -1.0
+def outward(piston, distance):
+    """Direction along the axis from a disc to the piston, +1 or -1; distance: of their coordinates, piston's - disc's.
+
+    For an outer piston it is given; a disc beyond it, by rounding, is to go back. No disc passes an inner piston.
+    """
+    if piston.outward != 0.0:
+        return piston.outward
+    return 1.0 if distance > 0.0 else -1.0
 
 
 @inline
@@ -48,8 +56,7 @@ def height_over_piston(disc, piston, gravity):
 
     Returns (time, height, velocity, acceleration) along the axis, the height being that of the disc's edge.
     """
-    along_y = piston.side >= 2
-    sign = outward(piston)
+    along_y = piston.axis == 1
     time = max(disc.t, piston.t)
     d_dt = time - disc.t
     pull = acceleration_along(gravity, along_y)
@@ -57,7 +64,9 @@ def height_over_piston(disc, piston, gravity):
     d_position = position_after(position, velocity, pull, d_dt)
     d_velocity = velocity_after(velocity, pull, d_dt)
     p_position, p_velocity = piston_motion(piston, time)
-    height = sign * (p_position - d_position) - disc.r
+    distance = p_position - d_position
+    sign = outward(piston, distance)
+    height = sign * distance - disc.r
     return time, height, sign * (p_velocity - d_velocity), sign * (piston.a - pull)
 
 
@@ -81,9 +90,9 @@ def misses_piston_until(disc, piston, gravity, limit):
 
 @inline
 def stop_contact(piston):
-    """Local time at which the piston reaches its end stop; NEVER if it does not."""
-    sign = outward(piston)
-    delay = time_to_plane(sign * (piston.stop - piston.x), -sign * piston.v, -sign * piston.a)
+    """Local time at which the piston reaches a side of the box; NEVER if it does not."""
+    upper = time_to_plane(piston.length - piston.x, -piston.v, -piston.a)
+    delay = min(time_to_plane(piston.x, piston.v, piston.a), upper)
     return piston.t + delay if delay < NEVER else NEVER
 
 
@@ -112,7 +121,7 @@ def piston_energy(mass, position, velocity, acceleration):
 @inline
 def collide_with_piston(disc, own, piston, restitution):
     """Exchange momentum along the axis between a disc and the piston, whose records are at the time of contact."""
-    along_y = piston.side >= 2
+    along_y = piston.axis == 1
     velocity = disc.vy if along_y else disc.vx
     factor = wall_restitution_factor(restitution, own, disc.t)
     approach = velocity - piston.v
@@ -139,7 +148,7 @@ def energy_at_piston(disc, energy, piston):
     """
     if piston.m > 0.0:
         return energy + 0.5 * piston.m * piston.v * piston.v
-    approach = (disc.vy if piston.side >= 2 else disc.vx) - piston.v
+    approach = (disc.vy if piston.axis == 1 else disc.vx) - piston.v
     return 0.5 * disc.m * approach * approach
 
 
@@ -147,5 +156,21 @@ def energy_at_piston(disc, energy, piston):
 def is_piston_side(side, piston):
     """Whether the piston stands in place of this side of the box."""
     if piston is not None:
-        return side == piston[0].side
+        return side == piston[0].wall
     return False
+
+
+@inline
+def is_inner(piston):
+    """Whether the piston has gas on both sides."""
+    if piston is not None:
+        return piston[0].outward == 0.0
+    return False
+
+
+@inline
+def normal_of_piston(disc, piston):
+    """Unit normal (x, y) of the piston towards a disc, whose record is at the piston's time."""
+    position = disc.y if piston.axis == 1 else disc.x
+    sign = outward(piston, piston.x - position)
+    return (0.0, -sign) if piston.axis == 1 else (-sign, 0.0)

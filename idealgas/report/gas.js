@@ -22,7 +22,8 @@ class Gas {
     this.tick = unpack("event_tick", Uint32Array);
     this.disc = unpack("event_disc", Uint32Array);
     this.event = { position: unpack("event_position", Float32Array), velocity: unpack("event_velocity", Float32Array) };
-    this.hits = unpack("event_hit", Uint32Array); // rows in which a disc met the piston
+    this.knots = unpack("piston_tick", Uint32Array); // when it is known where the piston is
+    this.places = unpack("piston_place", Float32Array);
     this.number = this.radius.length;
     this.last = new Int32Array(this.number).fill(-1);
     this.row = 0; // events that have happened
@@ -110,17 +111,11 @@ class Gas {
     return Math.hypot(this.vx[i] - x, this.vy[i] - y);
   }
 
-  // Where the piston is: touched by the discs that hit it, on a parabola from hit to hit.
+  // Where the piston is: on a parabola between the times at which that is known.
   pistonPlace() {
-    const { axis, outward, pull, limits, ends } = this.head.piston;
-    const knot = k => {
-      if (k < 0) return { time: this.head.start, place: ends[0] };
-      if (k >= this.hits.length) return { time: this.head.end, place: ends[1] };
-      const row = this.hits[k];
-      const place = this.event.position[2 * row + axis] + outward * this.radius[this.disc[row]];
-      return { time: this.timeOf(this.tick[row]), place };
-    };
-    const next = firstAfter(this.hits.length, k => knot(k).time, this.time), a = knot(next - 1), b = knot(next);
+    const { pull, limits } = this.head.piston, knot = k => ({ time: this.timeOf(this.knots[k]), place: this.places[k] });
+    const last = this.knots.length - 1, next = Math.min(firstAfter(last, k => knot(k).time, this.time), last);
+    const a = knot(next - 1), b = knot(next);
     const before = this.time - a.time, after = this.time - b.time, step = b.time - a.time;
     if (!(step > 0)) return a.place;
     const place = (b.place * before - a.place * after) / step + pull * before * after / 2;

@@ -16,7 +16,6 @@ from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.theory.ensemble import classes
-from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.movie.order_colours import order_colours
@@ -69,6 +68,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
     flow = centre_of_mass_velocity(log)
     thermal = _rms_speed(state.velocity - flow)
     kinds = classes(gas)
+    piston, knots = _piston(log, first, last)
     shades = colormaps[COLOUR_MAP]
     head = {
         "box": gas.box,
@@ -102,13 +102,14 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
             }
             for w in walls_inside(log.scene)
         ],
-        "piston": _piston(log, first, last),
+        "piston": piston,
     }
     arrays = {"radius": gas.radius, "mass": gas.mass, "species": gas.species.astype("<u2"), "velocity": state.velocity}
     if log.has_positions:
         arrays["position"] = state.position
         arrays |= _order(log, first, last) if order else {}
-    return Player(head, {name: _packed(a) for name, a in arrays.items()} | _events(log, first, last, row), first, last)
+    arrays |= knots | _events(log, first, last, row)
+    return Player(head, {name: _packed(a) for name, a in arrays.items()}, first, last)
 
 
 def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
@@ -126,34 +127,34 @@ def _absences(wall: NumberedWall, last: float) -> list[list[float]]:
     return [[opens, min(closes, 2 * last + 1)] for opens, closes in wall.absences]
 
 
-def _piston(log: Log, first: float, last: float) -> dict[str, Any] | None:
-    """Positions of the piston at both times, and its acceleration; the page finds the other positions from its hits."""
+def _piston(log: Log, first: float, last: float) -> tuple[dict[str, Any] | None, dict[str, np.ndarray]]:
+    """Axis, acceleration and limits of the piston, and the known times and positions between two times."""
     track = piston_track(log, first, last)
     if track is None:
-        return None
-    return {
-        "axis": track.axis,
-        "outward": track.outward,
-        "pull": float(track.pull[0]),
-        "limits": track.limits,
-        "ends": [track.at(first), track.at(last)],
-    }
+        return None, {}
+    inside = (track.time > first) & (track.time < last)
+    time = np.concatenate(([first], track.time[inside], [last]))
+    place = np.concatenate(([track.at(first)], track.place[inside], [track.at(last)]))
+    head = {"axis": track.axis, "pull": float(track.pull[0]), "limits": track.limits}
+    return head, {"piston_tick": _ticks(time, first, last), "piston_place": place}
 
 
-def _events(log: Log, first: float, last: float, start: int) -> dict[str, str]:
-    """Columns of the events between two times, and the indices of those that are hits of the piston."""
-    names = ("time", "disc", "kind", "velocity", *(("position",) if log.has_positions else ()))
+def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:
+    """Times between two times as whole numbers up to TICKS."""
+    return np.round((time - first) / (last - first) * TICKS).astype("<u4")
+
+
+def _events(log: Log, first: float, last: float, start: int) -> dict[str, np.ndarray]:
+    """Columns of the events between two times."""
+    names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks(names, start, log.row_at(last, "right")))
     empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
     columns = {
         name: np.concatenate([empty.get(name, np.empty(0)), *(getattr(block, name) for block in blocks)])
         for name in names
     }
-    ticks = np.round((columns.pop("time") - first) / (last - first) * TICKS)
-    hits = np.flatnonzero(columns.pop("kind") == Kind.PISTON)
-    whole = {"tick": ticks, "disc": columns.pop("disc"), "hit": hits}
-    columns |= {name: numbers.astype("<u4") for name, numbers in whole.items()}
-    return {f"event_{name}": _packed(column) for name, column in columns.items()}
+    columns |= {"tick": _ticks(columns.pop("time"), first, last), "disc": columns["disc"].astype("<u4")}
+    return {f"event_{name}": column for name, column in columns.items()}
 
 
 def _order_shades() -> np.ndarray:

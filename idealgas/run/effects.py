@@ -13,7 +13,7 @@ from idealgas.engine.epoch import driving_energy, driving_speed, encounters_per_
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
-from idealgas.scene.walls import number_walls, walls_inside
+from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
@@ -81,7 +81,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
     tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)
     heat = [momentum * speed * flight] * 2 + [momentum * speed * apart] * 2 if scene.log.heat_flow else []
     frame = gas.mass @ gas.velocity / gas.mass.sum() if heat else np.zeros(2)
-    faces, species = FIRST_SEGMENT + 2 * len(walls_inside(scene)), len(gas.species_names)
+    faces, species = 2 * len(number_walls(scene)) - FIRST_SEGMENT, len(gas.species_names)
     normal_impulse, tangential_impulse = (make_sums([momentum] * faces) for _ in range(2))
     return StressAccumulator(
         tensor=make_sums(tensor),

@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr, create_model
 
 from idealgas.effects import EFFECTS
 from idealgas.effects.effect import EffectSpec, Tables
+from idealgas.effects.piston import inner_piston
 from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
@@ -77,11 +78,16 @@ class Document(_DiscsAndEffects):
         return self._given.discs
 
     @property
-    def walls(self) -> tuple[Any, ...]:
+    def segments(self) -> tuple[Any, ...]:
         """Tables [[wall]], None for invalid ones, then the fixed discs."""
         if self._given.walls_of is not self.disc:
             self._given.walls, self._given.walls_of = fixed_discs(self.disc), self.disc
         return (*self.wall, *self._given.walls)
+
+    @property
+    def walls(self) -> tuple[Any, ...]:
+        """Walls inside the box: the segments, then an inner piston where it is at the start."""
+        return (*self.segments, *(inner_piston(self.piston, self.box.size) if self.box else ()))
 
     @property
     def solids(self) -> Solids:
@@ -120,7 +126,7 @@ class Document(_DiscsAndEffects):
     def tables_of(self, effect: EffectSpec[Any]) -> Tables:
         """Part of the scene for an effect; while a scene is checked, its box may be missing."""
         own = getattr(self, effect.key) if effect.key else None
-        own = self.walls if effect.key == "wall" else own
+        own = self.segments if effect.key == "wall" else own
         size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())
         return Tables(own, size, sides, self.walls)
 

@@ -53,7 +53,9 @@ class Scene(Document, metaclass=_SceneType):
         """This scene with the defaults that follow from other tables."""
         update: dict[str, Table] = {}
         if self.piston:
-            update["piston"] = self.piston.model_copy(update={"position": self.piston.start(self.box.size)})
+            own = {} if self.piston.inner else {"side": self.piston.wall}
+            own |= {"position": self.piston.start(self.box.size)}
+            update["piston"] = self.piston.model_copy(update=own)
         if self.restitution and not self.restitution.elastic:
             update["restitution"] = self.restitution.model_copy(update={"contact_duration": self.contact_duration})
         if self.start and self.start.digest is None:

@@ -1,10 +1,11 @@
-"""Walls of a scene by number: the sides of the box are walls 0 to 3, the segments follow."""
+"""Walls of a scene by number: the sides of the box are walls 0 to 3, segments and an inner piston follow."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
 from idealgas.columns import FIRST_SEGMENT, SIDES, Point, side_ends
+from idealgas.effects.piston import InnerPiston
 from idealgas.physics.arc_geometry import Arc, drawn_points
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ class NumberedWall(NamedTuple):
 
     radius: of a fixed disc, whose ends are its centre, length; 0 for others. is_permeable: whether discs of some
     species pass it. label: its name in pictures, with an arrow if they pass in one direction. arc: None for
-    other walls.
+    other walls. moves: whether it is an inner piston, whose ends are those at the start.
     """
 
     name: str
@@ -32,6 +33,7 @@ class NumberedWall(NamedTuple):
     is_permeable: bool = False
     label: str = ""
     arc: Arc | None = None
+    moves: bool = False
 
     @property
     def is_straight(self) -> bool:
@@ -63,17 +65,17 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
     walls = []
     for name, ends, side in zip(SIDES, side_ends(scene.box.size), scene.box.sides, strict=True):
         action = side if isinstance(side, str) else side.action
-        if scene.piston and scene.piston.side == name:
+        if scene.piston and scene.piston.wall == name:
             action = scene.piston.action
         walls.append(NumberedWall(name, *ends, action))
     for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
         name = wall.name or f"wall {k}"
         label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
-        walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc))
+        walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))
     return walls
 
 
 def walls_inside(scene: Scene) -> list[NumberedWall]:
-    """Walls inside the box, in the order of the scene."""
-    return number_walls(scene)[FIRST_SEGMENT:]
+    """Walls at rest inside the box, in the order of the scene."""
+    return [wall for wall in number_walls(scene)[FIRST_SEGMENT:] if not wall.moves]

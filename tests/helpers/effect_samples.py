@@ -32,8 +32,8 @@ from idealgas.state import Gas
 BOX = (12.0, 9.0)
 ARC = (4.2, 8.2), (5.7, 7.3), (7.2, 8.2)
 
-NAMES = (*(effect.field for effect in EFFECTS), "gates")
-"""Effects by their fields of the bundle; gates are segments too."""
+NAMES = (*(effect.field for effect in EFFECTS), "gates", "inner")
+"""Effects by their fields of the bundle; gates are segments too, and an inner piston is the piston where both are."""
 
 
 def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
@@ -72,17 +72,20 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         schedule = [(3.0, field, first, 0.0), (4.0, field, first + 1, 1.0), (7.0, field, first, 1.0)]
     table = np.array(walls).reshape(-1, 5)
     inertia = 0.5 * gas.mass * gas.radius**2
-    temperature = np.full(FIRST_SEGMENT + len(walls), -1.0)
+    moves, inner, inside = not names.isdisjoint({"piston", "inner"}), "inner" in names, len(walls) + ("inner" in names)
+    temperature = np.full(FIRST_SEGMENT + inside, -1.0)
     temperature[2] = 1.5
     passage = np.resize(np.array([[FROM_LEFT, FROM_RIGHT], [OPEN, SOLID]], np.uint8), (len(walls), 2))
     passage[2:] = SOLID
     piston = aligned(1, PISTON)
-    piston[0].x, piston[0].a, piston[0].m, piston[0].stop, piston[0].side = 11.5, -0.8, 20.0, 12.0, 1
+    piston[0].x, piston[0].a, piston[0].m, piston[0].length, piston[0].wall = 11.5, -0.8, 20.0, BOX[0], 1
+    piston[0].outward = 1.0
+    if inner:
+        piston[0].x, piston[0].a, piston[0].m, piston[0].outward = 4.2, 0.0, 3.0, 0.0
+        piston[0].wall = FIRST_SEGMENT + len(walls)
     own: dict[str, Any] = {
         "gravity": lambda: Gravity(0.0, -0.4),
-        "periodic": lambda: Periodic(
-            "piston" not in names, "piston" in names, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)
-        ),
+        "periodic": lambda: Periodic(not moves, moves, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
         "permeable": lambda: Permeable(gas.species.copy(), passage),
         "arcs": lambda: make_arcs([*arcs, *[None] * (len(walls) - len(arcs))]),
@@ -92,13 +95,14 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         "piston": lambda: piston,
         "thermostat": lambda: make_thermostat(n, seed),
     }
-    wanted = [effect for effect in EFFECTS if effect.field in names or (effect.field == "segments" and walls)]
+    there = {*names, *(["segments"] if walls else []), *(["piston"] if inner else [])}
+    wanted = [effect for effect in EFFECTS if effect.field in there]
     return Effects(
         **{e.field: own[e.field]() if e.field in own else from_benchmark(e, gas, seed) for e in wanted},
-        wall_energy=make_sums([1.0] * (FIRST_SEGMENT + len(walls))),
-        dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + len(walls))),
+        wall_energy=make_sums([1.0] * (FIRST_SEGMENT + inside)),
+        dissipated=make_sums([1.0] * (1 + FIRST_SEGMENT + inside)),
         bath_energy=make_sums([1.0]) if "thermostat" in names else None,
-        flow=make_flow(gas, FIRST_SEGMENT + 2 * len(walls), 7 if "rotation" in names else 6),
+        flow=make_flow(gas, FIRST_SEGMENT + 2 * inside, 7 if "rotation" in names else 6),
         schedule=tuple(schedule) or None,
     )
 
@@ -142,7 +146,9 @@ def sums_of(effects: Effects) -> list[np.ndarray]:
 
 def allowed(names: set[str]) -> bool:
     """Whether the effects go together here: gravity points down, so it leaves only the left and right sides to join."""
-    return not any({one, "periodic", "piston"} <= names for one in ("gravity", "thermal", "vibration"))
+    moving = names & {"piston", "inner"}
+    crossed = "periodic" in names and moving and names & {"gravity", "thermal", "vibration"}
+    return len(moving) < 2 and not crossed
 
 
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:

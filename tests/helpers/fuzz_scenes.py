@@ -42,9 +42,9 @@ MASSES = (1.0, 1e-8, 1e8)
 
 
 def room_of(size, piston) -> tuple[float, float, float, float]:
-    """Where discs may be: up to the piston."""
+    """Where discs may be: up to a piston at a side."""
     low, high = [0.0, 0.0], list(size)
-    if piston:
+    if piston and "side" in piston:
         axis, upper = divmod(SIDES.index(piston["side"]), 2)
         (high if upper else low)[axis] = piston["position"]
     return (*low, *high)
@@ -142,6 +142,12 @@ def bend(draw, size, wall: dict[str, Any]) -> dict[str, Any]:
 
 
 def draw_piston(draw, size, mass: float) -> dict[str, Any]:
+    if draw(st.booleans()):
+        axis = pick(draw, 0, 1)
+        piston = {"inner": "xy"[axis], "position": size[axis] * pick(draw, 0.5, 0.4, 0.9, 1.0)}
+        if pick(draw, True, False, False):
+            return piston | {"velocity": in_steps(draw, 0.0, 0.1, -0.1, -0.003)}
+        return piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3), "velocity": pick(draw, 0.0, 0.1, -1.0)}
     side = pick(draw, *SIDES)
     axis, upper = divmod(SIDES.index(side), 2)
     share = pick(draw, 1.0, 0.9, 0.5)
@@ -153,11 +159,25 @@ def draw_piston(draw, size, mass: float) -> dict[str, Any]:
 
 
 def keep_clear_of_piston(walls, size, piston) -> None:
-    """Press walls together at the side that the piston cannot reach."""
+    """Press walls together at the side that the piston cannot reach; an inner one with a mass reaches all."""
+    if "inner" in piston:
+        return
     axis, upper = divmod(SIDES.index(piston["side"]), 2)
     walls[:, :, axis] *= 0.1
     if not upper:
         walls[:, :, axis] += 0.9 * size[axis]
+
+
+def axis_of_piston(piston: dict[str, Any]) -> int:
+    return "xy".index(piston["inner"]) if "inner" in piston else SIDES.index(piston["side"]) // 2
+
+
+def line_of_inner(size, piston: dict[str, Any]) -> np.ndarray:
+    """(1, 2, 2), both ends of an inner piston at the start, or (0, 2, 2)."""
+    axis = axis_of_piston(piston)
+    ends = np.array([[0.0, 0.0], size])
+    ends[:, axis] = piston["position"]
+    return ends[None] if "inner" in piston else np.empty((0, 2, 2))
 
 
 def draw_species(draw, size, mass: float, largest: float, spins: bool) -> list[dict[str, Any]]:
@@ -181,7 +201,7 @@ def tables_of(draw) -> dict[str, Any]:
     masses = pick(draw, [1.0], [1.0, 3.0], [1.0, 1e8], [1e-8, 1.0, 1e4])
     piston = draw_piston(draw, size, masses[0]) if "piston" in called else None
     if piston:
-        periodic[SIDES.index(piston["side"]) // 2] = False
+        periodic[axis_of_piston(piston)] = False
     walls = draw(walls_in(size)) if "walls" in called else np.empty((0, 2, 2))
     if piston:
         keep_clear_of_piston(walls, size, piston)
@@ -192,12 +212,13 @@ def tables_of(draw) -> dict[str, Any]:
         bent = [draw(st.booleans()) and "permeable_from" not in wall for wall in tables_of_walls]
         tables_of_walls = [bend(draw, size, w) if on else w for w, on in zip(tables_of_walls, bent, strict=True)]
     solid = [wall for wall, passes in zip(tables_of_walls, free, strict=True) if not passes]
+    straight = np.concatenate((walls[~free], line_of_inner(size, piston))) if piston else walls[~free]
     number = pick(draw, 4, 1, 2, 3, 9, 16, 40)
     share = pick(draw, 0.5, 1.0, 1 - 1e-9, 0.97, 0.1, 1e-3, 1e-6)
     factors = pick(draw, [1.0], [1.0, 0.5], [1.0, 0.1, 1e-3])
     gridded = draw(st.booleans())
     position, radius = place(
-        random, np.array(size), periodic, room_of(size, piston), walls[~free], solid, number, share, gridded, factors
+        random, np.array(size), periodic, room_of(size, piston), straight, solid, number, share, gridded, factors
     )
     n = len(position)
     velocity = move(random, pick(draw, "normal", "few directions", "one hot", "one moves", "all speeds"), n)
@@ -219,7 +240,7 @@ def tables_of(draw) -> dict[str, Any]:
             elif "vibration" in called and draw(st.booleans()):
                 amplitude = pick(draw, 1e-3, 0.02, 0.1) * min(size)
                 tables["box"][side] = {"vibrating": {"amplitude": amplitude, "frequency": pick(draw, 0.1, 1.0, 30.0)}}
-            elif "thermal" in called and draw(st.booleans()) and not (piston and piston["side"] == side):
+            elif "thermal" in called and draw(st.booleans()) and not (piston and piston.get("side") == side):
                 tables["box"][side] = {"thermal": in_steps(draw, *(masses[-1] * x for x in (1.0, 1e-4, 100.0)))}
     if len(walls):
         hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}

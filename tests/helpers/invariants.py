@@ -63,6 +63,7 @@ class InvariantChecker:
         self.straight = np.array([w.arc is None for w in scene.wall], bool)
         self.gates, self.fixed = scene.wall, scene.walls[len(scene.wall) :]
         self.piston = scene.piston
+        self.outward = scene.piston.outward_from(gas.position, gas.box) if scene.piston else np.zeros(n)
         self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
         self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
         self.rotation, self.restitution = effects.rotation, effects.restitution
@@ -341,19 +342,22 @@ class InvariantChecker:
             self.sunk[disc] += 2 * U * self.size.sum()
         coefficient = 1.0 if self.restitution is None else self.restitution.wall
         rebounds = self.rebounds([disc], coefficient, time)
-        if wall < 4:
+        if kind == Kind.PISTON:
+            axis, piston = self.piston.axis, simulation.effects.piston[0]
+            normal[axis], edge, stand = -self.outward[disc], piston.x, piston.v
+            assert self.piston.wall == (SIDES[wall] if wall < 4 else "piston")
+            distance = abs(place[axis] - edge)
+        elif wall < 4:
             axis, upper = divmod(wall, 2)
             normal[axis] = -1.0 if upper else 1.0
             edge = self.size[axis] * upper
-            assert (kind == Kind.PISTON) == (self.piston is not None and self.piston.side == SIDES[wall])
+            assert self.piston is None or self.piston.wall != SIDES[wall]
             vibration = simulation.effects.vibration
             if vibration is not None and vibration[wall].amplitude > 0:
                 own, inward = vibration[wall], -1.0 if upper else 1.0
                 local = time - simulation.time
                 height, speed, _ = height_on(own, parabola_at(own, local), local)
                 edge, stand = edge + inward * height, inward * speed
-            if kind == Kind.PISTON:
-                edge, stand = simulation.effects.piston[0].x, simulation.effects.piston[0].v
             distance = abs(place[axis] - edge)
         elif wall - 4 >= len(self.gates):
             fixed = self.fixed[wall - 4 - len(self.gates)]
@@ -440,8 +444,8 @@ class InvariantChecker:
         self.max_errors.energy = max(self.max_errors.energy, drift / self.scale if self.scale else 0.0)
 
     def behind_piston(self, place: np.ndarray, piston: np.ndarray, local_time: float) -> None:
-        """The piston is between all discs and its end stop."""
+        """No disc is beyond the piston, which is in the box."""
         edge, _ = piston_motion(piston[0], local_time)
-        outward, axis = self.piston.outward, self.piston.axis
-        assert (outward * (edge - place[:, axis]) >= self.gas.radius - self.known).all(), "beyond the piston"
-        assert outward * (self.piston.stop(self.gas.box) - edge) >= -self.known, "piston beyond its stop"
+        axis = self.piston.axis
+        assert (self.outward * (edge - place[:, axis]) >= self.gas.radius - self.known).all(), "beyond the piston"
+        assert -self.known <= edge <= self.size[axis] + self.known, "piston beyond its stop"

@@ -15,9 +15,10 @@ SETS = [set(), *({name} for name in NAMES), *(set(pair) for pair in combinations
 LOCAL = tuple(name for name in NAMES if name != "thermostat")
 """A thermostat collision concerns one disc and nothing that it meets: pairs with the thermostat are enough."""
 SETS += [set(triple) for triple in combinations(LOCAL, 3) if allowed(set(triple))]
-ALL = set(NAMES) - {"periodic"}
-ALL_PERIODIC = set(NAMES) - {"piston"}
-SETS += [ALL, ALL_PERIODIC]
+ALL = set(NAMES) - {"periodic", "inner"}
+ALL_PERIODIC = set(NAMES) - {"piston", "inner"}
+ALL_INNER = set(NAMES) - {"periodic", "piston"}
+SETS += [ALL, ALL_PERIODIC, ALL_INNER]
 
 interpreted_only = pytest.mark.skipif(
     not numba.config.DISABLE_JIT,
@@ -45,6 +46,7 @@ def test_same_log_as_the_oracle(names):
     [
         pytest.param(ALL, id="all but periodic sides", marks=pytest.mark.long),
         pytest.param(ALL_PERIODIC, id="all but the piston", marks=pytest.mark.long),
+        pytest.param(ALL_INNER, id="all with an inner piston", marks=pytest.mark.long),
     ],
 )
 @pytest.mark.parametrize("seed", range(3))

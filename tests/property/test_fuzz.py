@@ -70,8 +70,8 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
     n, walls = len(gas), len(scene.walls)
     called = make_effects(scene, gas)
     beyond = aligned(1, PISTON)
-    beyond[0].x = beyond[0].stop = math.inf
-    beyond[0].side = 5
+    beyond[0].x = beyond[0].length = math.inf
+    beyond[0].wall, beyond[0].outward = -1, 1.0
     neutral = Effects(
         periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         segments=aligned(0, SEGMENT),

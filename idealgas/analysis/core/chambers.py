@@ -4,7 +4,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from idealgas.columns import axis_of
+from idealgas.columns import SIDES, axis_of, sides_across
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 
@@ -47,6 +47,23 @@ class Chambers:
         cuts, there = self.cuts[1 - axis_of(side)], self.along(side)
         k = int(cuts.searchsorted(place))
         return not (0 < k < len(there) and cuts[k] == place) or bool(there[k - 1] and there[k])
+
+
+def outward(log: Log) -> float:
+    """Direction from the gas to the piston along its axis, +1 or -1; 0 without a piston or with gas on both sides."""
+    piston = log.scene.piston
+    directions = set() if piston is None else set(piston.outward_from(log.discs.position, log.box).tolist())
+    return directions.pop() if len(directions) == 1 else 0.0
+
+
+def beside_piston(log: Log) -> dict[str, np.ndarray]:
+    """Masks (N,) of the discs on each side of an inner piston, by the name of the side of the box there."""
+    piston = log.scene.piston
+    if piston is None or piston.inner is None:
+        return {}
+    above = piston.outward_from(log.discs.position, log.box) < 0
+    low, high = (SIDES[side] for side in sides_across(piston.axis))
+    return {name: members for name, members in ((low, ~above), (high, above)) if members.any()}
 
 
 def _cuts(log: Log, axis: int, until: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import Chambers
+from idealgas.analysis.core.chambers import Chambers, outward
 from idealgas.analysis.core.impacts import is_wall_hit
 from idealgas.analysis.core.samples import SampledImpacts, face_directions
 from idealgas.analysis.core.stream import Tally, add_to
@@ -154,7 +154,7 @@ class WallGauge:
 
     def area(self, edges: np.ndarray) -> np.ndarray:
         """Area (B,) of the gas in each block of time: of chambers with discs, or the room of a piston, length²."""
-        if self.moving is None:
+        if self.moving is None or self.moving.both:
             return np.full(len(edges) - 1, Chambers(self._log, float(edges[-1])).area)
         return self.moving.depth * self.moving.across
 
@@ -188,25 +188,27 @@ class WallGauge:
     def _exposed(self, k: int, wall: NumberedWall, edges: np.ndarray) -> np.ndarray:
         """Length of wall k times the time that it is there, in each block; of a side, where gas is beside it."""
         width = np.diff(edges)
-        if k < len(SIDES) and self.moving is not None and axis_of(k) != self.moving.axis:
-            return self.moving.depth * width
+        moving = None if self.moving is None or self.moving.both else self.moving
+        if k < len(SIDES) and moving is not None and axis_of(k) != moving.axis:
+            return moving.depth * width
         absent = np.zeros(len(width))
         for opens, closes in wall.absences:
             absent += np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
         length = wall.arc.length if wall.arc else math.dist(wall.start, wall.end)
-        if k < len(SIDES) and self.moving is None:
+        if k < len(SIDES) and moving is None:
             length = Chambers(self._log, float(edges[-1])).length(k)
         return length * (width - absent)
 
 
 class MovingWall:
-    """Depth of the room between a piston and the opposite side of the box, as a tally over the flights of a log.
+    """Depth of the room between a piston and the side of the box beyond the gas, as a tally over the flights of a log.
 
     The piston position is known at its samples and at every hit of a disc, and lies on a parabola in between. A
     bounce at the piston's end stop between two such times is left out.
 
-    wall: number of the side that the piston stands for. axis: along which it moves, 0 for x, 1 for y. across: its
-    length. depth: (B,), mean depth of the room in each block of time, length.
+    wall: number of the piston among the walls. axis: along which it moves, 0 for x, 1 for y. across: its
+    length. both: whether gas is on both its sides; the depth is then that of the lower one. depth: (B,), mean depth of
+    the room in each block of time, length.
     """
 
     columns = ("disc", "end", "kind", "end_position")
@@ -214,11 +216,13 @@ class MovingWall:
 
     def __init__(self, log: Log, table: Any) -> None:
         """Take a log and the table of the piston in its scene."""
-        self.wall, self.axis = SIDES.index(table.side), table.axis
+        self.wall, self.axis = [wall.name for wall in log.walls].index(table.wall), table.axis
         self.across = log.box[1 - table.axis]
-        self._outward, self._far = table.outward, log.box[table.axis] - table.stop(log.box)
+        direction, self._to_piston = outward(log), table.outward_from(log.discs.position, log.box)
+        self.both, self._far = direction == 0, log.box[table.axis] if direction < 0 else 0.0
+        self._outward, self._stop = table.outward, table.stop(log.box)
         self._pull = partial(table.acceleration, log.box, log.scene.properties.acceleration)
-        self._mass, self._stop = table.mass, table.stop(log.box)
+        self._mass = None if table.inner else table.mass
         self._samples = log.observables["piston_position"]
         if not len(self._samples[0]):
             raise UserError(f"{log.path}: has no sample of its piston")
@@ -237,7 +241,8 @@ class MovingWall:
         """Add the next flights."""
         assert flights.end_position is not None
         hits = flights.kind == Kind.PISTON
-        place = flights.end_position[hits, self.axis] + self._outward * self._radius[flights.disc[hits]]
+        disc = flights.disc[hits]
+        place = flights.end_position[hits, self.axis] + self._to_piston[disc] * self._radius[disc]
         self._follow(np.column_stack((flights.end[hits], place)), float(flights.end[-1]))
 
     def finish(self) -> None:
@@ -273,8 +278,8 @@ class MovingWall:
     def balance(self, start: float, end: float) -> float | None:
         """Pressure (force/length) that holds the piston against the gas between two times, beside its inertia.
 
-        None for a piston of a given velocity, if the pressure changes in between, and if it came near its end stop,
-        which holds it too.
+        None for an inner piston or one of a given velocity, if the pressure changes in between, and if it came near its
+        end stop, which holds it too.
         """
         time, place = self._samples
         inside = (time >= start) & (time <= end)

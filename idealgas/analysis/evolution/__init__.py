@@ -6,12 +6,13 @@ With a piston the picture has the pressure against the area, with the isotherm a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.chambers import beside_piston
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import detect_equilibration
@@ -21,12 +22,12 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, format_estimate, time_series
+from idealgas.analysis.evolution.account import PISTON, Series, account
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
 from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_gate
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
-from idealgas.physics.piston import piston_energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,14 +37,6 @@ INSTANTS = 257
 
 MOST_SAMPLES = 2**14
 """Largest number of samples of the energy."""
-
-PISTON, HEAT_BATH, STEPS = "piston", "the heat bath", "changes in time"
-"""Names of the side with the piston and of a heat bath among the sources of energy."""
-
-ROUNDING = 1e-12
-"""Energy that collisions lose, relative to the largest energy, that is rounding."""
-
-Series = dict[str, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -69,6 +62,7 @@ class Evolution(Result):
         pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
         rest: mean position of a piston with a mass once it is steady, length; None without one, or if it is not steady
             by the end.
+        chambers: mean m v²/2 per disc on each side of an inner piston, (F,), by the name of the side of the box.
     """
 
     time: np.ndarray
@@ -85,6 +79,7 @@ class Evolution(Result):
     dissipated: Series
     pressure: PressureSeries | None = None
     rest: Estimate | None = None
+    chambers: Series = field(default_factory=dict)
 
     @property
     def track(self) -> tuple[np.ndarray, np.ndarray] | None:
@@ -142,13 +137,14 @@ class EvolutionAnalysis(Analysis):
         inside = (samples >= first) & (samples <= last)
         frames = _frames(log, first, last, progress) if log.has_events else _samples(log, observables, inside)
         observed = {name: values for name, (_, values) in observables.items()}
-        *energies, balance = _account(log, samples, observed)
+        *energies, balance = account(log, samples, observed)
         parts, given, lost = ({name: values[inside] for name, values in part.items()} for part in energies)
-        law = expected_law(log, frames[0])
         pressure = pressure_series(log, first, last)
+        start_position = float(np.interp(first, *pressure.track)) if pressure and pressure.track else 0.0
+        law = expected_law(log, frames[0], frames[-1], start_position)
         return Evolution(
-            *frames,
-            equilibrium_spread(log, last) if frames[-1] else {},
+            *frames[:-1],
+            equilibrium_spread(log, last) if frames[3] else {},
             law,
             samples[inside],
             parts,
@@ -158,6 +154,7 @@ class EvolutionAnalysis(Analysis):
             lost,
             pressure,
             _rest(log, pressure, law),
+            frames[-1],
             caveats=law.caveats if law else (),
         )
 
@@ -170,6 +167,8 @@ class EvolutionAnalysis(Analysis):
             "kinetic energy per disc": result.temperature,
             "law": law.temperature if law else None,
             "I ω² per disc": result.spin,
+            **{f"kinetic energy per disc, {name}": values for name, values in result.chambers.items()},
+            **{f"law, {name}": values for name, values in (law.chambers if law else {}).items()},
             **{f"fraction of {name} beyond the wall": share for name, share in result.beyond.items()},
         }
         notes = [f"law: {law.text if law else 'none for this scene'}"]
@@ -227,13 +226,18 @@ class EvolutionAnalysis(Analysis):
         from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
 
         series, law, has_piston = result.pressure, result.law, result.track is not None
-        shown = [result.beyond, series, has_piston, result.given, series and has_piston]
+        states = series is not None and has_piston and np.ptp(series.area) > 0
+        shown = [result.beyond, series, has_piston, result.given, states]
         figure, axes = panels(1 + sum(map(bool, shown)))
         ax, *others = axes
         rest = iter(others)
         ax.plot(result.time, result.temperature, color=COLOURS[0], label="kinetic energy per disc")
         if result.spin is not None:
             ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² per disc")
+        for k, (name, values) in enumerate(result.chambers.items(), 1):
+            ax.plot(result.time, values, color=COLOURS[k], label=f"{name} of the piston")
+            if law and law.chambers:
+                ax.plot(result.time, law.chambers[name], "--", color=COLOURS[k])
         if law is not None:
             ax.plot(result.time, law.temperature, "--", color=BLACK, label=law.text)
         low, high = result.temperature.min(), result.temperature.max()
@@ -264,7 +268,7 @@ class EvolutionAnalysis(Analysis):
             ax.set_ylabel("energy (k_B = 1)")
         for ax in axes:
             ax.time_axis()
-        if series and has_piston:
+        if series and states:
             draw_state(next(rest), series)
         for ax in axes:
             ax.legend()
@@ -278,7 +282,8 @@ def _source_label(name: str) -> str:
 
 # ── measurement ──
 
-Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series]  # the first four series of an Evolution
+Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series, Series]
+"""The first four series of an Evolution, and its chambers."""
 
 
 def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]], inside: np.ndarray) -> Frames:
@@ -287,7 +292,7 @@ def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]],
     n, spin = len(log.discs), None
     if "rotational_energy" in observables:
         spin = 2 * observables["rotational_energy"][1][inside] / n
-    return time[inside], (kinetic - centre_of_mass_energy(log))[inside] / n, spin, {}
+    return time[inside], (kinetic - centre_of_mass_energy(log))[inside] / n, spin, {}, {}
 
 
 def _frames(log: Log, first: float, last: float, progress: Progress | None) -> Frames:
@@ -297,15 +302,20 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
+    members = beside_piston(log)
+    apart = {name: np.empty(len(time)) for name in members}
     for k, state in enumerate(frames(log, time, progress)):
-        temperature[k] = (gas.mass * ((state.velocity - frame) ** 2).sum(axis=1)).mean() / 2
+        energy = gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2
+        temperature[k] = energy.mean()
+        for name, own in members.items():
+            apart[name][k] = energy[own].mean()
         if inertia is not None and state.angular_velocity is not None:
             spin[k] = (inertia * state.angular_velocity**2).mean()
         if gate:
             axis, place = gate
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
     shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gate else {}
-    return time, temperature, None if inertia is None else spin, shares
+    return time, temperature, None if inertia is None else spin, shares, apart
 
 
 def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate | None:
@@ -318,29 +328,3 @@ def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate 
         return None
     theory = None if law is None or law.piston is None else Theory(law.piston, law.piston_error, law.text)
     return mean(places[start:], theory)
-
-
-def _account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
-    """Parts of the energy, energy from walls and a heat bath, energy lost by kind of collision, and the balance."""
-    names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
-    parts = {part: observed[name] for part, name in names.items() if name in observed}
-    given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
-    lost = observed.get("dissipated_energy", np.zeros((len(given), 1 + len(log.walls))))
-    counted, unpaid = np.ones(given.shape[1], bool), lost[:, 0]
-    piston = log.scene.piston
-    if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
-        own = [wall.name for wall in log.walls].index(piston.side)
-        counted[own], unpaid = False, unpaid + lost[:, 1 + own]
-        pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
-        place, velocity = observed["piston_position"], observed["piston_velocity"]
-        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
-    bath, steps = (observed.get(name, np.zeros(len(given))) for name in ("bath_energy", "step_energy"))
-    from_outside = given[:, counted].sum(axis=1) + bath + steps
-    total = sum(parts.values()) + unpaid - from_outside
-    scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
-    walls = [PISTON if piston and wall.name == piston.side else wall.name for wall in log.walls]
-    sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath, STEPS: steps}
-    by_source = {name: series for name, series in sources.items() if series.any()}
-    sinks = zip(("discs", *walls), lost.T, strict=True)
-    losses = {name: series for name, series in sinks if np.abs(series).max(initial=0.0) > ROUNDING * scale}
-    return parts, by_source, losses, (total - total[0]) / (scale or 1.0)

@@ -54,7 +54,7 @@ class PressureSeries:
         pressure, error: (B,), momentum given per time and length and its standard error, energy/length², by the name of
             the wall; nan as the error of a wall that was not hit.
         shown: walls in table and picture: a piston, all sides of a uniform gas together, or each of them.
-        lines: isotherm and adiabat through the start; None without a theory or a piston.
+        lines: isotherm and adiabat through the start; None without a theory, a piston, or with gas on both its sides.
         track: times (T,) and mean coordinates (T,) of the piston in POINTS blocks of time; None without a piston.
     """
 
@@ -89,12 +89,13 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
         given[ALL_SIDES] = np.sum([face.push for face in sides], axis=0), np.sum([f.exposed for f in sides], axis=0)
         shown = [ALL_SIDES]
     else:
-        moving = gauge.moving.wall if gauge.moving else None
-        shown = [face.name for face in sides if moving in (None, face.wall)]
+        piston = log.scene.piston
+        own = [face for face in faces if piston and log.walls[face.wall].name == piston.wall]
+        shown = [face.name for face in own or sides]
     found = {name: _in_bins(*series, bins) for name, series in given.items()}
     lines = track = None
     if gauge.moving:
-        lines = state_lines(log, gauge.area(blocks))
+        lines = None if gauge.moving.both else state_lines(log, gauge.area(blocks))
         ends, depth = blocks[:: BLOCKS // POINTS], gauge.moving.depth.reshape(POINTS, -1).mean(axis=1)
         track = (ends[1:] + ends[:-1]) / 2, room(log, depth)  # a mirror image: its own inverse
     return PressureSeries(

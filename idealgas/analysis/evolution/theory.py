@@ -1,11 +1,13 @@
 """Temperature of a gas against time, and what is beyond an open gate in the end, by theory."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.chambers import beside_piston, outward
 from idealgas.analysis.core.ensemble import (
     becomes_uniform,
     centre_of_mass_velocity,
@@ -15,6 +17,7 @@ from idealgas.analysis.core.ensemble import (
 )
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.evolution.adiabatic_piston import relaxation
 from idealgas.analysis.theory import granular, hard_discs
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
@@ -25,6 +28,16 @@ SLOW = 0.05
 
 FEW = 5
 """Number of discs below which energy and place of a piston are not shared as theory takes it."""
+
+DILUTE = 0.1
+"""Largest packing fraction at which two gases beside an inner piston are taken to have one compressibility factor."""
+
+EQUAL = 3
+"""Standard deviations of the difference of two pressures within which a piston is taken to be in equilibrium.
+
+It vibrates with the energy T/2 on two gases that are compressed without heat: the variance of the difference is
+2 (1/N₁ + 1/N₂) P².
+"""
 
 STEPS = 128
 """Number of steps in the integration of the adiabat."""
@@ -47,6 +60,7 @@ class Law:
         piston, piston_error: coordinate of the piston at rest, and its error, length.
         pressure: external pressure on the piston, energy/length².
         caveats: conditions of the law that are not met.
+        chambers: (F,), mean m v²/2 per disc on each side of an inner piston, energy, by name as in `beside_piston`.
     """
 
     text: str
@@ -56,6 +70,7 @@ class Law:
     pressure: Annotated[float | None, OMITTED] = None
     caveats: Annotated[tuple[str, ...], OMITTED] = ()
     piston_error: Annotated[float, OMITTED] = 0.0
+    chambers: Annotated[dict[str, np.ndarray], OMITTED] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -71,8 +86,14 @@ class StateLines:
     adiabat: np.ndarray | None
 
 
-def expected_law(log: Log, time: np.ndarray) -> Law | None:
-    """Law of the temperature at times (F,); None if no simple theory applies to the scene."""
+def expected_law(
+    log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray] | None = None, start: float = 0.0
+) -> Law | None:
+    """Law of the temperature at times (F,); None if no simple theory applies to the scene.
+
+    apart: mean kinetic energy per disc at these times on each side of an inner piston. start: coordinate of the piston
+    at the first time, if it is known.
+    """
     properties, one = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
@@ -84,6 +105,10 @@ def expected_law(log: Log, time: np.ndarray) -> Law | None:
     )
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
+    piston = log.scene.piston
+    if piston and piston.inner and (piston.mass or not outward(log)):
+        known = piston.mass and single and not log.discs.unlike
+        return _adiabatic_piston(log, time, apart or {}, start) if known else None
     if single and alone and not properties.fixed_walls:
         if properties.vibrates or (log.scene.piston.mass and properties.varies):
             return None
@@ -127,7 +152,7 @@ def room(log: Log, piston: np.ndarray) -> np.ndarray:
     table = log.scene.piston
     if table is None:
         return np.full_like(piston, log.box[0])
-    return piston if table.outward > 0 else log.box[table.axis] - piston
+    return piston if outward(log) >= 0 else log.box[table.axis] - piston
 
 
 def piston_force(log: Log, length: float) -> float:
@@ -219,6 +244,33 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
         return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
     return Law(text, t * one, None, piston, table.pressure, piston_error=REST_ERROR / n * length)
+
+
+def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> Law | None:
+    """Temperature and place of an inner piston with a mass in equilibrium, and the way of both gases to it.
+
+    In equilibrium its position has the weight X^N₁ (L - X)^N₂ between dilute gases of N₁ and N₂ discs. From equal
+    pressures on the temperatures follow `adiabatic_piston.relaxation`; how hot the gases are when unequal pressures
+    have become equal is not known.
+    """
+    table, gas = log.scene.piston, log.discs
+    if len(apart) < 2 or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:
+        return None
+    n, diameter = len(gas), 2 * float(gas.radius[0])
+    number = np.array([own.sum() for own in beside_piston(log).values()])
+    length = log.box[table.axis] - 2 * diameter
+    speed = float(log.observables["piston_velocity"][1][0])
+    t = (_kinetic(log) + table.mass * speed**2 / 2) / (n + 0.5)
+    rest = diameter + length * float(number[0] + 1) / (n + 2)
+    text = f"in equilibrium T = {t:.6g} on both sides, piston at {rest:.6g}"
+    law = Law(text, t * np.ones(len(time)), piston=rest, piston_error=REST_ERROR / n * length)
+    first = np.array([series[0] for series in apart.values()])
+    pressure = number * first / [start - diameter, length - (start - diameter)]
+    if abs(pressure[0] - pressure[1]) > EQUAL * pressure.mean() * math.sqrt(2 * (1 / number).sum()):
+        return law
+    z = hard_discs.box_compressibility_factor(gas.radius[:1], [n], gas.box, log.periodic)
+    found = relaxation(first, number, float(gas.mass[0]), table.mass, z, length, time - time[0])
+    return replace(law, chambers=dict(zip(apart, found, strict=True)))
 
 
 def first_gate(log: Log) -> tuple[int, float] | None:

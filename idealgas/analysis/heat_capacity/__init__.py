@@ -144,6 +144,8 @@ class HeatCapacityAnalysis(Analysis):
         if not settles or len(properties.temperatures) > 1 or not log.has_positions:
             raise UserError(f"{log.path}: no known equilibrium, and so no heat capacity")
         has_piston = bool(scene.piston and scene.piston.mass)
+        if has_piston and scene.piston.inner:
+            raise UserError(f"{log.path}: no heat capacity of two gases with a piston between them")
         present = {
             BATH: not properties.isolated,
             ROUGH: properties.spins,

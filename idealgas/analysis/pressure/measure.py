@@ -220,7 +220,7 @@ def _without_theory(
         gauge, moments = WallGauge(log), Moments(log.gravity)
         window = measure(log, [moments, *gauge.tallies], start, end, progress)
         energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
-    elif moving_wall(log):
+    elif (moving := moving_wall(log)) and not moving.both:
         raise UserError(f"{log.path}: has no events, and samples do not follow a piston closely enough")
     else:
         window, impacts = sampled(log, start, end, ())

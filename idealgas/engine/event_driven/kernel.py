@@ -144,8 +144,8 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             hit = at_contact and record[U(i)].count == prediction.partner_count
             if hit:
                 remove(state.tree, state.prediction, ids, i)
-                side = resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
-                rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - side, PISTON, record[U(i)], effects)
+                wall = resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+                rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - wall, PISTON, record[U(i)], effects)
             elif not at_contact:
                 resolve_stop(time, effects.piston)
             predict_piston(record, ids, state, effects.piston, effects.gravity)

@@ -26,7 +26,7 @@ def keep_if_earlier(record, ids, prediction, j, piston, gravity):
     time = piston_contact(record[U(j)], piston, gravity)
     earlier = time < prediction.contact
     if time == prediction.contact:
-        rank = wall_rank(piston.side)
+        rank = wall_rank(piston.wall)
         earlier = precedes(np.int64(ids[U(j)]), rank, np.int64(ids[U(prediction.partner)]), rank)
     if earlier:
         prediction.contact = time
@@ -37,7 +37,7 @@ def keep_if_earlier(record, ids, prediction, j, piston, gravity):
 
 @inline
 def predict_piston(record, ids, state, piston, gravity):
-    """Predict the piston's next event, a contact with a disc or with its end stop, and enter it in the schedule."""
+    """Predict the piston's next event, a contact with a disc or a side of the box, and enter it in the schedule."""
     if piston is not None:
         leaf = ids.shape[0]
         p = piston[0]
@@ -47,7 +47,7 @@ def predict_piston(record, ids, state, piston, gravity):
         for j in range(leaf):
             keep_if_earlier(record, ids, prediction, j, p, gravity)
         prediction.crossing = stop_contact(p)
-        prediction.crossing_code = SIDE_OF_BOX + p.side
+        prediction.crossing_code = SIDE_OF_BOX + p.wall
         update(state.tree, state.prediction, ids, leaf)
 
 

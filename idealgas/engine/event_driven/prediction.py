@@ -103,7 +103,7 @@ def contact_is_next(prediction, ids, i):
 def event_ids(prediction, ids, i):
     """The two ids by which a disc's next event is ordered among simultaneous ones.
 
-    The last leaf, beyond the discs, is the piston's: its contact is a hit of its side, its crossing the end stop.
+    The last leaf, beyond the discs, is the piston's: it meets a disc in its contact, a side of the box in its crossing.
     """
     contact = contact_is_next(prediction, ids, i)
     side = np.int64(wall_rank(prediction.crossing_code - SIDE_OF_BOX))

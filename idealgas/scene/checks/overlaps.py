@@ -193,7 +193,7 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
     """Check given discs that overlap a wall present at the start, at most MOST_OVERLAPS."""
     found: dict[tuple[int, int], float] = {}
     box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_there(0.0)}
-    walls = {i: wall for i, wall in walls.items() if wall.radius or not list(wall_issues(box.size, i, wall))}
+    walls = {i: wall for i, wall in walls.items() if hasattr(wall, "place") or not list(wall_issues(box.size, i, wall))}
     for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
         found[k, i] = min(distance, found.get((k, i), math.inf))
         if len(found) == MOST_OVERLAPS:
@@ -202,7 +202,7 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
         number, radius = int(scene.given.index[k]), scene.given.radius[k]
         place: Key = getattr(walls[i], "place", ("wall", i))
         keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
-        wrong = f"{label(scene, number)}overlaps {walls[i].name if walls[i].radius else f'wall {i}'}"
+        wrong = f"{label(scene, number)}overlaps {f'wall {i}' if place[0] == 'wall' else walls[i].name}"
         yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
 
 

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from idealgas.columns import SIDES, opposite, sides_across
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.schedule import description, steps_of
@@ -29,11 +31,15 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     piston = scene.piston
     if piston is None or invalid:
         return
-    for name, allowed in ((piston.side, "reflecting"), (_facing(piston), "reflecting or thermal")):
-        side = getattr(scene.box, name)
-        if side == PERIODIC or (name == piston.side and side != "reflecting"):
+    if piston.inner and piston.side:
+        got = f'side = "{piston.side}", inner = "{piston.inner}"'
+        yield Issue((("piston", "inner"), ("piston", "side")), "at a side and inner", got, "one of them")
+        return
+    for name in sorted((SIDES[k] for k in sides_across(piston.axis)), key=lambda name: name != piston.wall):
+        side, allowed = getattr(scene.box, name), "reflecting" if name == piston.wall else "reflecting or thermal"
+        if side == PERIODIC or (name == piston.wall and side != "reflecting"):
             got = side if isinstance(side, str) else side.action.split(",")[0]
-            keys: tuple[Key, ...] = (("piston", "side"), ("box", name))
+            keys: tuple[Key, ...] = (("piston", "inner" if piston.inner else "side"), ("box", name))
             yield Issue(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
     length = scene.box.size[piston.axis]
     start = piston.start(scene.box.size)
@@ -44,8 +50,8 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     found = list(_motion_issues(piston))
     yield from found
     if not found:
-        moves = _forced_issues(scene, piston) if piston.mass is None else _pressed_issues(scene, piston)
-        found = list(moves)
+        found = list(_forced_issues(scene, piston)) if piston.mass is None else []
+        found += list(_pressed_issues(scene, piston)) if piston.pressure is not None else []
         yield from found
     if not found:
         yield from _walls_in_the_way(scene, piston)
@@ -53,19 +59,20 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 def _facing(piston: Piston) -> str:
     """Name of the side opposite the piston."""
-    return SIDES[opposite(SIDES.index(piston.side))]
+    return SIDES[opposite(SIDES.index(piston.wall))]
 
 
 def _motion_issues(piston: Piston) -> Iterator[Issue]:
     given = [key for key in ("velocity", "mass", "pressure") if getattr(piston, key) is not None]
-    if given not in (["velocity"], ["mass", "pressure"], ["velocity", "mass", "pressure"]):
+    pressed = [] if piston.inner else ["pressure"]
+    if given not in (["velocity"], ["mass", *pressed], ["velocity", "mass", *pressed]):
         keys: tuple[Key, ...] = (("piston",), *(("piston", key) for key in given))
         what = "not one motion" if given else "no motion"
         yield Issue(
             keys,
             what,
             ", ".join(given) or "nothing",
-            "velocity, mass and pressure, or all three",
+            "velocity, mass or both" if piston.inner else "velocity, mass and pressure, or all three",
         )
     elif piston.mass is not None and len(steps_of(piston.velocity)) > 1:
         key: Key = ("piston", "velocity")
@@ -84,28 +91,28 @@ def least_depth(scene: Document, axis: int) -> float:
 
 
 def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Check pistons of given velocity, which nothing stops."""
+    """Check pistons of given velocity, which nothing stops; the gases of an inner one are not known yet."""
     velocities = [velocity for _, velocity in steps_of(piston.velocity) if velocity]
     if not velocities:
         return
     keys: tuple[Key, ...] = (("piston", "velocity"), ("piston", "position"), ("run", "until"), ("box", "size"))
     if scene.run.until is None:
-        inward = velocities[-1] * piston.outward < 0
+        inward = velocities[-1] * piston.outward < 0 or piston.inner
         what = "crushes the gas sooner or later" if inward else "leaves the box sooner or later"
         yield Issue(keys, what, "a run without until", "a run with until")
         return
-    places, length, least = _places(scene, piston), scene.box.size[piston.axis], least_depth(scene, piston.axis)
-    nearest, farthest = sorted(places, key=lambda place: place[0] * piston.outward)[:: len(places) - 1]
-    depth = _depth(scene, piston, nearest[0])
-    if depth < least and nearest[1]:
-        got = f"a depth of {depth:.6g} {nearest[1]}"
+    places, length, least = track(scene, piston), scene.box.size[piston.axis], least_depth(scene, piston.axis)
+    depth, when = min((_depth(scene, piston, place), when) for place, when in places)
+    farthest = max(places, key=lambda place: abs(place[0] - length / 2))
+    if depth < least and when and not piston.inner:
+        got = f"a depth of {depth:.6g} {when}"
         yield Issue(keys, "crushes the gas before the run ends", got, f">= {least:.6g}")
     elif not 0 <= farthest[0] <= length:
         got = f"a position of {farthest[0]:.6g} {farthest[1]}"
         yield Issue(keys, "leaves the box before the run ends", got, f"0 <= position <= {length}")
 
 
-def _places(scene: Document, piston: Piston) -> list[tuple[float, str]]:
+def track(scene: Document, piston: Piston) -> list[tuple[float, str]]:
     """Positions of a piston of given velocity at the start, at changes of its velocity and at the end, and when."""
     until, place = scene.run.until or 0.0, piston.start(scene.box.size)
     steps = [(time, velocity) for time, velocity in steps_of(piston.velocity) if time < until]
@@ -129,11 +136,14 @@ def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
 
 def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
     """Check walls that the piston may reach."""
+    if piston.inner:
+        yield from _walls_of_inner(scene, piston)
+        return
     if piston.mass is not None:
         depth = least_depth(scene, piston.axis)
     else:
-        depth = min(_depth(scene, piston, place) for place, _ in _places(scene, piston))
-    for i, wall in enumerate(scene.walls):
+        depth = min(_depth(scene, piston, place) for place, _ in track(scene, piston))
+    for i, wall in enumerate(scene.segments):
         reach = wall.radius + max(
             _depth(scene, piston, end[piston.axis]) for end in bounds(wall.start, wall.end, wall.arc)
         )
@@ -143,3 +153,40 @@ def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
             why = ", where it cannot come" if piston.mass is None else WAY
             allowed = f"no farther than {depth:.6g}{why}"
             yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {_facing(piston)} side", allowed)
+
+
+def _walls_of_inner(scene: Document, piston: Piston) -> Iterator[Issue]:
+    """Check walls that an inner piston may reach: one with a mass comes everywhere."""
+    places = [0.0, scene.box.size[piston.axis]]
+    if piston.mass is None:
+        places = [place for place, _ in track(scene, piston)]
+    for i, wall in enumerate(scene.segments):
+        low, high = (end[piston.axis] for end in bounds(wall.start, wall.end, wall.arc))
+        if low - wall.radius < max(places) and high + wall.radius > min(places):
+            place: Key = getattr(wall, "place", ("wall", i))
+            keys: tuple[Key, ...] = (place, ("piston", "position"), ("piston", "velocity"), ("run", "until"))
+            allowed = f"none from {min(places):.6g} to {max(places):.6g} along {piston.inner}, where it may come"
+            yield Issue(keys, "wall in the way of the piston", f"from {low:.6g} to {high:.6g}", allowed)
+
+
+def crushed_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> Iterator[Issue]:
+    """One issue for each gas to which an inner piston of given velocity leaves too little room.
+
+    position: (N, 2), of all discs at the start, length. radii: (N,), length.
+    """
+    piston = scene.piston
+    if piston is None or not piston.inner or piston.mass is not None:
+        return
+    outward, axis = piston.outward_from(position, scene.box.size), piston.axis
+    for side, sign in zip(sides_across(axis), (1.0, -1.0), strict=True):
+        radius = radii[outward == sign]
+        if not len(radius):
+            continue
+        covered = math.pi * float(radius @ radius) / CLOSE_PACKING / scene.box.size[1 - axis]
+        least = reach(scene.box.sides[side]) + max(covered, 2 * float(radius.max()))
+        rooms = ((place if sign > 0 else scene.box.size[axis] - place, when) for place, when in track(scene, piston))
+        room, when = min(rooms)
+        if room < least:
+            keys: tuple[Key, ...] = (("piston", "velocity"), ("piston", "position"), ("run", "until"), ("box", "size"))
+            got = f"a distance of {room:.6g} from the {SIDES[side]} side {when or 'at the start'}"
+            yield Issue(keys, "crushes the gas before the run ends", got, f">= {least:.6g}")

@@ -12,8 +12,10 @@ from idealgas.physics.motion import NEVER
 from idealgas.physics.piston import (
     advance_piston,
     collide_with_piston,
+    is_inner,
     is_piston_side,
     misses_piston_until,
+    normal_of_piston,
     outward,
     piston_contact,
     piston_energy,
@@ -25,8 +27,10 @@ pytestmark = pytest.mark.interpreted
 
 
 def some_piston(side=1, **fields) -> SimpleNamespace:
-    record = body(**({"x": 8.0, "v": 0.0, "a": 0.0, "m": 3.0, "stop": 9.0} | fields))
-    record.side, record.count = side, np.uint32(0)
+    """At a side of the box, or for side 4 or 5 an inner one that moves along x or y."""
+    record = body(**({"x": 8.0, "v": 0.0, "a": 0.0, "m": 3.0, "length": 9.0} | fields))
+    record.wall, record.count, record.axis = side, np.uint32(0), side // 2 if side < 4 else side - 4
+    record.outward = 0.0 if side >= 4 else 1.0 if side % 2 else -1.0
     return record
 
 
@@ -37,8 +41,11 @@ def motion(x, v, a, t):
 
 
 def before_meeting(draw, side, falls):
-    """A piston at a side, a disc on the other half of the box, and gravity; without `falls` nothing is accelerated."""
-    sign = 1 if side % 2 else -1
+    """A piston at a side, a disc on the other half of the box, and gravity; without `falls` nothing is accelerated.
+
+    Inner pistons have it on either side.
+    """
+    sign = draw.choice([-1, 1]) if side >= 4 else 1 if side % 2 else -1
     piston = some_piston(side, x=5 + 2 * sign, v=draw.normal(), a=falls * draw.normal(), t=draw.uniform(0, 0.1))
     x, y = 5 - 2 * sign * draw.uniform(0, 0.5, 2)
     vx, vy = draw.normal(size=2)
@@ -46,7 +53,7 @@ def before_meeting(draw, side, falls):
     return piston, disc, Gravity(*draw.normal(size=2)) if falls else None
 
 
-@pytest.mark.parametrize("side", range(4))
+@pytest.mark.parametrize("side", range(6))
 @pytest.mark.parametrize("falls", [True, False])
 def test_contact(side, falls):
     """At the time found the exact distance is the radius, to 16 roundings of all terms: 4 for the places at the later
@@ -61,13 +68,15 @@ def test_contact(side, falls):
             if found == NEVER:
                 continue
             met += 1
-            pull = gravity[side // 2] if gravity else 0.0
-            own = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
+            pull = gravity[piston.axis] if gravity else 0.0
+            own = (disc.x, disc.vx) if piston.axis == 0 else (disc.y, disc.vy)
+            sign = outward(piston, piston.x - own[0])
+            assert sign == (1 if piston.x > 5 else -1)
             place, speed, terms = motion(*own, pull, exact(found) - exact(disc.t))
             piston_place, piston_speed, more = motion(piston.x, piston.v, piston.a, exact(found) - exact(piston.t))
             error = gamma(16) * (terms + more + exact(disc.r))
             error += gamma(1) * exact(found) * (abs(speed) + abs(piston_speed))
-            distance = outward(piston) * (piston_place - place)
+            distance = sign * (piston_place - place)
             assert found >= max(disc.t, piston.t)
             assert abs(distance - exact(disc.r)) <= error
     assert met > 40
@@ -79,7 +88,7 @@ def test_a_disc_that_is_left_behind_never_meets_it():
     assert piston_contact(body(x=7.5, y=5, vx=1, vy=0, r=0.5, m=1, t=2), some_piston(), None) == 2.0  # touches
 
 
-@pytest.mark.parametrize("side", range(4))
+@pytest.mark.parametrize("side", range(6))
 @pytest.mark.parametrize("falls", [True, False])
 def test_what_surely_misses_it(side, falls):
     """No disc up to the time of its contact; up to a little before, those of which it can tell."""
@@ -101,10 +110,21 @@ def test_what_surely_misses_it(side, falls):
 
 def test_end_stop():
     assert stop_contact(some_piston(v=0.5, t=1.0)) == 3.0
-    assert stop_contact(some_piston(v=-0.5)) == NEVER
+    assert stop_contact(some_piston()) == NEVER
     assert stop_contact(some_piston(x=8.5, a=1.0)) == 1.0
-    assert stop_contact(some_piston(side=0, x=2.0, v=-1.0, stop=0.5)) == 1.5
-    assert (outward(some_piston(3)), outward(some_piston(2))) == (1.0, -1.0)
+    assert stop_contact(some_piston(side=0, x=2.0, v=-1.0, t=0.5)) == 2.5
+    assert stop_contact(some_piston(side=4, v=-0.5)) == 16.0
+    assert stop_contact(some_piston(side=5, x=0.0, v=0.5)) == 18.0  # leaves the lower side
+    assert (outward(some_piston(3), -1.0), outward(some_piston(2), 1.0)) == (1.0, -1.0)
+    assert [outward(some_piston(4), distance) for distance in (0.5, -0.5)] == [1.0, -1.0]
+
+
+def test_normal_towards_the_disc():
+    below, above = (body(x=x, y=x, vx=0, vy=0, r=0.5, m=1.0) for x in (2.0, 9.0))
+    assert normal_of_piston(below, some_piston(1)) == (-1.0, 0.0)
+    assert normal_of_piston(below, some_piston(4)) == (-1.0, 0.0)
+    assert normal_of_piston(above, some_piston(4)) == (1.0, 0.0)
+    assert normal_of_piston(above, some_piston(5)) == (0.0, 1.0)
 
 
 def test_motion_and_energy_between_hits():
@@ -125,7 +145,7 @@ def test_motion_and_energy_between_hits():
             assert piston.t == 1.0 + dt
 
 
-@pytest.mark.parametrize("side", range(4))
+@pytest.mark.parametrize("side", range(6))
 def test_collision_with_a_mass(side):
     """Momentum and energy along the axis are kept, to 8 roundings of a change of at most twice the approach."""
     draw = np.random.default_rng(side)
@@ -134,7 +154,7 @@ def test_collision_with_a_mass(side):
             (vx, vy, v), (m, mass) = draw.normal(size=3), 10.0 ** draw.uniform(-3, 3, 2)
             disc, piston = body(x=0, y=0, vx=vx, vy=vy, r=0.5, m=m), some_piston(side, v=v, m=mass)
             collide_with_piston(disc, 0, piston, None)
-            (old, new), kept = ((vx, disc.vx), disc.vy == vy) if side < 2 else ((vy, disc.vy), disc.vx == vx)
+            (old, new), kept = ((vx, disc.vx), disc.vy == vy) if piston.axis == 0 else ((vy, disc.vy), disc.vx == vx)
             scale, m, mass = abs(old) + abs(v), exact(m), exact(mass)
             momentum = m * (exact(new) - exact(old)) + mass * (exact(piston.v) - exact(v))
             assert kept
@@ -157,3 +177,4 @@ def test_sides():
     assert is_piston_side(1, [some_piston()])
     assert not is_piston_side(0, [some_piston()])
     assert not is_piston_side(1, None)
+    assert [is_inner(piston) for piston in ([some_piston(4)], [some_piston()], None)] == [True, False, False]

@@ -135,17 +135,40 @@ def test_a_thermostat():
 
 def test_a_piston_of_given_velocity():
     (record,) = effects_of("piston.velocity=-0.5")[1].piston
-    assert (record.x, record.v, record.a, record.m, record.stop, record.side) == (20, -0.5, 0, 0, 20, 1)
+    assert (record.x, record.v, record.a, record.m, record.length, record.wall, record.outward) == (
+        20,
+        -0.5,
+        0,
+        0,
+        20,
+        1,
+        1,
+    )
 
 
 def test_a_piston_with_a_mass_under_pressure_and_gravity():
     piston = "piston={ side = 'bottom', position = 0.25, mass = 4, pressure = 0.5 }"
     region = "species.b.region=[0, 1, 5, 9]"
     (record,) = effects_of(piston, region, "gravity.acceleration=[0, 0.125]")[1].piston
-    assert (record.x, record.v, record.m, record.stop, record.side) == (0.25, 0, 4, 0, 2)
+    assert (record.x, record.v, record.m, record.length, record.wall, record.outward) == (0.25, 0, 4, 10, 2, -1)
     assert record.a == 0.5 * 20 / 4 + 0.125
     (record,) = effects_of(piston.replace("bottom", "top").replace("0.25", "9.75"), region)[1].piston
-    assert (record.a, record.stop, record.side) == (-0.5 * 20 / 4, 10, 3)
+    assert (record.a, record.axis, record.wall) == (-0.5 * 20 / 4, 1, 3)
+
+
+def test_an_inner_piston_is_the_last_wall_with_two_faces():
+    wall = "wall=[{ from = [1, 1], to = [1, 3] }]"
+    inner = "piston={ inner = 'x', position = 12, velocity = 0.25 }"
+    effects = effects_of(wall, inner, "box.left={ thermal = 2 }", "log.pressure=true")[1]
+    (record,) = effects.piston
+    assert (record.x, record.v, record.a, record.m, record.length) == (12, 0.25, 0, 0, 20)
+    assert (record.wall, record.axis, record.outward) == (5, 0, 0)
+    assert (len(effects.segments), len(effects.wall_energy), len(effects.flow.hits)) == (1, 6, 4 + 2 * 2)
+    assert effects.thermal.temperature.tolist() == [2, -1, -1, -1, -1, -1]
+    (record,) = effects_of("piston={ inner = 'y', position = 8, mass = 3 }", "gravity.acceleration=[0, -0.125]")[
+        1
+    ].piston
+    assert (record.x, record.a, record.axis, record.wall, record.length) == (8, -0.125, 1, 4, 10)
 
 
 @pytest.mark.parametrize(
