@@ -92,7 +92,7 @@ class Document(_DiscsAndEffects):
     @property
     def solids(self) -> Solids:
         """Solids that the tables [[wall]] make."""
-        return find_solids(self.wall, self.box.size[0] * self.box.size[1])
+        return find_solids(tuple(self.wall), self.box.size[0] * self.box.size[1])
 
     @property
     def placed(self) -> list[tuple[int, Species]]:
