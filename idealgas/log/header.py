@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.columns import Column
+from idealgas.columns import FIRST_SEGMENT, Column
 from idealgas.log.errors import LogError
 from idealgas.log.log_file import LogFile
 from idealgas.log.rules import check_boundary, check_images, check_species, check_walls
@@ -85,7 +85,8 @@ class LogHeader:
     @cached_property
     def discs(self) -> Gas:
         """Discs at the start of the run: constants of each disc, and position and velocity at time 0."""
-        return replace(self._stored_discs, solid_area=self.scene.solids.area)
+        inner = len(self.walls) > FIRST_SEGMENT
+        return replace(self._stored_discs, solid_area=self.scene.solids.area) if inner else self._stored_discs
 
     @cached_property
     def _stored_discs(self) -> Gas:
